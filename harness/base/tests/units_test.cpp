@@ -1,0 +1,57 @@
+#include "harness/base/units.hpp"
+
+#include <numbers>
+
+#include "harness/base/near.hpp"
+
+namespace whirl {
+namespace {
+
+struct Row {
+  const char* text;
+  Dimension dimension;
+  double value_SI;
+};
+
+TEST(Units, AreTurnedIntoSI) {
+  const Row kRows[] = {
+      {"50 ms", Dimension::time, 0.05},
+      {"3.2 N", Dimension::force, 3.2},
+      {"4.2 m/s", Dimension::speed, 4.2},
+      {"10 %", Dimension::ratio, 0.1},
+      {" 10 in ", Dimension::length, 0.254},
+      {"60 rpm", Dimension::angular_rate, 2 * std::numbers::pi},
+      {"2200 mAh", Dimension::charge, 7920.0},
+      {"25 degC", Dimension::temperature, 298.15},
+      {"-3", Dimension::none, -3.0},
+      {"0.0125 kg m2", Dimension::inertia, 0.0125},
+  };
+  for (const Row& row : kRows) {
+    const auto got = parse_quantity(row.text, "test");
+    ASSERT_TRUE(got.ok()) << row.text;
+    EXPECT_EQ(got.value().dimension, row.dimension) << row.text;
+    EXPECT_TRUE(near(got.value().value_SI, row.value_SI, round_off(4, row.value_SI))) << row.text;
+  }
+}
+
+TEST(Units, RefuseWhatIsNotAQuantity) {
+  for (const char* text :
+       {"", "ms", "five ms", "5 furlong", "5 m s", "nan s", "inf m", "1e999 m"}) {
+    EXPECT_FALSE(parse_quantity(text, "test").ok()) << text;
+  }
+}
+
+TEST(Units, NameThePlaceTheWrongDimensionAndTheCure) {
+  const auto wrong = parse_quantity_as("3 N", Dimension::time, "hover.lua:12");
+  ASSERT_FALSE(wrong.ok());
+  EXPECT_EQ(wrong.error().message(),
+            "hover.lua:12: '3 N' is a force, not a time (a time is written with ns us ms s min)");
+}
+
+TEST(Units, DurationsAreWholeNanoseconds) {
+  EXPECT_EQ(parse_duration_ns("0.1 us", "").value(), 100);
+  EXPECT_FALSE(parse_duration_ns("1e12 s", "").ok());
+}
+
+}  // namespace
+}  // namespace whirl

@@ -1,0 +1,73 @@
+// Virtual time and what happens in it: one queue per board, exact nanoseconds, deterministic order.
+//
+//   Order    by time; events of equal time fire in the order in which they were set
+//   Driver   QEMU's virtual clock in the board process, run_until() in tests
+//   Rule     an action runs with now() == its due time; it may set or cancel any event, itself too
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <utility>
+#include <vector>
+
+namespace whirl::io {
+
+using Nanoseconds = std::int64_t;
+inline constexpr Nanoseconds kNever = INT64_MAX;
+
+class Event;
+
+class EventQueue {
+ public:
+  // Where time comes from between events. Null: the queue's own time, moved by run_until().
+  void set_clock(std::function<Nanoseconds()> clock) { clock_ = std::move(clock); }
+  // Told whenever the earliest deadline changes outside of run_until().
+  void set_rearm(std::function<void(Nanoseconds)> rearm) { rearm_ = std::move(rearm); }
+
+  Nanoseconds now() const { return running_ || !clock_ ? now_ : clock_(); }
+  Nanoseconds next_deadline() const;
+  // Fires all that is due until t, then sets the time to t. Pre: t >= now().
+  void run_until(Nanoseconds t);
+
+ private:
+  friend class Event;
+  void insert(Event& event);
+  void remove(Event& event);
+  void sift_up(std::size_t i);
+  void sift_down(std::size_t i);
+  static bool before(const Event& a, const Event& b);
+
+  std::vector<Event*> heap_;
+  std::function<Nanoseconds()> clock_;
+  std::function<void(Nanoseconds)> rearm_;
+  Nanoseconds now_ = 0;
+  std::uint64_t sequence_ = 0;
+  bool running_ = false;
+};
+
+// One thing that may happen. Lives inside its owner; leaving the scope cancels it.
+class Event {
+ public:
+  Event(EventQueue& queue, std::function<void()> action)
+      : queue_(queue), action_(std::move(action)) {}
+  ~Event() { cancel(); }
+  Event(const Event&) = delete;
+  Event& operator=(const Event&) = delete;
+
+  void at(Nanoseconds due);  // sets or moves; a due time in the past fires at once, at now()
+  void in(Nanoseconds delay) { at(queue_.now() + delay); }
+  void cancel();
+  bool pending() const { return slot_ != kIdle; }
+  Nanoseconds due() const { return due_; }
+
+ private:
+  friend class EventQueue;
+  static constexpr std::size_t kIdle = SIZE_MAX;
+
+  EventQueue& queue_;
+  std::function<void()> action_;
+  Nanoseconds due_ = kNever;
+  std::uint64_t sequence_ = 0;
+  std::size_t slot_ = kIdle;
+};
+
+}  // namespace whirl::io

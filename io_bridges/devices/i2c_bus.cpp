@@ -1,0 +1,65 @@
+#include "io_bridges/devices/i2c_bus.hpp"
+
+namespace whirl::io {
+
+I2cBus::I2cBus(std::string name)
+    : name_(std::move(name)), sda_(name_ + ".SDA"), scl_(name_ + ".SCL") {}
+
+void I2cBus::finish(bool repeated, Nanoseconds now) {
+  current_.stop_ns = now;
+  current_.repeated_start = repeated;
+  if (log_) log_(current_);
+}
+
+void I2cBus::start(Nanoseconds now) {
+  if (busy_) finish(true, now);
+  busy_ = true;
+  addressed_.clear();
+  current_ = {};
+  current_.start_ns = now;
+}
+
+bool I2cBus::address(std::uint8_t address_7bit, bool read, Nanoseconds now) {
+  current_.address = address_7bit;
+  current_.read = read;
+  bool ack = false;
+  for (I2cTarget* target : targets_) {
+    if (target->answers(address_7bit) && target->start(address_7bit, read, now)) {
+      addressed_.push_back(target);
+      ack = true;
+    }
+  }
+  if (faults_ != nullptr && faults_->ack(address_7bit, ack, now) != ack) ack = !ack;
+  if (!ack) addressed_.clear();
+  current_.address_acked = ack;
+  return ack;
+}
+
+bool I2cBus::write(std::uint8_t byte, Nanoseconds now) {
+  if (faults_ != nullptr) byte = faults_->byte(current_.address, false, byte, now);
+  bool ack = false;
+  for (I2cTarget* target : addressed_) ack = target->write(byte, now) || ack;
+  if (faults_ != nullptr) ack = faults_->ack(current_.address, ack, now);
+  current_.bytes.push_back(byte);
+  current_.all_acked = current_.all_acked && ack;
+  return ack;
+}
+
+std::uint8_t I2cBus::read(bool ack, Nanoseconds now) {
+  std::uint8_t byte = 0xFF;  // nobody pulls SDA low
+  for (I2cTarget* target : addressed_) byte &= target->read(now);
+  if (faults_ != nullptr) byte = faults_->byte(current_.address, true, byte, now);
+  for (I2cTarget* target : addressed_) target->acked(ack, now);
+  current_.bytes.push_back(byte);
+  return byte;
+}
+
+void I2cBus::stop(Nanoseconds now) {
+  if (!busy_) return;
+  for (I2cTarget* target : addressed_) target->stop(now);
+  finish(false, now);
+  addressed_.clear();
+  busy_ = false;
+}
+
+}  // namespace whirl::io

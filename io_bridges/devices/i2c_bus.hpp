@@ -1,0 +1,74 @@
+// An I2C bus: SDA and SCL as wires, the targets that hang on them, and the faults of the wire.
+//
+//   The controller (an MCU's I2C peripheral) calls start/address/write/read/stop at the times at
+//   which the condition or the byte's ninth clock has passed. It asks idle() before a START: SDA or
+//   SCL held low by a fault (or by GPIO) keeps the bus busy, as on copper. Recovery: a target that
+//   holds SDA after a lost clock lets go when SCL has been pulsed by GPIO as often as the fault
+//   says (nine is usual).
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "io_bridges/devices/bus.hpp"
+#include "io_bridges/devices/wire.hpp"
+
+namespace whirl::io {
+
+// One transaction from START to STOP (or repeated START), for logs and timing verdicts.
+struct I2cTransaction {
+  Nanoseconds start_ns = 0, stop_ns = 0;
+  std::uint8_t address = 0;
+  bool read = false;
+  bool address_acked = false;
+  bool repeated_start = false;  // ended by a repeated START instead of STOP
+  bool all_acked = true;        // every written byte was acknowledged
+  std::vector<std::uint8_t> bytes;
+};
+
+// Faults that act on bytes and acknowledge bits on their way. Each hook returns what really passes.
+class I2cFaults {
+ public:
+  virtual ~I2cFaults() = default;
+  virtual bool ack(std::uint8_t address, bool ack, Nanoseconds now) = 0;
+  virtual std::uint8_t byte(std::uint8_t address, bool read, std::uint8_t value,
+                            Nanoseconds now) = 0;
+};
+
+class I2cBus {
+ public:
+  explicit I2cBus(std::string name);
+
+  void add(I2cTarget& target) { targets_.push_back(&target); }
+  void set_faults(I2cFaults* faults) { faults_ = faults; }
+  void on_transaction(std::function<void(const I2cTransaction&)> log) { log_ = std::move(log); }
+
+  Wire& sda() { return sda_; }
+  Wire& scl() { return scl_; }
+  const std::string& name() const { return name_; }
+  bool idle() const { return !busy_ && sda_.level() && scl_.level(); }
+  bool busy() const { return busy_; }
+
+  // Controller side. start() opens a transaction, or ends the running one by a repeated START.
+  void start(Nanoseconds now);
+  bool address(std::uint8_t address_7bit, bool read, Nanoseconds now);  // returns ACK
+  bool write(std::uint8_t byte, Nanoseconds now);                       // returns ACK
+  std::uint8_t read(bool ack, Nanoseconds now);  // one byte and the master's answer to it
+  void stop(Nanoseconds now);
+
+ private:
+  void finish(bool repeated, Nanoseconds now);
+
+  std::string name_;
+  Wire sda_, scl_;
+  std::vector<I2cTarget*> targets_;
+  std::vector<I2cTarget*> addressed_;
+  I2cFaults* faults_ = nullptr;
+  std::function<void(const I2cTransaction&)> log_;
+  I2cTransaction current_;
+  bool busy_ = false;
+};
+
+}  // namespace whirl::io
