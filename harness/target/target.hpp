@@ -1,0 +1,40 @@
+// A target: where the firmware runs. A stock QEMU with our board in it, or the physical board.
+//
+//   Promise  run until virtual time t, deliver what happened with time stamps, take what was sensed.
+//   Overlap  run() returns at once; the plant takes its own step meanwhile; arrive() waits. Both sides
+//            use what the other had delivered by the start of the step, so neither order of execution
+//            nor host speed can change a result.
+//   Silence  a target that does not answer within the host-side limit is an Error (internal for a
+//            crash of ours, bad_input for an image that cannot run), with its last output in `what`.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "harness/base/result.hpp"
+#include "io_bridges/link/messages.hpp"
+
+namespace whirl {
+
+enum class TargetState {
+  running,
+  ended,       // the board asked for power-down, or the run was ended
+  cpu_locked,  // lock-up: a fault in a fault handler; firmware's doing, named in a cpu_fault message
+};
+
+class Target {
+ public:
+  virtual ~Target() = default;
+
+  virtual Result<Done> start() = 0;
+  // Pre: start() succeeded; every run() is followed by one arrive(). until_ns grows.
+  virtual void run(std::int64_t until_ns, const io::Batch& sensed) = 0;
+  virtual Result<TargetState> arrive(io::Batch& happened) = 0;
+  // Ends the run in order: statistics arrive in `happened`. Safe to call twice, and after an error.
+  virtual void stop(io::Batch& happened) = 0;
+  // Names and versions of all that takes part, for run.json: {"qemu", "7.2.22"}, {"image sha256", ..}
+  virtual std::vector<std::pair<std::string, std::string>> versions() const = 0;
+};
+
+}  // namespace whirl
