@@ -1,6 +1,7 @@
 # How targets are declared in this house.
 #   whirl_library(name SOURCES ... LINK ...)    static, position independent (the board is a plug-in)
-#   whirl_test(name SOURCES ... LINK ... LABELS ...)   a GoogleTest executable, one ctest per case
+#   whirl_test(name SOURCES ... LINK ... LABELS ...)   a GoogleTest executable; label host: needs the
+#                                               images, QEMU or a fast build, so no sanitizers
 include_guard()
 
 add_library(whirl_options INTERFACE)
@@ -27,14 +28,22 @@ function(whirl_library name)
   endif()
 endfunction()
 
+# What ./whirl run needs, and the tests that need real images, gates or a fast build (label host or
+# gate). All other tests are built and run under the sanitizers only.
+add_custom_target(whirl_program)
+add_custom_target(whirl_host_tests)
+
 function(whirl_test name)
   cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;LINK;LABELS" ${ARGN})
   if(NOT ARG_TIMEOUT)
-    set(ARG_TIMEOUT 120)
+    set(ARG_TIMEOUT 300)
   endif()
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE whirl_options ${ARG_LINK} GTest::gtest GTest::gtest_main)
   # One ctest per executable: a process start per case costs more than the cases do.
   add_test(NAME ${name} COMMAND ${name} --gtest_brief=1)
   set_tests_properties(${name} PROPERTIES TIMEOUT ${ARG_TIMEOUT} LABELS "${ARG_LABELS}")
+  if("host" IN_LIST ARG_LABELS)
+    add_dependencies(whirl_host_tests ${name})
+  endif()
 endfunction()
