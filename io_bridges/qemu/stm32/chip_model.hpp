@@ -1,0 +1,63 @@
+// A whole microcontroller without its core: what the board process and the plug-in see of it,
+// whichever part it is (Stm32f405, Stm32f103).
+//
+//   Plug-in   maps regions() into the guest, forwards writes into flash to flash_store(), raises
+//             InterruptLines in the NVIC, and calls reset(cause) whenever the guest was reset
+//   Board     hangs devices on pin(), i2c(), spi(), uart(), analog inputs
+//   Reset     a watchdog asks for a reset through on_reset_request(); the plug-in then resets the
+//             core and comes back with reset(that cause)
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <string_view>
+#include <vector>
+
+#include "io_bridges/devices/bus.hpp"
+#include "io_bridges/devices/i2c_bus.hpp"
+#include "io_bridges/devices/spi_bus.hpp"
+#include "io_bridges/devices/wire.hpp"
+#include "io_bridges/qemu/stm32/flash_array.hpp"
+#include "io_bridges/qemu/stm32/peripheral.hpp"
+#include "io_bridges/qemu/stm32/reset_cause.hpp"
+
+namespace whirl::stm32 {
+
+// One mapped block. `block` already has the clock gate in front.
+struct Region {
+  std::uint32_t base = 0;
+  std::uint32_t size = 0;
+  Peripheral* block = nullptr;
+};
+
+// What the chip model is built on. All references must outlive it.
+struct ChipHost {
+  io::EventQueue& events;
+  InterruptLines& interrupts;
+  SystemBus& memory;  // RAM and flash; register blocks are found by the chip model itself
+  FlashArray& flash;
+  io::FindingSink finding;
+  double hse_Hz = 0.0;  // crystals of the board; 0: not fitted
+  double lse_Hz = 0.0;
+};
+
+class ChipModel {
+ public:
+  virtual ~ChipModel() = default;
+
+  virtual const std::vector<Region>& regions() const = 0;
+  virtual void reset(ResetCause cause) = 0;
+  virtual void on_reset_request(std::function<void(ResetCause)> request) = 0;
+  // The CPU wrote into the flash's address range. False: the part would answer with a bus fault.
+  virtual bool flash_store(std::uint32_t address, unsigned size, std::uint32_t value) = 0;
+
+  virtual io::Wire* pin(std::string_view name) = 0;  // "PB0"; null: the part has no such pin
+  virtual io::I2cBus* i2c(int number) = 0;           // null: the part has no such bus
+  virtual io::SpiBus* spi(int number) = 0;
+  virtual bool join_uart(int number, io::UartPeer& peer) = 0;  // USARTn or UARTn
+  // Volts at an analog input, asked for at each sampling instant.
+  virtual bool set_analog(std::string_view pin, std::function<double(Nanoseconds)> volts) = 0;
+  virtual const Clocks& clocks() const = 0;
+  virtual double sysclk_Hz() const = 0;  // what the firmware has set up now
+};
+
+}  // namespace whirl::stm32
