@@ -1,0 +1,56 @@
+// A propeller as the solver needs it: rings of blade, each with its own section table.
+//
+//   In       PropellerDescription: what a propeller file says (columns r/R, c/R, angle; polars by
+//            radius). make_blade() checks it and answers with a Blade or one sentence with a cure.
+//   Valid    1 to 8 blades, radius 1 cm to 5 m, stations ascending within (0, 1] of the tip radius.
+//   Source   section angle corrections and stall delay: see section_rules.hpp.
+//   Left out sweep, cone, section camber varying along the blade other than by mixing two polars.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "harness/base/result.hpp"
+
+namespace whirl::plant {
+
+class PolarFamily;  // polar.hpp: one section at several Reynolds numbers
+
+struct PropellerStation {
+  double r_over_R = 0.0;
+  double c_over_R = 0.0;
+  double angle_rad = 0.0;  // chord line against the disc
+};
+
+// From this radius outward (mixed linearly between neighbours) the section is `polar`.
+struct SectionStation {
+  double r_over_R = 0.0;
+  std::shared_ptr<const PolarFamily> polar;
+};
+
+struct PropellerDescription {
+  std::string place;  // "hk_10x4.5.lua", repeated in errors
+  std::string name;
+  int blade_count = 2;
+  double diameter_m = 0.0;
+  std::vector<PropellerStation> stations;
+  std::vector<SectionStation> sections;
+  double mass_kg = 0.0;                     // whole propeller
+  double tip_twist_correction_rad = 0.0;    // added in proportion to r/R; stated in the file
+  double flap_stiffness_Nm_per_rad = 60.0;  // root spring of one blade; stiff plastic by default
+  bool stall_delay = true;                  // rotational augmentation of the inboard sections
+};
+
+class Blade;  // blade_rings.hpp: for the solver's eyes only
+
+Result<std::shared_ptr<const Blade>> make_blade(const PropellerDescription& description);
+
+// What others may ask of a blade without knowing its insides.
+double radius_m(const Blade& blade);
+double disc_area_m2(const Blade& blade);
+int blade_count(const Blade& blade);
+double polar_inertia_kgm2(const Blade& blade);  // whole propeller about its shaft, from its mass
+const std::string& name(const Blade& blade);
+
+}  // namespace whirl::plant
