@@ -1,0 +1,42 @@
+// Mass, geometry, drag and ground contact of the airframe.
+//
+//   Frame    B; rotor and gear positions are from the centre of mass
+//   Drag     who provides what: each rotor's own in-plane force comes from plant/rotor and acts at
+//            its hub. `rotor_drag_spm` is only what the rotor model does not give of the lumped
+//            0.04 s/m of [Bangura2017, 4.4]; it acts at the hub too. Parasitic drag is quadratic
+//            and acts at the centre of mass.
+#pragma once
+#include <Eigen/Core>
+#include <array>
+#include <string>
+#include <vector>
+
+#include "harness/base/result.hpp"
+
+namespace whirl::plant {
+
+struct RotorMount {
+  Eigen::Vector3d p_BP_B_m = Eigen::Vector3d::Zero();
+  int spin = 1;             // +1: counter-clockwise seen from above, reaction on the body along +z
+  double radius_m = 0.127;  // of the disc that may strike the ground
+};
+
+struct ContactParams {
+  std::vector<Eigen::Vector3d> gear_B_m;  // centres of the feet
+  double foot_radius_m = 0.01;
+  double restitution = 0.3;  // of the pair of foot and ground
+  double friction = 0.8;     // of the pair
+};
+
+struct AirframeParams {
+  double mass_kg = 0.0;
+  Eigen::Vector3d inertia_kgm2 = Eigen::Vector3d::Zero();  // principal, along the axes of B
+  std::array<RotorMount, 4> rotors;                        // index: motor number - 1
+  double rotor_drag_spm = 0.0;     // in-plane force = -this x thrust x air speed, per rotor
+  double parasitic_area_m2 = 0.0;  // drag coefficient x frontal area
+  ContactParams contact;
+};
+
+Result<Done> validate(const AirframeParams& params, const std::string& place);
+
+}  // namespace whirl::plant

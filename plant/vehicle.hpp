@@ -1,0 +1,110 @@
+// A quadrotor as physics: four motors on one battery, four rotors in the air, a rigid body, ground.
+//
+//   Frame    W and B as in frames.hpp; motors and rotors by index = motor number - 1
+//   Units    SI
+//   Order    one step: commands and air at t -> motors and bus over [t, t + dt] (exact sub-steps)
+//            -> rotor loads -> rigid body over [t, t + dt] -> contact -> state() at t + dt
+//   Valid    dt from 0.1 to 2 ms; the rotor's loads are held over the step, except that shaft
+//            torque follows the square of speed
+//   Left out blade flexing, rotor-on-rotor wake, wind that varies inside a rotor's disc
+#pragma once
+#include <Eigen/Geometry>
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <memory>
+
+#include "harness/base/result.hpp"
+#include "plant/air/air_params.hpp"
+#include "plant/airframe/airframe_params.hpp"
+#include "plant/battery/battery_params.hpp"
+#include "plant/motor/motor_params.hpp"
+
+namespace whirl::plant {
+
+struct RotorConditions;  // plant/rotor/rotor.hpp
+struct RotorLoads;
+using RotorStep = std::function<RotorLoads(const RotorConditions& conditions, double dt_s)>;
+using RotorSet = std::array<RotorStep, 4>;
+
+struct VehicleParams {
+  AirframeParams airframe;
+  MotorParams motor;
+  BatteryParams battery;
+  double avionics_current_A = 0.25;
+  AirParams air;
+};
+
+VehicleParams hp_quad();  // the reference vehicle of [Bangura2017, ch. 3]
+
+Result<Done> validate(const VehicleParams& params, const std::string& place);
+
+enum class Freewheel {
+  synchronous,  // the low side conducts when the high side does not: current may reverse (brakes)
+  diode,        // body diodes only: current never reverses; duty 0 coasts
+};
+
+struct MotorCommand {
+  double duty = 0.0;  // 0..1 of the bus voltage
+  Freewheel freewheel = Freewheel::diode;
+};
+
+struct MotorState {
+  double speed_radps = 0.0;
+  double winding_current_A = 0.0;  // at the end of the step
+  double winding_peak_A = 0.0;     // largest magnitude within the step
+  double bus_current_A = 0.0;      // mean over the step; negative when it feeds the pack
+  double shaft_torque_Nm = 0.0;    // taken by the air
+  double thrust_N = 0.0;
+  double winding_temperature_K = 293.15;
+  bool blocked = false;  // the propeller struck the ground and has stopped
+};
+
+struct VehicleState {
+  double t_s = 0.0;
+  Eigen::Vector3d p_WB_W_m = Eigen::Vector3d::Zero();
+  Eigen::Vector3d v_WB_W_mps = Eigen::Vector3d::Zero();
+  Eigen::Quaterniond q_WB = Eigen::Quaterniond::Identity();
+  Eigen::Vector3d w_WB_B_radps = Eigen::Vector3d::Zero();
+  Eigen::Vector3d specific_force_B_mps2 = Eigen::Vector3d::Zero();  // at the centre of mass
+  Eigen::Vector3d alpha_WB_B_radps2 = Eigen::Vector3d::Zero();
+  std::array<MotorState, 4> motors;
+  double bus_voltage_V = 0.0;      // mean over the step
+  double battery_current_A = 0.0;  // mean over the step, avionics included
+  double charge_used_C = 0.0;
+  Eigen::Vector3d wind_W_mps = Eigen::Vector3d::Zero();  // at the centre of mass
+  double static_pressure_Pa = 0.0, air_temperature_K = 0.0, air_density_kgpm3 = 0.0;
+  double contact_impulse_Ns = 0.0;  // what the ground gave in this step
+  bool on_ground = false;
+};
+
+class Vehicle {
+ public:
+  // Pre: validate(params) succeeded. The vehicle starts at rest on its gear at W's origin, nose
+  // north. `rotors[i]` must turn as params.airframe.rotors[i].spin says.
+  Vehicle(const VehicleParams& params, RotorSet rotors, std::uint64_t seed);
+  ~Vehicle();
+  Vehicle(Vehicle&&) noexcept;
+  Vehicle& operator=(Vehicle&&) noexcept;
+
+  // Puts the vehicle elsewhere, at rest or moving, motors as they are.
+  void place(const Eigen::Vector3d& p_WB_W_m, const Eigen::Quaterniond& q_WB,
+             const Eigen::Vector3d& v_WB_W_mps, const Eigen::Vector3d& w_WB_B_radps);
+  void set_motor_speed(int index, double speed_radps);
+
+  void command(int index, const MotorCommand& command);  // holds until the next one
+  void set_steady_wind(const Eigen::Vector3d& wind_W_mps);
+  void add_gust(const GustWindow& gust);
+  void add_jet(const Jet& jet);
+  void dip_supply(double below_V, double start_s, double duration_s);  // lowers the source
+  void push(const Eigen::Vector3d& force_W_N, double duration_s);      // at the centre of mass
+
+  void step(double dt_s);
+  const VehicleState& state() const;
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace whirl::plant
