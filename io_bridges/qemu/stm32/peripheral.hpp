@@ -60,11 +60,18 @@ class DmaRequest {
     if (complete_) complete_();
   }
   void on_transfer_complete(std::function<void()> complete) { complete_ = std::move(complete); }
+  // The DMA tells the peripheral that it has moved one item for this request: its acknowledge line.
+  // Requests that no register access lowers (timers, DAC) end here; after it the DMA asks level().
+  void served() {
+    if (served_) served_();
+  }
+  void on_served(std::function<void()> served) { served_ = std::move(served); }
 
  private:
   bool level_ = false;
   std::function<void(bool)> changed_;
   std::function<void()> complete_;
+  std::function<void()> served_;
 };
 
 // Clock frequencies as RCC has them now, and whether a block's clock is on. A register block whose

@@ -35,12 +35,17 @@ class Signal {
   bool level() const { return level_; }      // of the pin, as the peripheral sees it
   bool routed() const { return pins_ > 0; }  // some pin is muxed to it
   void watch(Watcher watcher) { watchers_.push_back(std::move(watcher)); }  // input edges
+  // A peripheral that computes its edges (timers) does so only while a pin carries them.
+  void on_route(std::function<void()> rerouted) { rerouted_ = std::move(rerouted); }
   const std::string& name() const { return name_; }
 
   // GPIO's side. An outlet is one pin that may carry the signal; it is told every drive and asks
   // its own mode whether it passes it on.
   void add_outlet(Outlet outlet) { outlets_.push_back(std::move(outlet)); }
-  void route(int change) { pins_ += change; }  // +1, -1: a pin was muxed to it, or away
+  void route(int change) {  // +1, -1: a pin was muxed to it, or away
+    pins_ += change;
+    if (rerouted_) rerouted_();
+  }
   Drive driven() const { return drive_; }
   void sense(bool level, Nanoseconds now) {
     if (level == level_) return;
@@ -52,6 +57,7 @@ class Signal {
   std::string name_;
   std::vector<Watcher> watchers_;
   std::vector<Outlet> outlets_;
+  std::function<void()> rerouted_;
   Drive drive_ = Drive::none;
   int pins_ = 0;
   bool level_;
