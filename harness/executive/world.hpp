@@ -1,0 +1,64 @@
+// A world: all that surrounds the firmware in one run (vehicle and ground station, or a stand).
+//
+//   Time     step(t) moves the world to t with what the target did until the step's start; the first
+//            call is step(0), which only fills `sensed`. Steps are 1 ms. No clock, no thread, no file.
+//   Signals  truth by name, in SI, read after each step. Names are lower case without the unit
+//            ("height", "tilt", "thrust_1"); logs append the unit of the dimension ("height_m").
+//   Input    command, disturb and fault come from the plan; what they do not understand they refuse
+//            through the Table (so the complaint carries the plan's line), by calling finish().
+#pragma once
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "harness/base/result.hpp"
+#include "harness/base/units.hpp"
+#include "io_bridges/link/messages.hpp"
+
+namespace whirl::lua {
+class Table;
+}
+
+namespace whirl {
+
+struct Signal {
+  std::string name;
+  Dimension dimension = Dimension::none;
+  std::string about;  // one line for people: "height above the floor, truth"
+};
+
+// One fault as a plan asked for it. The kind is a word ("i2c_nack", "capture_lost").
+struct FaultSpec {
+  std::uint32_t number = 0;
+  std::string kind;
+  std::string device;  // "imu", "esc2"; may be empty
+  std::int32_t bus = 0;
+  std::int32_t address = -1;  // -1: any
+  std::int64_t start_ns = 0;
+  std::int64_t end_ns = INT64_MAX;  // INT64_MAX: for ever
+  double value = 0.0;               // SI; its meaning depends on the kind
+};
+
+class World {
+ public:
+  virtual ~World() = default;
+
+  virtual const std::vector<Signal>& signals() const = 0;
+  virtual void read(std::span<double> values) const = 0;  // in the order of signals()
+
+  virtual void step(std::int64_t t_ns, const io::Batch& happened, io::Batch& sensed) = 0;
+
+  // t:command { ... } and t:gust { ... } at now_ns.
+  virtual Result<Done> command(const lua::Table& wish, std::int64_t now_ns) = 0;
+  virtual Result<Done> gust(const lua::Table& wish, std::int64_t now_ns) = 0;
+
+  // True: this kind is the world's to apply (capture lost, supply dip), and it will report its
+  // number in applied_faults() once it has acted. False: it is the board's.
+  virtual bool take_fault(const FaultSpec& fault) = 0;
+  virtual std::vector<std::uint32_t> applied_faults() const = 0;
+
+  virtual std::string status() const = 0;  // a few words for the progress line: "flying, 1.08 m"
+};
+
+}  // namespace whirl
