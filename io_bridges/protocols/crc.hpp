@@ -1,0 +1,38 @@
+// The two checksums of our protocols, as published in the catalogue of CRC algorithms.
+//
+//   crc8    CRC-8/SMBUS: poly 0x07, init 0, not reflected (ESC set-points and status)
+//   crc16   CRC-16/MCRF4XX: poly 0x1021 reflected, init 0xFFFF, no final xor (MAVLink)
+//   Error   both give the catalogue's check values over "123456789" (tests/crc_test.cpp)
+#pragma once
+#include <cstdint>
+#include <span>
+
+namespace whirl::io {
+
+constexpr std::uint8_t crc8_add(std::uint8_t crc, std::uint8_t byte) {
+  crc = static_cast<std::uint8_t>(crc ^ byte);
+  for (int bit = 0; bit < 8; ++bit) {
+    crc = static_cast<std::uint8_t>((crc & 0x80) != 0 ? (crc << 1) ^ 0x07 : crc << 1);
+  }
+  return crc;
+}
+
+constexpr std::uint16_t crc16_add(std::uint16_t crc, std::uint8_t byte) {
+  crc = static_cast<std::uint16_t>(crc ^ byte);
+  for (int bit = 0; bit < 8; ++bit) {
+    crc = static_cast<std::uint16_t>((crc & 1) != 0 ? (crc >> 1) ^ 0x8408 : crc >> 1);
+  }
+  return crc;
+}
+
+constexpr std::uint8_t crc8(std::span<const std::uint8_t> bytes, std::uint8_t crc = 0x00) {
+  for (const std::uint8_t byte : bytes) crc = crc8_add(crc, byte);
+  return crc;
+}
+
+constexpr std::uint16_t crc16(std::span<const std::uint8_t> bytes, std::uint16_t crc = 0xFFFF) {
+  for (const std::uint8_t byte : bytes) crc = crc16_add(crc, byte);
+  return crc;
+}
+
+}  // namespace whirl::io
