@@ -1,0 +1,141 @@
+#include "harness/metrics/response.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace whirl::metrics {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr std::int64_t kReference_ns = 200'000'000;
+
+std::span<const double> after(const Record& record) {
+  return record.command < record.values.size() ? record.values.subspan(record.command)
+                                               : std::span<const double>{};
+}
+
+double mean_of(std::span<const double> values) {
+  if (values.empty()) return kNaN;
+  double sum = 0.0;
+  for (double v : values) sum += v;
+  return sum / static_cast<double>(values.size());
+}
+
+struct Change {
+  double from = kNaN;
+  double to = kNaN;
+  double size() const { return to - from; }
+  // Nothing that rounding of the means could make is a change.
+  bool exists() const { return std::abs(size()) > 1e-9 * std::max(std::abs(from), std::abs(to)); }
+};
+
+Change change_of(const Record& record) {
+  const auto window = static_cast<std::size_t>(kReference_ns / record.step_ns);
+  const auto tail = after(record);
+  if (record.command < window || tail.size() < window || window == 0) return {};
+  return {mean_of(record.values.subspan(record.command - window, window)),
+          mean_of(tail.last(window))};
+}
+
+// First time after the command at which the change is done to the given share; NaN if never.
+double crossing_s(const Record& record, const Change& change, double share) {
+  const double level = change.from + share * change.size();
+  const double sign = change.size() > 0.0 ? 1.0 : -1.0;
+  const auto tail = after(record);
+  const double step_s = static_cast<double>(record.step_ns) * 1e-9;
+  for (std::size_t i = 0; i < tail.size(); ++i) {
+    if (!(sign * (tail[i] - level) >= 0.0)) continue;
+    if (i == 0) return 0.0;
+    const double before = tail[i - 1];
+    return step_s * (static_cast<double>(i) - (tail[i] - level) / (tail[i] - before));
+  }
+  return kNaN;
+}
+
+double transition_s(const Record& record, double sign) {
+  const Change change = change_of(record);
+  if (!change.exists() || !(sign * change.size() > 0.0)) return kNaN;
+  return crossing_s(record, change, 0.9) - crossing_s(record, change, 0.1);
+}
+
+bool has_nan(std::span<const double> values) {
+  return std::any_of(values.begin(), values.end(), [](double v) { return std::isnan(v); });
+}
+
+double extreme(std::span<const double> values, bool largest) {
+  if (values.empty() || has_nan(values)) return kNaN;
+  return largest ? *std::max_element(values.begin(), values.end())
+                 : *std::min_element(values.begin(), values.end());
+}
+
+}  // namespace
+
+double rise_time_s(const Record& record) {
+  return transition_s(record, 1.0);
+}
+
+double fall_time_s(const Record& record) {
+  return transition_s(record, -1.0);
+}
+
+double response_time_s(const Record& record) {
+  const Change change = change_of(record);
+  return change.exists() ? crossing_s(record, change, 0.9) : kNaN;
+}
+
+double overshoot_ratio(const Record& record) {
+  const Change change = change_of(record);
+  if (!change.exists()) return kNaN;
+  const double beyond =
+      change.size() > 0.0 ? maximum(record) - change.to : change.to - minimum(record);
+  return std::isnan(beyond) ? kNaN : std::max(0.0, beyond / std::abs(change.size()));
+}
+
+double settled_s(const Record& record, double target, double band) {
+  const auto tail = after(record);
+  const double step_s = static_cast<double>(record.step_ns) * 1e-9;
+  for (std::size_t i = tail.size(); i-- > 0;) {
+    if (std::abs(tail[i] - target) <= band) continue;
+    return i + 1 == tail.size() ? kNaN : step_s * static_cast<double>(i + 1);
+  }
+  return tail.empty() || std::isnan(target) || std::isnan(band) ? kNaN : 0.0;
+}
+
+double final_mean(const Record& record) {
+  const auto window = static_cast<std::size_t>(kReference_ns / record.step_ns);
+  const auto tail = after(record);
+  return tail.size() < window ? kNaN : mean_of(tail.last(window));
+}
+
+double mean(const Record& record) {
+  return mean_of(after(record));
+}
+
+double minimum(const Record& record) {
+  return extreme(after(record), false);
+}
+
+double maximum(const Record& record) {
+  return extreme(after(record), true);
+}
+
+double rms_about(const Record& record, double reference) {
+  double sum = 0.0;
+  const auto tail = after(record);
+  for (double v : tail) sum += (v - reference) * (v - reference);
+  return tail.empty() ? kNaN : std::sqrt(sum / static_cast<double>(tail.size()));
+}
+
+double quantile(std::span<const double> values, double p) {
+  if (values.empty() || has_nan(values) || !(p >= 0.0 && p <= 1.0)) return kNaN;
+  std::vector<double> sorted(values.begin(), values.end());
+  std::sort(sorted.begin(), sorted.end());
+  const double at = p * static_cast<double>(sorted.size() - 1);
+  const auto low = static_cast<std::size_t>(at);
+  const std::size_t high = std::min(low + 1, sorted.size() - 1);
+  return sorted[low] + (at - static_cast<double>(low)) * (sorted[high] - sorted[low]);
+}
+
+}  // namespace whirl::metrics
