@@ -1,0 +1,17 @@
+// Clock tree of the PX4FMU v1: 24 MHz crystal to SYSCLK 168 MHz, APB1 42 MHz, APB2 84 MHz.
+#pragma once
+#include <cstdint>
+
+#include "firmware/status.hpp"
+
+namespace fw::hal {
+
+inline constexpr std::uint32_t kPclk1_Hz = 42'000'000, kTimclk1_Hz = 84'000'000;
+
+Status start_clocks();  // no_answer: the crystal or the PLL did not start; we then run on 16 MHz
+
+// Why the part came out of reset; reading it clears the flags for the next time.
+enum class ResetCause : std::uint8_t { power, pin, software, watchdog, low_power };
+ResetCause take_reset_cause();
+
+}  // namespace fw::hal

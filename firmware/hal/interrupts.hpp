@@ -1,0 +1,31 @@
+// Masking, sleeping, and who is more urgent than whom (0 is the most urgent).
+#pragma once
+#include <cstdint>
+
+namespace fw::hal {
+
+enum Priority : std::uint32_t {
+  kPriorityImu = 1,
+  kPriorityTick = 2,
+  kPriorityI2c = 3,
+  kPriorityRadio = 4
+};
+
+class InterruptLock {  // for the few words that interrupts and tasks share
+ public:
+  InterruptLock() { __asm volatile("mrs %0, primask\n cpsid i" : "=r"(was_) : : "memory"); }
+  ~InterruptLock() { __asm volatile("msr primask, %0" : : "r"(was_) : "memory"); }
+  InterruptLock(const InterruptLock&) = delete;
+  InterruptLock& operator=(const InterruptLock&) = delete;
+
+ private:
+  std::uint32_t was_;
+};
+
+// Sleeps until an interrupt is pending, with interrupts masked: what the caller checked before
+// under the same lock cannot have changed. The pending one is served when the lock ends.
+inline void wait_for_interrupt() {
+  __asm volatile("dsb\n wfi" ::: "memory");
+}
+
+}  // namespace fw::hal

@@ -1,0 +1,221 @@
+// STM32F405 as the firmware sees it: every hardware address, and the bits that are used.
+//
+//   Names   registers and bits keep the spelling of the reference manual
+//   Source  RM0090 (memory map 2.3, register maps at the end of each chapter); PM0214 for the core
+//   Rule    the one reinterpret_cast of the firmware is in Reg32
+#pragma once
+#include <array>
+#include <cstdint>
+
+namespace fw::hw {
+
+template <std::uint32_t kAddress>
+struct Reg32 {
+  static constexpr std::uint32_t address = kAddress;
+
+  static std::uint32_t read() { return *pointer(); }
+  static void write(std::uint32_t value) { *pointer() = value; }
+  static void set(std::uint32_t bits) { write(read() | bits); }
+  static void clear(std::uint32_t bits) { write(read() & ~bits); }
+  static void replace(std::uint32_t mask, std::uint32_t bits) { write((read() & ~mask) | bits); }
+  static bool has(std::uint32_t bits) { return (read() & bits) == bits; }
+
+ private:
+  static volatile std::uint32_t* pointer() {
+    return reinterpret_cast<volatile std::uint32_t*>(kAddress);  // NOLINT
+  }
+};
+
+constexpr std::uint32_t bit(unsigned n) {
+  return 1u << n;
+}
+
+struct RCC {
+  static constexpr std::uint32_t base = 0x4002'3800;
+  using CR = Reg32<base + 0x00>;
+  using PLLCFGR = Reg32<base + 0x04>;
+  using CFGR = Reg32<base + 0x08>;
+  using AHB1ENR = Reg32<base + 0x30>;
+  using APB1ENR = Reg32<base + 0x40>;
+  using APB2ENR = Reg32<base + 0x44>;
+  using CSR = Reg32<base + 0x74>;
+  static constexpr std::uint32_t HSEON = bit(16), HSERDY = bit(17), PLLON = bit(24),
+                                 PLLRDY = bit(25);
+  static constexpr std::uint32_t PLLSRC_HSE = bit(22);
+  static constexpr std::uint32_t SW_PLL = 2u, SWS_Msk = 3u << 2, SWS_PLL = 2u << 2;
+  static constexpr std::uint32_t PPRE1_DIV4 = 5u << 10, PPRE2_DIV2 = 4u << 13;
+  static constexpr std::uint32_t GPIOAEN = bit(0), GPIOBEN = bit(1), GPIOCEN = bit(2),
+                                 CCMDATARAMEN = bit(20), DMA1EN = bit(21), DMA2EN = bit(22);
+  static constexpr std::uint32_t TIM2EN = bit(0), TIM5EN = bit(3), TIM7EN = bit(5),
+                                 USART2EN = bit(17), I2C3EN = bit(23), PWREN = bit(28);
+  static constexpr std::uint32_t SPI1EN = bit(12), SYSCFGEN = bit(14);
+  static constexpr std::uint32_t RMVF = bit(24), BORRSTF = bit(25), PADRSTF = bit(26),
+                                 PORRSTF = bit(27), SFTRSTF = bit(28), WDGRSTF = bit(29),
+                                 WWDGRSTF = bit(30), LPWRRSTF = bit(31);
+};
+
+struct PWR {
+  using CR = Reg32<0x4000'7000>;
+  static constexpr std::uint32_t VOS = bit(14);  // scale 1: needed above 144 MHz
+};
+
+struct FLASH {
+  using ACR = Reg32<0x4002'3C00>;
+  static constexpr std::uint32_t LATENCY_5WS = 5u, PRFTEN = bit(8), ICEN = bit(9), DCEN = bit(10);
+};
+
+template <std::uint32_t kBase>
+struct Gpio {
+  using MODER = Reg32<kBase + 0x00>;
+  using OTYPER = Reg32<kBase + 0x04>;
+  using OSPEEDR = Reg32<kBase + 0x08>;
+  using PUPDR = Reg32<kBase + 0x0C>;
+  using IDR = Reg32<kBase + 0x10>;
+  using BSRR = Reg32<kBase + 0x18>;
+  using AFRL = Reg32<kBase + 0x20>;
+  using AFRH = Reg32<kBase + 0x24>;
+};
+using GPIOA = Gpio<0x4002'0000>;
+using GPIOB = Gpio<0x4002'0400>;
+using GPIOC = Gpio<0x4002'0800>;
+
+struct SYSCFG {
+  using EXTICR2 = Reg32<0x4001'380C>;  // lines 4..7, four bits each
+};
+
+struct EXTI {
+  static constexpr std::uint32_t base = 0x4001'3C00;
+  using IMR = Reg32<base + 0x00>;
+  using RTSR = Reg32<base + 0x08>;
+  using PR = Reg32<base + 0x14>;
+};
+
+struct SPI1 {
+  static constexpr std::uint32_t base = 0x4001'3000;
+  using CR1 = Reg32<base + 0x00>;
+  using CR2 = Reg32<base + 0x04>;
+  using SR = Reg32<base + 0x08>;
+  using DR = Reg32<base + 0x0C>;
+  static constexpr std::uint32_t CPHA = bit(0), CPOL = bit(1), MSTR = bit(2), SPE = bit(6),
+                                 SSI = bit(8), SSM = bit(9);
+  static constexpr std::uint32_t BR_Msk = 7u << 3, BR_DIV8 = 2u << 3, BR_DIV128 = 6u << 3;
+  static constexpr std::uint32_t RXDMAEN = bit(0), TXDMAEN = bit(1);
+  static constexpr std::uint32_t BSY = bit(7);
+};
+
+struct I2C3 {
+  static constexpr std::uint32_t base = 0x4000'5C00;
+  using CR1 = Reg32<base + 0x00>;
+  using CR2 = Reg32<base + 0x04>;
+  using DR = Reg32<base + 0x10>;
+  using SR1 = Reg32<base + 0x14>;
+  using SR2 = Reg32<base + 0x18>;
+  using CCR = Reg32<base + 0x1C>;
+  using TRISE = Reg32<base + 0x20>;
+  static constexpr std::uint32_t PE = bit(0), START = bit(8), STOP = bit(9), ACK = bit(10),
+                                 SWRST = bit(15);
+  static constexpr std::uint32_t ITERREN = bit(8), ITEVTEN = bit(9), ITBUFEN = bit(10),
+                                 DMAEN = bit(11), LAST = bit(12);
+  static constexpr std::uint32_t SB = bit(0), ADDR = bit(1), BTF = bit(2), TXE = bit(7),
+                                 BERR = bit(8), ARLO = bit(9), AF = bit(10), OVR = bit(11);
+  static constexpr std::uint32_t BUSY = bit(1);
+  static constexpr std::uint32_t FS = bit(15);
+};
+
+struct USART2 {
+  static constexpr std::uint32_t base = 0x4000'4400;
+  using SR = Reg32<base + 0x00>;
+  using DR = Reg32<base + 0x04>;
+  using BRR = Reg32<base + 0x08>;
+  using CR1 = Reg32<base + 0x0C>;
+  using CR3 = Reg32<base + 0x14>;
+  static constexpr std::uint32_t RE = bit(2), TE = bit(3), UE = bit(13);
+  static constexpr std::uint32_t DMAR = bit(6), DMAT = bit(7);
+};
+
+template <std::uint32_t kBase>
+struct Timer {
+  using CR1 = Reg32<kBase + 0x00>;
+  using DIER = Reg32<kBase + 0x0C>;
+  using SR = Reg32<kBase + 0x10>;
+  using EGR = Reg32<kBase + 0x14>;
+  using CNT = Reg32<kBase + 0x24>;
+  using PSC = Reg32<kBase + 0x28>;
+  using ARR = Reg32<kBase + 0x2C>;
+  static constexpr std::uint32_t CEN = bit(0), URS = bit(2), OPM = bit(3), UIE = bit(0),
+                                 UIF = bit(0), UG = bit(0);
+};
+using TIM2 = Timer<0x4000'0000>;  // 32 bits
+using TIM5 = Timer<0x4000'0C00>;  // 32 bits
+using TIM7 = Timer<0x4000'1400>;  // 16 bits
+
+template <std::uint32_t kBase, unsigned kStream>
+struct DmaStream {
+  using CR = Reg32<kBase + 0x10 + 0x18 * kStream>;
+  using NDTR = Reg32<kBase + 0x14 + 0x18 * kStream>;
+  using PAR = Reg32<kBase + 0x18 + 0x18 * kStream>;
+  using M0AR = Reg32<kBase + 0x1C + 0x18 * kStream>;
+  using FCR = Reg32<kBase + 0x24 + 0x18 * kStream>;
+  using ISR = Reg32<kBase + (kStream < 4 ? 0x00 : 0x04)>;
+  using IFCR = Reg32<kBase + (kStream < 4 ? 0x08 : 0x0C)>;
+  static constexpr unsigned flag_shift = std::array<unsigned, 4>{0, 6, 16, 22}[kStream % 4];
+  static constexpr std::uint32_t TCIF = bit(5) << flag_shift, TEIF = bit(3) << flag_shift,
+                                 all_flags = 0x3Du << flag_shift;
+  static constexpr std::uint32_t EN = bit(0), TEIE = bit(2), TCIE = bit(4), DIR_M2P = 1u << 6,
+                                 CIRC = bit(8), MINC = bit(10);
+  static constexpr std::uint32_t priority(std::uint32_t level) { return level << 16; }
+  static constexpr std::uint32_t channel(std::uint32_t n) { return n << 25; }
+};
+inline constexpr std::uint32_t kDma1 = 0x4002'6000, kDma2 = 0x4002'6400;
+using I2c3RxDma = DmaStream<kDma1, 2>;    // channel 3
+using Usart2RxDma = DmaStream<kDma1, 5>;  // channel 4
+using Usart2TxDma = DmaStream<kDma1, 6>;  // channel 4
+using Spi1RxDma = DmaStream<kDma2, 0>;    // channel 3
+using Spi1TxDma = DmaStream<kDma2, 3>;    // channel 3
+
+struct IWDG {
+  static constexpr std::uint32_t base = 0x4000'3000;
+  using KR = Reg32<base + 0x00>;
+  using PR = Reg32<base + 0x04>;
+  using RLR = Reg32<base + 0x08>;
+  static constexpr std::uint32_t START = 0xCCCC, RELOAD = 0xAAAA, UNLOCK = 0x5555;
+};
+
+struct SCB {
+  using VTOR = Reg32<0xE000'ED08>;
+  using AIRCR = Reg32<0xE000'ED0C>;
+  using CFSR = Reg32<0xE000'ED28>;
+  using HFSR = Reg32<0xE000'ED2C>;
+  using MMFAR = Reg32<0xE000'ED34>;
+  using BFAR = Reg32<0xE000'ED38>;
+  using CPACR = Reg32<0xE000'ED88>;
+  static constexpr std::uint32_t SYSRESETREQ = 0x05FA'0004;  // with the key
+  static constexpr std::uint32_t CP10_CP11_FULL = 0xFu << 20;
+};
+
+// Interrupt numbers, RM0090 table 61.
+enum class Irq : std::uint8_t {
+  DMA1_Stream2 = 13,
+  DMA1_Stream6 = 17,
+  EXTI9_5 = 23,
+  TIM5_Global = 50,
+  TIM7_Global = 55,
+  DMA2_Stream0 = 56,
+  I2C3_EV = 72,
+  I2C3_ER = 73,
+};
+inline constexpr unsigned kIrqCount = 82;
+
+template <Irq kIrq>
+struct Nvic {
+  static constexpr unsigned n = static_cast<unsigned>(kIrq);
+  using ISER = Reg32<0xE000'E100 + 4 * (n / 32)>;
+  using IPR = Reg32<0xE000'E400 + 4 * (n / 4)>;
+  static void enable(std::uint32_t priority) {  // 0 (most urgent) .. 15
+    constexpr unsigned shift = 8 * (n % 4);
+    IPR::replace(0xFFu << shift, priority << (shift + 4));
+    ISER::write(bit(n % 32));
+  }
+};
+
+}  // namespace fw::hw

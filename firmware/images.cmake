@@ -1,0 +1,41 @@
+# The ARM images: build/firmware/flight.elf and the test images in build/firmware/images.
+find_path(FW_EIGEN Eigen/Core PATHS /usr/include/eigen3 NO_DEFAULT_PATH NO_CMAKE_FIND_ROOT_PATH
+          REQUIRED)
+set(CMAKE_EXECUTABLE_SUFFIX .elf)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_CXX_FLAGS_RELEASE "-O2 -g -DNDEBUG")
+
+add_library(fw_options INTERFACE)
+target_compile_features(fw_options INTERFACE cxx_std_20)
+target_include_directories(fw_options INTERFACE ${PROJECT_SOURCE_DIR})
+target_include_directories(fw_options SYSTEM INTERFACE ${FW_EIGEN})
+set(FW_CPU -mcpu=cortex-m4 -mthumb -mfpu=fpv4-sp-d16 -mfloat-abi=hard)
+target_compile_options(fw_options INTERFACE ${FW_CPU} -fno-exceptions -fno-rtti
+  -fno-threadsafe-statics -fno-use-cxa-atexit -fno-unwind-tables -fno-asynchronous-unwind-tables
+  -fno-math-errno -ffunction-sections -fdata-sections -Wall -Wextra -Wpedantic -Wshadow
+  -Wdouble-promotion -Wfloat-conversion -Werror)
+target_compile_definitions(fw_options INTERFACE EIGEN_NO_IO EIGEN_NO_MALLOC)
+
+# fw_image(name SOURCES ... FLASH kib RAM kib): links, prints its size and checks it against the
+# budget and the list of symbols that may not be in it.
+function(fw_image name)
+  cmake_parse_arguments(ARG "" "FLASH;RAM;FOLDER" "SOURCES" ${ARGN})
+  add_executable(${name} ${ARG_SOURCES} ${PROJECT_SOURCE_DIR}/firmware/hal/startup.cpp
+                 ${PROJECT_SOURCE_DIR}/firmware/hal/fault_handler.cpp)
+  target_link_libraries(${name} PRIVATE fw_options)
+  set(script ${PROJECT_SOURCE_DIR}/firmware/hal/stm32f405rg.ld)
+  target_link_options(${name} PRIVATE ${FW_CPU} -nostartfiles --specs=nano.specs -T${script}
+    -Wl,--gc-sections -Wl,--fatal-warnings -Wl,-Map=${CMAKE_BINARY_DIR}/${name}.map)
+  set_target_properties(${name} PROPERTIES LINK_DEPENDS ${script}
+                        RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/${ARG_FOLDER})
+  set(gate ${PROJECT_SOURCE_DIR}/firmware/gates/check_image.sh)
+  add_custom_command(TARGET ${name} POST_BUILD VERBATIM
+    COMMAND sh ${gate} $<TARGET_FILE:${name}> ${ARG_FLASH} ${ARG_RAM})
+endfunction()
+
+fw_image(flight FLASH 128 RAM 16 FOLDER . SOURCES
+  flight/main.cpp hal/clock.cpp hal/time_base.cpp hal/spi_master.cpp hal/i2c_master.cpp
+  hal/uart_link.cpp)
+foreach(image hardfault silent sleeper)
+  fw_image(${image} FLASH 4 RAM 1 FOLDER images SOURCES images/${image}.cpp)
+endforeach()
