@@ -1,0 +1,63 @@
+// Inside of a Blade: the disc cut into rings and, per ring, a section table made for speed.
+//
+//   Table    kAngles angles over the full circle, kReynolds levels even in log Re; lift and drag side
+//            by side in float. Stall delay of the ring's radius is already in it.
+//   Error    table against PolarFamily::at under 0.01 in lift, 3 % in drag (tests/blade_test.cpp)
+#pragma once
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "plant/rotor/polar.hpp"
+
+namespace whirl::plant {
+
+inline constexpr int kRing_count = 20;
+inline constexpr int kAzimuths = 12;
+inline constexpr int kAngles = 721;  // every 0.5 deg from -180 to 180
+inline constexpr int kReynolds = 12;
+inline constexpr double kReynolds_low = 8e3;
+inline constexpr double kReynolds_high = 1e6;
+
+struct SectionTable {
+  struct Cell {
+    float cl;
+    float cd;
+  };
+  std::vector<Cell> cells;  // [reynolds][angle]
+};
+
+struct Ring {
+  double r_m = 0.0;
+  double dr_m = 0.0;
+  double chord_m = 0.0;
+  double angle_rad = 0.0;
+  double stall_alpha_rad = 0.0;  // at the middle Reynolds number, for the validity flag
+  SectionTable table;
+};
+
+class Blade {
+ public:
+  std::string name;
+  int count = 2;
+  double radius_m = 0.0;
+  double root_m = 0.0;  // inner edge of the first ring
+  double polar_inertia_kgm2 = 0.0;
+  double flap_inertia_kgm2 = 0.0;  // one blade about the hub's centre
+  double flap_stiffness_Nm_per_rad = 0.0;
+  std::array<Ring, kRing_count> rings;
+};
+
+// Where a Reynolds number falls among the table's levels.
+struct ReynoldsSlot {
+  int level = 0;
+  double weight = 0.0;  // of level + 1
+};
+ReynoldsSlot reynolds_slot(double reynolds);
+double reynolds_of_level(int level);
+
+// Coefficients from the table; alpha in -pi..pi.
+SectionCoefficients look_up(const SectionTable& table, ReynoldsSlot slot, double alpha_rad);
+
+}  // namespace whirl::plant

@@ -1,0 +1,179 @@
+// Sums over the rings and the momentum side of the balance; see rotor_state.hpp.
+//
+//   Source  ring mass flow: momentum.hpp. Gradient: steady gains of [PittPeters] (first harmonics).
+//           Ground: [CheesemanBennett], valid for a hub higher than R/2.
+#include <algorithm>
+#include <cmath>
+
+#include "plant/rotor/momentum.hpp"
+#include "plant/rotor/rotor_state.hpp"
+
+namespace whirl::plant {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr double kMost_speed_mps = 120.0;
+constexpr double kMost_tip_speed_mps = 300.0;
+
+double bounded(double x, double most, bool& clamped) {
+  if (!(std::abs(x) <= most)) {
+    clamped = true;
+    return std::isfinite(x) ? std::copysign(most, x) : 0.0;
+  }
+  return x;
+}
+
+struct Wake {
+  double mass_flow_mps = 0.0;
+  double along_mps = 0.0;  // through the disc
+  double in_plane_mps = 0.0;
+};
+
+Wake mean_wake(const DiscFlow& f, const DiscLoads& disc) {
+  Wake w;
+  w.along_mps = f.climb_mps + disc.induced_mps;
+  w.in_plane_mps = std::hypot(f.vx_mps, f.vy_mps);
+  w.mass_flow_mps = mass_flow_mps(disc.induced_mps, f.climb_mps, w.in_plane_mps);
+  return w;
+}
+
+double ground_factor(const RotorConditions& c, double R, bool& out_of_range) {
+  if (!(c.height_m < 20.0 * R)) return 1.0;
+  const double height = std::max(c.height_m, 0.5 * R);
+  out_of_range = out_of_range || c.height_m < 0.0;
+  const double x = R / (4.0 * height);
+  return 1.0 - x * x;
+}
+
+}  // namespace
+
+DiscFlow disc_flow(const Blade& blade, int spin, const RotorConditions& c,
+                   RotorValidity& validity) {
+  DiscFlow f;
+  bool& clamped = validity.out_of_range;
+  const double R = blade.radius_m;
+  f.spin = spin;
+  f.vx_mps = bounded(c.v_AP_P_mps.x(), kMost_speed_mps, clamped);
+  f.vy_mps = bounded(c.v_AP_P_mps.y(), kMost_speed_mps, clamped);
+  f.climb_mps = -bounded(c.v_AP_P_mps.z(), kMost_speed_mps, clamped);
+  f.p_radps = bounded(c.w_WP_P_radps.x(), 100.0, clamped);
+  f.q_radps = bounded(c.w_WP_P_radps.y(), 100.0, clamped);
+  const double yaw = bounded(c.w_WP_P_radps.z(), 100.0, clamped);
+  const double omega = bounded(c.omega_radps, kMost_tip_speed_mps / R, clamped);
+  if (omega < 0.0) clamped = true;
+  f.omega_radps = std::max(omega, 0.0) - spin * yaw;
+  f.density_kgpm3 = std::max(bounded(c.density_kgpm3, 5.0, clamped), 1e-3);
+  f.viscosity_Pas = std::max(bounded(c.viscosity_Pas, 1e-3, clamped), 1e-6);
+  f.tip_radius_m = R;
+  f.blade_count = blade.count;
+  f.ground_factor = ground_factor(c, R, clamped);
+  const double tip_speed = std::abs(f.omega_radps) * R;
+  const double in_plane = std::hypot(f.vx_mps, f.vy_mps);
+  validity.beyond_advance_ratio = in_plane > 0.3 * tip_speed && in_plane > 0.5;
+  return f;
+}
+
+DiscLoads disc_loads(const Blade& blade, const DiscFlow& flow,
+                     const std::array<double, kRing_count>& u,
+                     const std::array<double, kRing_count>& v) {
+  DiscLoads d;
+  double weight = 0.0;
+  for (std::size_t i = 0; i < kRing_count; ++i) {
+    const Ring& ring = blade.rings[i];
+    d.rings[i] = ring_loads(ring, flow, u[i], v[i]);
+    const RingLoads& l = d.rings[i];
+    d.thrust_N += l.thrust_N;
+    d.torque_Nm += l.drive_N * ring.r_m;
+    d.fx_N += l.fx_N;
+    d.fy_N += l.fy_N;
+    d.moment_c_Nm += l.lift_N.c * ring.r_m;
+    d.moment_s_Nm += l.lift_N.s * ring.r_m;
+    d.moment_mean_Nm += l.lift_N.mean * ring.r_m;
+    d.stalled += l.stalled * ring.r_m;
+    d.induced_mps += u[i] * ring.r_m * ring.dr_m;
+    weight += ring.r_m * ring.dr_m;
+  }
+  d.induced_mps /= weight;
+  d.stalled *= blade.rings[0].dr_m / weight;
+  return d;
+}
+
+RotorLoads airframe_loads(const Blade& blade, const DiscFlow& f, const DiscLoads& d,
+                          RotorValidity validity) {
+  RotorLoads out;
+  out.thrust_N = d.thrust_N;
+  out.f_P_N = {d.fx_N, d.fy_N, -d.thrust_N};
+  out.tau_P_Nm = {-d.moment_s_Nm, d.moment_c_Nm, f.spin * d.torque_Nm};
+  out.shaft_torque_Nm = d.torque_Nm;
+  out.shaft_power_W = d.torque_Nm * f.omega_radps;
+  out.induced_velocity_mps = d.induced_mps;
+  if (d.thrust_N > 0.0 && out.shaft_power_W > 0.0) {
+    const double ideal = std::sqrt(std::pow(d.thrust_N, 3) /
+                                   (2.0 * f.density_kgpm3 * kPi * blade.radius_m * blade.radius_m));
+    out.figure_of_merit = ideal / out.shaft_power_W;
+  }
+  out.validity = validity;
+  out.validity.stalled = d.stalled > 1.0 / 3.0;
+  const double u = d.induced_mps;
+  const double xi = u == 0.0 ? 0.0 : f.climb_mps / u;
+  out.validity.vortex_ring = xi < 0.0 && xi > -2.0 && std::hypot(f.vx_mps, f.vy_mps) < std::abs(u);
+  return out;
+}
+
+RingMomentum ring_momentum(const Blade& blade, const Ring& ring, const DiscFlow& f,
+                           const RingLoads& loads, double u) {
+  const double in_plane = std::hypot(f.vx_mps, f.vy_mps);
+  const double F = std::max(
+      prandtl_loss(ring.r_m, blade.radius_m, 0.5 * blade.root_m, blade.count, loads.sin_phi), 0.02);
+  const double k = 4.0 * kPi * f.density_kgpm3 * ring.r_m * ring.dr_m * F;
+  const double m = mass_flow_mps(u, f.climb_mps, in_plane);
+  RingMomentum out;
+  out.thrust_N = k * u * m;
+  out.slope_N_per_mps = k * (m + std::abs(u));
+  // Swirl leaves with the same mass flow; where hardly any flows, none can be carried away.
+  const double most = 0.3 * std::abs(f.omega_radps) * ring.r_m;
+  const double swirl = loads.drive_N / std::max(k * m, 1e-9);
+  out.swirl_mps = std::clamp(swirl, -most, most);
+  return out;
+}
+
+Harmonic wanted_tilt(const Blade& blade, const DiscFlow& f, const DiscLoads& d) {
+  const Wake w = mean_wake(f, d);
+  const double skew = std::atan2(w.in_plane_mps, std::abs(w.along_mps) + 1e-9);
+  const double cos_skew = std::cos(skew);
+  const double wx = w.in_plane_mps > 1e-9 ? -f.vx_mps / w.in_plane_mps : 1.0;  // downstream
+  const double wy = w.in_plane_mps > 1e-9 ? -f.vy_mps / w.in_plane_mps : 0.0;
+  const double per_moment = 1.0 / std::max(f.density_kgpm3 * kPi * blade.radius_m * blade.radius_m *
+                                               blade.radius_m * w.mass_flow_mps,
+                                           1e-9);
+  const double along = d.moment_c_Nm * wx + d.moment_s_Nm * wy;
+  const double across = -d.moment_c_Nm * wy + d.moment_s_Nm * wx;
+  const double fore_aft = 15.0 * kPi / 32.0 * std::tan(0.5 * skew) * d.induced_mps +
+                          4.0 * cos_skew / (1.0 + cos_skew) * along * per_moment;
+  const double lateral = 4.0 / (1.0 + cos_skew) * across * per_moment;
+  const double most = 2.0 * std::abs(d.induced_mps) + 1.0;
+  const double a = std::clamp(fore_aft, -most, most);
+  const double b = std::clamp(lateral, -most, most);
+  return {0.0, a * wx - b * wy, a * wy + b * wx};
+}
+
+double tilt_time_constant_s(const Blade& blade, const DiscFlow& f, const DiscLoads& d) {
+  const Wake w = mean_wake(f, d);
+  return 32.0 / (45.0 * kPi) * blade.radius_m / std::max(w.mass_flow_mps, 0.1);
+}
+
+// Quasi-steady: the blade's own frequency lies far above once per revolution.
+Harmonic wanted_flap(const Blade& blade, const DiscFlow& f, const DiscLoads& d) {
+  const double I = blade.flap_inertia_kgm2;
+  const double w2 = f.omega_radps * f.omega_radps;
+  const double B = blade.count;
+  const double k = blade.flap_stiffness_Nm_per_rad;
+  // A body rate asks each blade to change its plane: gyroscopic flap moment 2 I w (p, q) terms.
+  const double gyro = 2.0 * I * f.omega_radps * f.spin;
+  const double gyro_c = -gyro * f.p_radps;
+  const double gyro_s = -gyro * f.q_radps;
+  return {d.moment_mean_Nm / B / (k + I * w2), (2.0 * d.moment_c_Nm / B + gyro_c) / k,
+          (2.0 * d.moment_s_Nm / B + gyro_s) / k};
+}
+
+}  // namespace whirl::plant

@@ -1,0 +1,97 @@
+#include "plant/rotor/polar.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "harness/base/check.hpp"
+
+namespace whirl::plant {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr double kDeg = kPi / 180.0;
+constexpr double kDrag_at_90 = 1.11 + 0.018 * 8.0;  // slow-fly blades: aspect ratio near 8
+constexpr double kSkin_friction = 0.02;
+constexpr double kBlend_rad = 10.0 * kDeg;  // e-folding of the run into the plate
+
+SectionCoefficients plate(double alpha_rad) {
+  const double s = std::sin(alpha_rad);
+  const double c = std::cos(alpha_rad);
+  return {kDrag_at_90 * s * c, kDrag_at_90 * s * s + kSkin_friction};
+}
+
+// Beyond the last row: the plate plus what is left of the difference at the last row.
+SectionCoefficients beyond(const PolarRow& last, double alpha_rad) {
+  const SectionCoefficients there = plate(last.alpha_rad);
+  const SectionCoefficients here = plate(alpha_rad);
+  const double left = std::exp(-std::abs(alpha_rad - last.alpha_rad) / kBlend_rad);
+  return {here.cl + left * (last.cl - there.cl),
+          std::max(here.cd + left * (last.cd - there.cd), 0.5 * kSkin_friction)};
+}
+
+SectionCoefficients on_curve(const PolarCurve& curve, double alpha_rad) {
+  const auto& rows = curve.rows;
+  if (alpha_rad <= rows.front().alpha_rad) return beyond(rows.front(), alpha_rad);
+  if (alpha_rad >= rows.back().alpha_rad) return beyond(rows.back(), alpha_rad);
+  const auto above =
+      std::upper_bound(rows.begin(), rows.end(), alpha_rad,
+                       [](double alpha, const PolarRow& row) { return alpha < row.alpha_rad; });
+  const PolarRow& hi = *above;
+  const PolarRow& lo = *(above - 1);
+  const double w = (alpha_rad - lo.alpha_rad) / (hi.alpha_rad - lo.alpha_rad);
+  return {lo.cl + w * (hi.cl - lo.cl), lo.cd + w * (hi.cd - lo.cd)};
+}
+
+}  // namespace
+
+PolarFamily::PolarFamily(std::string name, std::vector<PolarCurve> curves)
+    : name_(std::move(name)), curves_(std::move(curves)) {
+  WHIRL_CHECK(!curves_.empty());
+}
+
+SectionCoefficients PolarFamily::at(double alpha_rad, double reynolds) const {
+  const double alpha = std::remainder(alpha_rad, 2.0 * kPi);
+  const double re = std::clamp(reynolds, 1e3, 1e8);
+  const auto above =
+      std::upper_bound(curves_.begin(), curves_.end(), re,
+                       [](double x, const PolarCurve& curve) { return x < curve.reynolds; });
+  if (above == curves_.begin() || above == curves_.end()) {
+    const PolarCurve& edge = above == curves_.begin() ? curves_.front() : curves_.back();
+    SectionCoefficients c = on_curve(edge, alpha);
+    // Only the friction share grows; separated drag does not ask for the Reynolds number.
+    const double power = above == curves_.begin() ? -0.5 : -0.2;
+    const double friction = std::min(c.cd, 0.05);
+    c.cd += friction * (std::pow(re / edge.reynolds, power) - 1.0);
+    return c;
+  }
+  const PolarCurve& hi = *above;
+  const PolarCurve& lo = *(above - 1);
+  const double w = std::log(re / lo.reynolds) / std::log(hi.reynolds / lo.reynolds);
+  const SectionCoefficients a = on_curve(lo, alpha);
+  const SectionCoefficients b = on_curve(hi, alpha);
+  return {a.cl + w * (b.cl - a.cl), a.cd + w * (b.cd - a.cd)};
+}
+
+PolarFamily::Attached PolarFamily::attached(double reynolds) const {
+  double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
+  for (double deg = -2.0; deg <= 4.01; deg += 0.5) {
+    const double x = deg * kDeg;
+    const double y = at(x, reynolds).cl;
+    n += 1, sx += x, sy += y, sxx += x * x, sxy += x * y;
+  }
+  const double slope = (n * sxy - sx * sy) / (n * sxx - sx * sx);
+  return {-(sy - slope * sx) / n / slope, slope};
+}
+
+double PolarFamily::stall_alpha_rad(double reynolds) const {
+  double best = at(4.0 * kDeg, reynolds).cl;
+  double angle = 4.0 * kDeg;
+  for (double deg = 4.5; deg <= 30.0; deg += 0.5) {
+    const double cl = at(deg * kDeg, reynolds).cl;
+    if (cl > best) best = cl, angle = deg * kDeg;
+    if (deg * kDeg > angle + 4.0 * kDeg) break;
+  }
+  return angle;
+}
+
+}  // namespace whirl::plant

@@ -1,0 +1,63 @@
+// One blade section: lift and drag over angle of attack and Reynolds number.
+//
+//   In       curves as measured or computed, one per Reynolds number, about stall to stall
+//   Out      section_coefficients(alpha, Re) for any alpha on the full circle, any Re > 0
+//   Valid    inside the given curves: linear between rows, linear in log Re between curves. Beyond
+//            stall the curve runs into a flat plate of the blade's aspect ratio within about 10 deg;
+//            below the lowest Re lift is held and drag grows as Re^-1/2, above the highest as
+//            Re^-1/5.
+//   Source   plate: [Hoerner]; drag at 90 deg 1.11 + 0.018 AR [Viterna]
+//   Left out pitching moment (blades are stiff in torsion), hysteresis at stall, compressibility.
+#pragma once
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "harness/base/result.hpp"
+
+namespace whirl::plant {
+
+struct PolarRow {
+  double alpha_rad = 0.0;
+  double cl = 0.0;
+  double cd = 0.0;
+};
+
+struct PolarCurve {
+  double reynolds = 0.0;
+  std::vector<PolarRow> rows;  // ascending in alpha
+};
+
+struct SectionCoefficients {
+  double cl = 0.0;
+  double cd = 0.0;
+};
+
+class PolarFamily {
+ public:
+  // Curves ascending in Reynolds number, each ascending in alpha; checked by read_polar().
+  PolarFamily(std::string name, std::vector<PolarCurve> curves);
+
+  SectionCoefficients at(double alpha_rad, double reynolds) const;
+
+  // Angle and slope of zero lift on the attached part, from a line fit over -2..4 deg.
+  struct Attached {
+    double alpha0_rad = 0.0;
+    double slope_per_rad = 0.0;
+  };
+  Attached attached(double reynolds) const;
+  double stall_alpha_rad(double reynolds) const;  // first maximum of lift
+
+  const std::string& name() const { return name_; }
+  const std::vector<PolarCurve>& curves() const { return curves_; }
+
+ private:
+  std::string name_;
+  std::vector<PolarCurve> curves_;
+};
+
+// Text of a .polar file: "section NAME", then blocks "reynolds RE" of rows "alpha_deg cl cd".
+// '#' starts a comment. `place` is the file's name for errors.
+Result<PolarFamily> read_polar(std::string_view text, std::string_view place);
+
+}  // namespace whirl::plant
