@@ -1,0 +1,45 @@
+// What one ESC knows about its motor, propeller and sensors: measured on a stand, kept in flash.
+//
+//   Units    SI, line to line (two windings conducting)
+//   Defaults a 950 Kv motor with a 10 x 4.5 propeller; sane, not measured: `identified` says so
+//   Source   motor and static map [Bangura 2017, sec. 3.4 with the unit audit: 3.9294e-6 N m/(RPM/s) is
+//            3.752e-5 kg m2; T = 1.789e-7 n^2 - 1.4715e-4 n with n in RPM]
+#pragma once
+#include <cstdint>
+
+#include "firmware/esc/core/setpoint.hpp"
+#include "firmware/esc/core/thrust_model.hpp"
+
+namespace fw::esc {
+
+struct MotorConstants {
+  float Kt_NmpA = 0.01005f;  // and back-EMF, V s
+  float resistance_ohm = 0.16f;
+  float inductance_H = 1e-4f;
+  float no_load_current_A = 1.0f;
+  float inertia_kgm2 = 3.752e-5f;
+  float max_current_A = 20.0f;  // of the winding
+  float max_braking_A = 15.0f;  // of the winding, regenerated
+};
+
+struct StaticMap {  // free air: T = a2 w^2 + a1 w, Q = q2 w^2
+  float a2 = 1.6314e-5f;
+  float a1 = -1.4052e-3f;
+  float q2 = 2.3e-7f;
+};
+
+struct CurrentSense {
+  float gain = 1.0f;
+  float offset_A = 0.0f;  // taken off before the gain
+};
+
+struct Calibration {
+  MotorConstants motor;
+  StaticMap free_air;
+  CurrentSense sense;
+  ThrustModel rotor{};  // all zero: not identified, modes 4 and 5 fall back to the static map
+  Mode mode = Mode::thrust_by_speed;
+  bool identified = false;
+};
+
+}  // namespace fw::esc

@@ -1,0 +1,182 @@
+#include "firmware/esc/core/core.hpp"
+
+#include <cmath>
+
+namespace fw::esc {
+namespace {
+
+constexpr float kStart_V = 2.0f;           // below, the rotor turns too slowly to be sensed
+constexpr float kSlowest_radps = 60.0f;    // under this, speed control has nothing to hold on to
+constexpr std::uint16_t kStart_ms = 1500;  // longest start-up before it counts as a stall
+constexpr std::uint16_t kSyncLoss_ms = 50;
+constexpr float kOverCurrent_A = 22.0f;  // of the bus, averaged
+constexpr std::uint16_t kOverCurrent_ms = 3;
+constexpr float kLowest_V = 12.0f;  // 3 V a cell under load
+constexpr float kStatusFilter_s = 0.01f;
+
+float clamped(float x, float low, float high) {
+  return x < low ? low : x > high ? high : x;
+}
+
+}  // namespace
+
+Core::Core(const Calibration& calibration)
+    : calibration_(calibration),
+      supervisor_(SupervisorLimits{}),
+      estimator_(calibration, kPeriod_s),
+      speed_control_(calibration.motor, calibration.free_air, SpeedGains{}, kPeriod_s) {}
+
+void Core::on_setpoint(std::uint16_t v) {
+  command_given_ = false;
+  supervisor_.on_setpoint(v, sensed_.bus_voltage_V, at_rest());
+}
+
+void Core::command(Mode mode, float value) {
+  const Range range = range_of(mode);
+  const bool stop = !(value > 0.0f);
+  if (!stop && mode != calibration_.mode && !set_mode(mode)) return;
+  supervisor_.on_setpoint(stop ? 0 : 1, sensed_.bus_voltage_V, at_rest());
+  command_given_ = !stop;
+  command_value_ = clamped(value, range.min, range.max);
+}
+
+bool Core::set_mode(Mode mode) {
+  if (!at_rest() || range_of(mode).max <= 0.0f) return false;
+  calibration_.mode = mode;
+  return true;
+}
+
+float Core::wanted_value() const {
+  if (supervisor_.setpoint() == 0) return 0.0f;
+  return command_given_ ? command_value_ : value_of(calibration_.mode, supervisor_.setpoint());
+}
+
+// The speed that gives the wanted value: by the static map, or by what the estimator has found.
+float Core::speed_for(float value) const {
+  const StaticMap& map = calibration_.free_air;
+  switch (calibration_.mode) {
+    case Mode::speed:
+      return value;
+    case Mode::thrust_by_speed:
+      return (-map.a1 + std::sqrt(map.a1 * map.a1 + 4.0f * map.a2 * value)) / (2.0f * map.a2);
+    case Mode::power: {
+      const float CP = estimator_.CP() > 0.0f ? estimator_.CP() : map.q2;
+      return std::cbrt(value / CP);
+    }
+    case Mode::thrust_by_power: {
+      const float CT = estimator_.CT() > 0.0f ? estimator_.CT() : map.a2;
+      return std::sqrt(value / CT);
+    }
+    case Mode::duty:
+    case Mode::servo:
+      return 0.0f;
+  }
+  return 0.0f;
+}
+
+void Core::enter(Phase phase) {
+  if (phase == Phase::starting) {
+    speed_control_.restart();
+    estimator_.restart(sensed_.speed_radps);
+  }
+  phase_ = phase;
+  phase_ms_ = 0;
+}
+
+void Core::advance_phase(bool wanted) {
+  const bool seen = sensed_.in_sync && sensed_.speed_radps > kSlowest_radps;
+  if (phase_ms_ < UINT16_MAX) ++phase_ms_;
+  if (!wanted) {
+    if (phase_ != Phase::stopped) enter(Phase::stopped);
+    return;
+  }
+  switch (phase_) {
+    case Phase::stopped:
+      return enter(Phase::starting);
+    case Phase::starting:
+      if (seen) return enter(Phase::running);
+      if (phase_ms_ > kStart_ms) supervisor_.latch(Latched::stalled);
+      return;
+    case Phase::running:
+      if (!seen) enter(Phase::lost);
+      return;
+    case Phase::lost:
+      if (seen) return enter(Phase::running);
+      if (phase_ms_ > kSyncLoss_ms) supervisor_.latch(Latched::desync);
+      return;
+  }
+}
+
+Drive Core::drive_for_phase(float value) {
+  switch (phase_) {
+    case Phase::stopped:
+      return {};
+    case Phase::starting:
+      return {kStart_V / sensed_.bus_voltage_V, true};
+    case Phase::running:
+      return regulate(value);
+    case Phase::lost:
+      return {drive_.duty, true};  // as it was: the driver looks for the rotor
+  }
+  return {};
+}
+
+Drive Core::regulate(float value) {
+  const float bus_V = sensed_.bus_voltage_V;
+  VoltageDemand demand{};
+  if (calibration_.mode == Mode::duty) {
+    demand = within_current_limits(calibration_.motor, value * bus_V, sensed_.speed_radps, bus_V);
+  } else {
+    wanted_radps_ = speed_for(value);
+    if (wanted_radps_ < kSlowest_radps) wanted_radps_ = kSlowest_radps;
+    demand = speed_control_.update(wanted_radps_, sensed_.speed_radps, bus_V);
+  }
+  saturated_ = demand.saturated;
+  return {demand.voltage_V / bus_V, true};
+}
+
+void Core::guard(const Sensed& sensed) {
+  const bool over = bus_current_A_ > kOverCurrent_A;
+  over_current_ms_ = over ? static_cast<std::uint16_t>(over_current_ms_ + 1) : std::uint16_t{0};
+  if (over_current_ms_ >= kOverCurrent_ms) supervisor_.latch(Latched::over_current);
+  if (drive_.energised && sensed.bus_voltage_V < kLowest_V) {
+    supervisor_.latch(Latched::under_voltage);
+  }
+}
+
+Drive Core::tick(const Sensed& sensed) {
+  sensed_ = sensed;
+  supervisor_.tick();
+  const CurrentSense& sense = calibration_.sense;
+  const float bus_A = sense.gain * (sensed.bus_current_A - sense.offset_A);
+  bus_current_A_ += kPeriod_s / (kStatusFilter_s + kPeriod_s) * (bus_A - bus_current_A_);
+  guard(sensed);
+
+  if (drive_.energised && drive_.duty > 0.01f) {
+    estimator_.update(drive_.duty * sensed.bus_voltage_V, sensed.speed_radps, bus_A / drive_.duty);
+  }
+  saturated_ = false;
+  wanted_radps_ = 0.0f;
+  const bool powered = sensed.bus_voltage_V > kStart_V;
+  advance_phase(powered && wanted_value() > 0.0f);
+  const float value = wanted_value();  // 0 if the phase has just latched a fault
+  drive_ = value > 0.0f ? drive_for_phase(value) : Drive{};
+  return drive_;
+}
+
+std::uint8_t Core::flags() const {
+  std::uint8_t flags = 0;
+  if (supervisor_.armed()) flags |= flag_armed;
+  if (!at_rest()) flags |= flag_turning;
+  if (saturated_) flags |= flag_saturated;
+  const Latched latched = supervisor_.latched();
+  if (latched == Latched::over_current) flags |= flag_over_current;
+  if (latched == Latched::under_voltage || supervisor_.refused_for_voltage()) {
+    flags |= flag_under_voltage;
+  }
+  if (latched == Latched::desync || latched == Latched::stalled) flags |= flag_desync;
+  if (!calibration_.identified) flags |= flag_uncalibrated;
+  return flags;
+}
+
+}  // namespace fw::esc

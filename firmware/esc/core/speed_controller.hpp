@@ -1,0 +1,66 @@
+// Rotor speed by voltage: feedforward of the steady state, PI, and the bounds that keep the winding
+// current within its limits at this very speed.
+//
+//   Law     va = vff(wd) - Kp (w - wd) - Ki int(w - wd); Ke w - i_brake R <= va <= Ke w + i_max R
+//   Source  [Bangura 2017, sec. 3.4 and 5.3.2]; the bound is its over-current guard
+#pragma once
+#include "firmware/esc/core/calibration.hpp"
+
+namespace fw::esc {
+
+struct SpeedGains {
+  float kp = 0.05f;  // V s
+  float ki = 0.4f;   // V
+};
+
+struct VoltageDemand {
+  float voltage_V;
+  bool saturated;
+};
+
+// Steady voltage at a speed in free air.
+inline float steady_voltage_V(const MotorConstants& motor, const StaticMap& free_air, float w) {
+  const float current_A = motor.no_load_current_A + free_air.q2 * w * w / motor.Kt_NmpA;
+  return motor.Kt_NmpA * w + motor.resistance_ohm * current_A;
+}
+
+inline VoltageDemand within_current_limits(const MotorConstants& motor, float wanted_V, float w,
+                                           float bus_V) {
+  const float emf_V = motor.Kt_NmpA * w;
+  float high_V = emf_V + motor.max_current_A * motor.resistance_ohm;
+  float low_V = emf_V - motor.max_braking_A * motor.resistance_ohm;
+  if (high_V > bus_V) high_V = bus_V;
+  if (low_V < 0.0f) low_V = 0.0f;
+  if (wanted_V > high_V) return {high_V, true};
+  if (wanted_V < low_V) return {low_V, true};
+  return {wanted_V, false};
+}
+
+class SpeedController {
+ public:
+  SpeedController(const MotorConstants& motor, const StaticMap& free_air, const SpeedGains& gains,
+                  float period_s)
+      : motor_(motor), free_air_(free_air), gains_(gains), period_s_(period_s) {}
+
+  VoltageDemand update(float wanted_radps, float speed_radps, float bus_V) {
+    const float error = wanted_radps - speed_radps;
+    const float proportional_V =
+        steady_voltage_V(motor_, free_air_, wanted_radps) + gains_.kp * error;
+    const VoltageDemand demand =
+        within_current_limits(motor_, proportional_V + integral_V_, speed_radps, bus_V);
+    // Conditional integration: a bound that the error pushes against must not wind up.
+    const float excess_V = proportional_V + integral_V_ - demand.voltage_V;
+    if (excess_V * error <= 0.0f) integral_V_ += gains_.ki * error * period_s_;
+    return demand;
+  }
+  void restart() { integral_V_ = 0.0f; }
+
+ private:
+  MotorConstants motor_;
+  StaticMap free_air_;
+  SpeedGains gains_;
+  float period_s_;
+  float integral_V_ = 0.0f;
+};
+
+}  // namespace fw::esc
