@@ -3,7 +3,11 @@
 namespace whirl::io {
 
 I2cBus::I2cBus(std::string name)
-    : name_(std::move(name)), sda_(name_ + ".SDA"), scl_(name_ + ".SCL") {}
+    : name_(std::move(name)), sda_(name_ + ".SDA"), scl_(name_ + ".SCL") {
+  for (Wire* wire : {&sda_, &scl_}) {  // the board's resistors
+    wire->drive(wire->add_driver(), Drive::pull_high, 0);
+  }
+}
 
 void I2cBus::finish(bool repeated, Nanoseconds now) {
   current_.stop_ns = now;
@@ -22,24 +26,30 @@ void I2cBus::start(Nanoseconds now) {
 bool I2cBus::address(std::uint8_t address_7bit, bool read, Nanoseconds now) {
   current_.address = address_7bit;
   current_.read = read;
-  bool ack = false;
   for (I2cTarget* target : targets_) {
-    if (target->answers(address_7bit) && target->start(address_7bit, read, now)) {
-      addressed_.push_back(target);
-      ack = true;
+    if (!sda_.level() || !target->answers(address_7bit)) continue;
+    if (faults_ != nullptr &&
+        (faults_->deaf(address_7bit, now) || !faults_->ack(address_7bit, -1, now))) {
+      continue;
     }
+    if (target->start(address_7bit, read, now)) addressed_.push_back(target);
   }
-  if (faults_ != nullptr && faults_->ack(address_7bit, ack, now) != ack) ack = !ack;
-  if (!ack) addressed_.clear();
-  current_.address_acked = ack;
-  return ack;
+  if (!addressed_.empty() && faults_ != nullptr) {
+    released_ns_ = now + faults_->stretch(address_7bit, now);
+  }
+  current_.address_acked = !addressed_.empty() || !sda_.level();
+  return current_.address_acked;
 }
 
 bool I2cBus::write(std::uint8_t byte, Nanoseconds now) {
-  if (faults_ != nullptr) byte = faults_->byte(current_.address, false, byte, now);
+  if (!addressed_.empty() && faults_ != nullptr) {
+    byte = faults_->byte(current_.address, index(), byte, now);
+  }
+  if (!sda_.level()) byte = 0x00;
   bool ack = false;
   for (I2cTarget* target : addressed_) ack = target->write(byte, now) || ack;
-  if (faults_ != nullptr) ack = faults_->ack(current_.address, ack, now);
+  if (ack && faults_ != nullptr) ack = faults_->ack(current_.address, index(), now);
+  ack = ack || !sda_.level();
   current_.bytes.push_back(byte);
   current_.all_acked = current_.all_acked && ack;
   return ack;
@@ -48,7 +58,10 @@ bool I2cBus::write(std::uint8_t byte, Nanoseconds now) {
 std::uint8_t I2cBus::read(bool ack, Nanoseconds now) {
   std::uint8_t byte = 0xFF;  // nobody pulls SDA low
   for (I2cTarget* target : addressed_) byte &= target->read(now);
-  if (faults_ != nullptr) byte = faults_->byte(current_.address, true, byte, now);
+  if (!addressed_.empty() && faults_ != nullptr) {
+    byte = faults_->byte(current_.address, index(), byte, now);
+  }
+  if (!sda_.level()) byte = 0x00;
   for (I2cTarget* target : addressed_) target->acked(ack, now);
   current_.bytes.push_back(byte);
   return byte;

@@ -4,7 +4,8 @@
 //   which the condition or the byte's ninth clock has passed. It asks idle() before a START: SDA or
 //   SCL held low by a fault (or by GPIO) keeps the bus busy, as on copper. Recovery: a target that
 //   holds SDA after a lost clock lets go when SCL has been pulsed by GPIO as often as the fault
-//   says (nine is usual).
+//   says (nine is usual). While SDA is held low, every bit reads 0: bytes are 0x00 and every
+//   acknowledge slot looks like an ACK.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -28,13 +29,16 @@ struct I2cTransaction {
   std::vector<std::uint8_t> bytes;
 };
 
-// Faults that act on bytes and acknowledge bits on their way. Each hook returns what really passes.
+// Faults that act on bytes and acknowledge bits on their way. Asked only where a target answers;
+// index counts the data bytes of the transaction from 0, -1 is the address byte.
 class I2cFaults {
  public:
   virtual ~I2cFaults() = default;
-  virtual bool ack(std::uint8_t address, bool ack, Nanoseconds now) = 0;
-  virtual std::uint8_t byte(std::uint8_t address, bool read, std::uint8_t value,
-                            Nanoseconds now) = 0;
+  virtual bool deaf(std::uint8_t address, Nanoseconds now) = 0;  // the target hears nothing
+  virtual bool ack(std::uint8_t address, int index, Nanoseconds now) = 0;  // may an ACK pass?
+  virtual std::uint8_t byte(std::uint8_t address, int index, std::uint8_t value,
+                            Nanoseconds now) = 0;                          // what really passes
+  virtual Nanoseconds stretch(std::uint8_t address, Nanoseconds now) = 0;  // SCL held after address
 };
 
 class I2cBus {
@@ -50,6 +54,8 @@ class I2cBus {
   const std::string& name() const { return name_; }
   bool idle() const { return !busy_ && sda_.level() && scl_.level(); }
   bool busy() const { return busy_; }
+  // A target holds SCL low until then: the controller clocks its next bit no earlier.
+  Nanoseconds released_ns() const { return released_ns_; }
 
   // Controller side. start() opens a transaction, or ends the running one by a repeated START.
   void start(Nanoseconds now);
@@ -60,6 +66,7 @@ class I2cBus {
 
  private:
   void finish(bool repeated, Nanoseconds now);
+  int index() const { return static_cast<int>(current_.bytes.size()); }
 
   std::string name_;
   Wire sda_, scl_;
@@ -68,6 +75,7 @@ class I2cBus {
   I2cFaults* faults_ = nullptr;
   std::function<void(const I2cTransaction&)> log_;
   I2cTransaction current_;
+  Nanoseconds released_ns_ = 0;
   bool busy_ = false;
 };
 

@@ -1,0 +1,91 @@
+#include "io_bridges/devices/faults.hpp"
+
+namespace whirl::io {
+namespace {
+
+struct KindName {
+  FaultKind kind;
+  const char* name;
+};
+
+constexpr KindName kNames[] = {
+    {FaultKind::i2c_nack, "i2c_nack"},
+    {FaultKind::i2c_stuck_sda, "i2c_stuck_sda"},
+    {FaultKind::i2c_stuck_scl, "i2c_stuck_scl"},
+    {FaultKind::i2c_flip_bit, "i2c_flip_bit"},
+    {FaultKind::i2c_late, "i2c_late"},
+    {FaultKind::i2c_silence, "i2c_silence"},
+    {FaultKind::spi_frozen, "spi_frozen"},
+    {FaultKind::spi_flip, "spi_flip"},
+    {FaultKind::spi_silent, "spi_silent"},
+    {FaultKind::sensor_frozen, "sensor_frozen"},
+    {FaultKind::sensor_offset, "sensor_offset"},
+    {FaultKind::sensor_wrong_identity, "sensor_wrong_identity"},
+    {FaultKind::sensor_saturated, "sensor_saturated"},
+    {FaultKind::uart_loss, "uart_loss"},
+    {FaultKind::uart_silence, "uart_silence"},
+    {FaultKind::uart_flip, "uart_flip"},
+    {FaultKind::supply_dip, "supply_dip"},
+    {FaultKind::mocap_lost, "mocap_lost"},
+    {FaultKind::esc_stopped, "esc_stopped"},
+};
+
+bool matches(int wanted, int here) {
+  return wanted == kAnywhere || here == kAnywhere || wanted == here;
+}
+
+}  // namespace
+
+std::optional<FaultKind> fault_kind(std::string_view wanted) {
+  for (const KindName& entry : kNames) {
+    if (wanted == entry.name) return entry.kind;
+  }
+  return std::nullopt;
+}
+
+const char* name(FaultKind kind) {
+  for (const KindName& entry : kNames) {
+    if (kind == entry.kind) return entry.name;
+  }
+  return "unknown";
+}
+
+void FaultBook::add(const Fault& fault) {
+  entries_.push_back({fault});
+  for (const auto& told : added_) told(fault);
+}
+
+const Fault* FaultBook::find(FaultKind kind, int bus, int address, Nanoseconds now) const {
+  for (const Entry& entry : entries_) {
+    const Fault& f = entry.fault;
+    if (f.kind == kind && f.start_ns <= now && now < f.end_ns && matches(f.bus, bus) &&
+        matches(f.address, address)) {
+      return &f;
+    }
+  }
+  return nullptr;
+}
+
+void FaultBook::applied(const Fault& fault, Nanoseconds now) {
+  for (Entry& entry : entries_) {
+    if (&entry.fault != &fault || entry.applied) continue;
+    entry.applied = true;
+    if (sink_) sink_(fault.number, now);
+  }
+}
+
+const Fault* FaultBook::take(FaultKind kind, int bus, int address, Nanoseconds now) {
+  const Fault* fault = find(kind, bus, address, now);
+  if (fault != nullptr) applied(*fault, now);
+  return fault;
+}
+
+std::vector<std::uint32_t> FaultBook::pending() const {
+  std::vector<std::uint32_t> numbers;
+  for (const Entry& entry : entries_) {
+    if (!entry.applied) numbers.push_back(entry.fault.number);
+  }
+  return numbers;
+}
+
+}  // namespace whirl::io

@@ -1,0 +1,86 @@
+// The faults of a run: what to spoil, where, from when to when; and who has really done it.
+//
+//   Life     the board (or the harness, for its own kinds) adds Fault records to a FaultBook; the
+//            wires and devices ask the book at each use and report the first time that they acted
+//   Rule     a fault that nobody applied is an error of the run: see pending()
+//   Address  I2C address (7 bit), or the device's number on its board for SPI, sensors and UARTs;
+//            kAnywhere matches all
+#pragma once
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "io_bridges/devices/event_queue.hpp"
+
+namespace whirl::io {
+
+// The numbers cross the link (FaultCommand::kind): append, never renumber.
+enum class FaultKind : std::uint32_t {
+  i2c_nack = 1,   // address and data not acknowledged; value n > 0: only the n-th data byte (1..)
+  i2c_stuck_sda,  // SDA held low; value: lets go after so many SCL pulses (0: holds until the end)
+  i2c_stuck_scl,  // SCL held low
+  i2c_flip_bit,   // value = 8 * byte + bit: that bit of each transaction (bit 0 is the LSB)
+  i2c_late,       // the target holds SCL for value seconds after its address
+  i2c_silence,    // the target neither sees nor answers anything
+  spi_frozen,     // MISO repeats the last transaction that passed before the fault
+  spi_flip,       // MISO bit: value = 8 * byte + bit of each transaction
+  spi_silent,     // MISO stays high, the target sees nothing
+  sensor_frozen,  // the part goes on signalling, its data does not change
+  sensor_offset,  // value added (SI); axis in Fault::axis
+  sensor_wrong_identity,  // identity register reads value
+  sensor_saturated,       // axis at its positive rail
+  uart_loss,              // value: probability of each byte to vanish, towards the MCU
+  uart_silence,           // nothing reaches the MCU
+  uart_flip,              // value: probability of a flipped bit in each byte towards the MCU
+  supply_dip,             // harness: bus voltage drops by value volts
+  mocap_lost,             // harness: no pose from the capture system
+  esc_stopped,            // harness: the ESC of motor `address` stops its motor
+};
+
+std::optional<FaultKind> fault_kind(std::string_view name);  // "i2c_nack"
+const char* name(FaultKind kind);
+
+inline constexpr int kAnywhere = -1;
+
+struct Fault {
+  std::uint32_t number = 0;  // of the plan; reported back
+  FaultKind kind{};
+  Nanoseconds start_ns = 0;
+  Nanoseconds end_ns = kNever;
+  int bus = kAnywhere;      // I2C3: 3, SPI1: 1, USART2: 2
+  int address = kAnywhere;  // see above
+  int axis = 0;             // sensors: 0..2 accelerometer x y z, 3..5 gyro x y z
+  double value = 0.0;
+};
+
+class FaultBook {
+ public:
+  using Applied = std::function<void(std::uint32_t number, Nanoseconds now)>;
+
+  void on_applied(Applied sink) { sink_ = std::move(sink); }
+  void on_added(std::function<void(const Fault&)> sink) { added_.push_back(std::move(sink)); }
+  void add(const Fault& fault);
+
+  // The first fault of that kind that is in force at that place, or null. Cheap when there is none.
+  const Fault* find(FaultKind kind, int bus, int address, Nanoseconds now) const;
+  // It really acted: told to the sink once per fault.
+  void applied(const Fault& fault, Nanoseconds now);
+  // find() and, when there is one, applied().
+  const Fault* take(FaultKind kind, int bus, int address, Nanoseconds now);
+
+  std::vector<std::uint32_t> pending() const;  // numbers of faults that nobody applied
+
+ private:
+  struct Entry {
+    Fault fault;
+    bool applied = false;
+  };
+  std::deque<Entry> entries_;  // find() hands out pointers: they must stay
+  Applied sink_;
+  std::vector<std::function<void(const Fault&)>> added_;
+};
+
+}  // namespace whirl::io

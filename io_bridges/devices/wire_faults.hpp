@@ -1,0 +1,77 @@
+// The faults of wires: what a FaultBook asks for, done to the bytes and levels on their way.
+//
+//   I2cWireFaults   hangs on an I2cBus; drives SDA and SCL itself while they are stuck
+//   SpiWireFaults   stands between a controller and one SpiTarget
+//   UartWireFaults  stands between the MCU and a UartPeer; spoils what goes towards the MCU
+#pragma once
+#include <memory>
+#include <vector>
+
+#include "harness/base/random.hpp"
+#include "io_bridges/devices/faults.hpp"
+#include "io_bridges/devices/i2c_bus.hpp"
+
+namespace whirl::io {
+
+class I2cWireFaults : public I2cFaults {
+ public:
+  // Joins the bus as its faults. `number` is the bus's number in Fault::bus (I2C3: 3).
+  I2cWireFaults(EventQueue& queue, FaultBook& book, I2cBus& bus, int number);
+
+  bool deaf(std::uint8_t address, Nanoseconds now) override;
+  bool ack(std::uint8_t address, int index, Nanoseconds now) override;
+  std::uint8_t byte(std::uint8_t address, int index, std::uint8_t value, Nanoseconds now) override;
+  Nanoseconds stretch(std::uint8_t address, Nanoseconds now) override;
+
+ private:
+  void schedule(const Fault& fault);
+  void grip(const Fault& fault);  // the line goes low
+  void let_go(Wire& wire);
+  void count_pulse(Nanoseconds now);
+
+  EventQueue& queue_;
+  FaultBook& book_;
+  I2cBus& bus_;
+  int number_;
+  std::vector<std::unique_ptr<Event>> events_;
+  int pulses_left_ = 0;  // of SCL, until a stuck SDA lets go; 0: it does not
+};
+
+class SpiWireFaults : public SpiTarget {
+ public:
+  SpiWireFaults(FaultBook& book, SpiTarget& target, int bus, int device)
+      : book_(book), target_(target), bus_(bus), device_(device) {}
+
+  void select(bool selected, Nanoseconds now) override;
+  std::uint8_t transfer(std::uint8_t mosi, std::uint32_t sck_Hz, int mode,
+                        Nanoseconds now) override;
+
+ private:
+  FaultBook& book_;
+  SpiTarget& target_;
+  int bus_, device_;
+  std::vector<std::uint8_t> last_good_;  // MISO of the last transaction that passed whole
+  std::vector<std::uint8_t> current_;
+  bool spoiled_ = false;
+};
+
+class UartWireFaults : public UartPeer {
+ public:
+  // Joins the far peer; the board joins this object in its place.
+  UartWireFaults(EventQueue& queue, FaultBook& book, UartPeer& far, int number, std::uint64_t seed);
+
+  void receive(const UartByte& byte, const UartFormat& format, Nanoseconds now) override {
+    far_.receive(byte, format, now);
+  }
+
+ private:
+  void towards_mcu(UartByte byte, const UartFormat& format);
+
+  EventQueue& queue_;
+  FaultBook& book_;
+  UartPeer& far_;
+  int number_;
+  RandomStream random_;
+};
+
+}  // namespace whirl::io
