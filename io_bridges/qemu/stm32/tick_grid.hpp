@@ -28,8 +28,9 @@ class TickGrid {
   }
   io::Nanoseconds time(std::int64_t tick) const {
     const std::int64_t n = tick - first_;
-    if (n <= 0) return origin_;
-    if (frequency_Hz_ <= 0) return io::kNever;
+    if (frequency_Hz_ <= 0) return n <= 0 ? origin_ : io::kNever;
+    if (n < 0)
+      return origin_ - -n / frequency_Hz_ * kSecond - -n % frequency_Hz_ * kSecond / frequency_Hz_;
     const std::int64_t seconds = n / frequency_Hz_;
     if (seconds > kLongest_s) return io::kNever;
     const std::int64_t rest = n % frequency_Hz_;
