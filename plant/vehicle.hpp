@@ -22,10 +22,14 @@
 
 namespace whirl::plant {
 
+class Blade;             // plant/rotor/blade.hpp
 struct RotorConditions;  // plant/rotor/rotor.hpp
 struct RotorLoads;
 using RotorStep = std::function<RotorLoads(const RotorConditions& conditions, double dt_s)>;
 using RotorSet = std::array<RotorStep, 4>;
+
+// Four blade-element rotors that turn as the airframe's mounts say.
+RotorSet blade_element_rotors(std::shared_ptr<const Blade> blade, const AirframeParams& airframe);
 
 struct VehicleParams {
   AirframeParams airframe;

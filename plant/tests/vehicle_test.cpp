@@ -1,0 +1,200 @@
+#include "plant/vehicle.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "harness/base/near.hpp"
+#include "plant/tests/quadratic_rotor.hpp"
+
+namespace whirl::plant {
+namespace {
+
+using Eigen::Vector3d;
+constexpr double kStep_s = 1e-3;
+
+Vehicle quad(const VehicleParams& params = hp_quad(), std::uint64_t seed = 1) {
+  return {params, quadratic_rotors(params.airframe), seed};
+}
+
+void all(Vehicle& v, double duty, Freewheel freewheel = Freewheel::synchronous) {
+  for (int i = 0; i < 4; ++i) v.command(i, {duty, freewheel});
+}
+
+void run(Vehicle& v, double seconds) {
+  for (int k = 0; k < std::lround(seconds / kStep_s); ++k) v.step(kStep_s);
+}
+
+Vehicle hovering(const VehicleParams& params = hp_quad()) {
+  Vehicle v = quad(params);
+  v.place({0, 0, -5}, Eigen::Quaterniond::Identity(), Vector3d::Zero(), Vector3d::Zero());
+  for (int i = 0; i < 4; ++i) v.set_motor_speed(i, 413.0);
+  return v;
+}
+
+TEST(Vehicle, RestsOnItsGearUntilThrustExceedsWeight) {
+  Vehicle v = quad();
+  all(v, 0.1);
+  run(v, 2.0);
+  EXPECT_TRUE(v.state().on_ground);
+  EXPECT_TRUE(near(v.state().p_WB_W_m.z(), -0.11, stated(1e-3, "Bullet's slop")));
+  EXPECT_TRUE(near(v.state().specific_force_B_mps2.z(), -9.80665, stated(1e-3, "at rest")));
+  all(v, 0.5);
+  run(v, 1.0);
+  EXPECT_FALSE(v.state().on_ground);
+  EXPECT_LT(v.state().p_WB_W_m.z(), -1.0);
+}
+
+TEST(Vehicle, AcceleratesUpAsThrustOverMassLessGravity) {
+  VehicleParams params = hp_quad();
+  params.airframe.parasitic_area_m2 = 0.0;
+  Vehicle v = hovering(params);
+  all(v, 0.4);
+  run(v, 0.5);
+  const double before = v.state().v_WB_W_mps.z();
+  double thrust = 0.0;
+  v.step(kStep_s);
+  for (const MotorState& m : v.state().motors) thrust += m.thrust_N;
+  EXPECT_TRUE(near((v.state().v_WB_W_mps.z() - before) / kStep_s, 9.80665 - thrust / 0.9,
+                   round_off(1000, 10.0)));
+}
+
+// Torques by geometry [Bangura2017, 4.3 with its signs mended]: tau_x = l (T4 - T2),
+// tau_y = l (T1 - T3), and rotors 1 and 3 push the nose to the right.
+TEST(Vehicle, EachMotorTurnsTheBodyAsItsPlaceSays) {
+  const Vector3d want[4] = {{0, 1, 1}, {-1, 0, -1}, {0, -1, 1}, {1, 0, -1}};
+  for (int i = 0; i < 4; ++i) {
+    Vehicle v = hovering();
+    all(v, 0.30);
+    v.command(i, {0.40, Freewheel::synchronous});
+    run(v, 0.1);
+    const Vector3d w = v.state().w_WB_B_radps;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (want[i][axis] != 0.0) {
+        EXPECT_GT(w[axis] * want[i][axis], 0.01) << i << " " << axis;
+      } else {
+        EXPECT_LT(std::abs(w[axis]), 0.3 * w.norm()) << i << " " << axis;
+      }
+    }
+  }
+}
+
+// In flight the air gives all the torque there is: the momentum of body and rotors about z changes
+// by the rotors' aerodynamic torque, however the motors push and brake.
+TEST(Vehicle, MotorTorqueIsInternal) {
+  Vehicle v = hovering();
+  const double Ir = hp_quad().motor.inertia_kgm2, Izz = 0.0235;
+  auto momentum = [&] {
+    double sum = Izz * v.state().w_WB_B_radps.z();
+    for (int i = 0; i < 4; ++i) sum += (i % 2 ? Ir : -Ir) * v.state().motors[i].speed_radps;
+    return sum;
+  };
+  const double start = momentum();
+  double impulse = 0.0;
+  for (int k = 0; k < 200; ++k) {
+    for (int i = 0; i < 4; ++i) {
+      v.command(i, {i % 2 ? 0.1 : 0.6, Freewheel::synchronous});
+    }
+    v.step(kStep_s);
+    for (int i = 0; i < 4; ++i) {
+      impulse += (i % 2 ? -1 : 1) * v.state().motors[i].shaft_torque_Nm * kStep_s;
+    }
+  }
+  EXPECT_TRUE(near(momentum() - start, impulse, stated(1e-12, "round-off")));
+  EXPECT_GT(std::abs(impulse), 1e-4);
+}
+
+TEST(Vehicle, HoverTakesTheBusCurrentOfTheThesis) {
+  VehicleParams params = hp_quad();
+  params.battery = lab_supply(16.4, 0.03);
+  Vehicle v = hovering(params);
+  double duty = 0.3;
+  for (int k = 0; k < 20000; ++k) {  // a slow integral on thrust finds the hover's duty
+    double thrust = 0.0;
+    for (const MotorState& m : v.state().motors) thrust += m.thrust_N;
+    duty += 1e-5 * (0.9 * 9.80665 - thrust);
+    all(v, duty);
+    v.step(kStep_s);
+    v.place({0, 0, -5}, Eigen::Quaterniond::Identity(), Vector3d::Zero(), Vector3d::Zero());
+  }
+  EXPECT_TRUE(near(v.state().motors[0].speed_radps * 30 / M_PI, 3950, stated(30, "static fit")));
+  EXPECT_GT(v.state().motors[0].bus_current_A, 1.25);
+  EXPECT_LT(v.state().motors[0].bus_current_A, 1.45);
+}
+
+TEST(Vehicle, PropellerThatStrikesTheGroundStops) {
+  Vehicle v = quad();
+  v.place({0, 0, -0.4}, Eigen::Quaterniond(Eigen::AngleAxisd(1.2, Vector3d::UnitX())),
+          Vector3d::Zero(), Vector3d::Zero());
+  for (int i = 0; i < 4; ++i) v.set_motor_speed(i, 400.0);
+  all(v, 0.3);
+  run(v, 1.0);
+  EXPECT_TRUE(v.state().motors[1].blocked);  // the right one goes down first
+  EXPECT_EQ(v.state().motors[1].speed_radps, 0.0);
+  EXPECT_EQ(v.state().motors[1].thrust_N, 0.0);
+}
+
+TEST(Vehicle, GustPushesDownwind) {
+  VehicleParams params = hp_quad();
+  params.airframe.rotor_drag_spm = 0.04;
+  Vehicle v(params, quadratic_rotors(params.airframe), 1);
+  v.place({0, 0, -5}, Eigen::Quaterniond::Identity(), Vector3d::Zero(), Vector3d::Zero());
+  for (int i = 0; i < 4; ++i) v.set_motor_speed(i, 413.0);
+  all(v, 0.32);
+  v.add_gust({.start_s = 0.1, .duration_s = 0.5, .wind_W_mps = {0.0, 2.0, 0.0}});
+  run(v, 0.1);
+  EXPECT_EQ(v.state().v_WB_W_mps.y(), 0.0);
+  v.step(kStep_s);
+  run(v, 0.2);
+  EXPECT_GT(v.state().v_WB_W_mps.y(), 0.05);
+}
+
+TEST(Vehicle, LumpedDragIsItsCoefficientTimesThrustTimesSpeed) {
+  VehicleParams params = hp_quad();
+  params.airframe.rotor_drag_spm = 0.04;
+  params.airframe.parasitic_area_m2 = 0.0;
+  Vehicle v(params, quadratic_rotors(params.airframe), 1);
+  v.place({0, 0, -50}, Eigen::Quaterniond::Identity(), {3.0, 0.0, 0.0}, Vector3d::Zero());
+  for (int i = 0; i < 4; ++i) v.set_motor_speed(i, 413.0);
+  v.step(kStep_s);
+  const Vector3d f = v.state().specific_force_B_mps2;  // a_x = a_z c Vx
+  EXPECT_TRUE(near(f.x(), f.z() * 0.04 * 3.0, stated(1e-3, "attitude moves in the step")));
+}
+
+TEST(Vehicle, SupplyDipLowersTheBusWhileItLasts) {
+  Vehicle v = hovering();
+  all(v, 0.3);
+  v.dip_supply(3.0, 0.010, 0.005);
+  run(v, 0.010);
+  const double before = v.state().bus_voltage_V;
+  v.step(kStep_s);
+  EXPECT_TRUE(near(v.state().bus_voltage_V, before - 3.0, stated(0.6, "less current, less sag")));
+  run(v, 0.010);
+  EXPECT_TRUE(near(v.state().bus_voltage_V, before, stated(0.2, "recovered")));
+}
+
+TEST(Vehicle, SameSeedSameBits) {
+  auto end_of = [](std::uint64_t seed) {
+    VehicleParams params = hp_quad();
+    params.air.dryden.wind_at_6m_mps = 6.0;
+    params.airframe.rotor_drag_spm = 0.04;
+    Vehicle v(params, quadratic_rotors(params.airframe), seed);
+    all(v, 0.4);
+    run(v, 1.0);
+    return v.state().p_WB_W_m;
+  };
+  EXPECT_EQ(end_of(1), end_of(1));
+  EXPECT_NE(end_of(1), end_of(2));
+}
+
+TEST(VehicleParams, SayWhichBoundIsBroken) {
+  VehicleParams params = hp_quad();
+  EXPECT_TRUE(validate(params, "hp_quad.lua").ok());
+  params.airframe.mass_kg = -0.9;
+  const auto result = validate(params, "hp_quad.lua");
+  ASSERT_FALSE(result.ok());
+  EXPECT_NE(result.error().message().find("mass_kg is -0.9"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace whirl::plant

@@ -1,0 +1,264 @@
+#include "plant/vehicle.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "harness/base/check.hpp"
+#include "plant/air/air.hpp"
+#include "plant/airframe/contact_world.hpp"
+#include "plant/bounds.hpp"
+#include "plant/frames.hpp"
+#include "plant/power_bus.hpp"
+#include "plant/rotor/rotor.hpp"
+
+namespace whirl::plant {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kSubStep_s = 1.25e-4;  // electrical time constant 0.63 ms
+constexpr double kFewTurns_radps = 20.0;
+
+struct Dip {
+  double below_V, start_s, end_s;
+};
+struct Push {
+  Vector3d force_W_N;
+  double end_s;
+};
+
+ShaftLoad shaft_load(const RotorLoads& loads, double at_speed_radps) {
+  const double torque = loads.shaft_torque_Nm;
+  if (torque <= 0.0 || at_speed_radps < kFewTurns_radps) return {0.0, torque};
+  return {torque / (at_speed_radps * at_speed_radps), 0.0};
+}
+
+}  // namespace
+
+struct Vehicle::Parts {
+  Parts(const VehicleParams& vehicle, RotorSet rotor_set, std::uint64_t seed)
+      : params(vehicle),
+        mass{vehicle.airframe.mass_kg, vehicle.airframe.inertia_kgm2},
+        rotors(std::move(rotor_set)),
+        battery(vehicle.battery),
+        air(vehicle.air, seed),
+        contact(vehicle.airframe) {}
+
+  void run_motors(double dt_s);
+  Forcing run_rotors(double dt_s);
+  void run_body(Forcing& forcing, double dt_s);
+  void strike();
+  void publish_air();
+  Vector3d spin_B() const;
+  Vector3d hub_W(int i) const {
+    return body.p_WB_W_m + body.q_WB * params.airframe.rotors[i].p_BP_B_m;
+  }
+
+  VehicleParams params;
+  MassProperties mass;
+  RotorSet rotors;
+  Battery battery;
+  Air air;
+  ContactWorld contact;
+  std::array<AveragedMotor, 4> motors{AveragedMotor(params.motor), AveragedMotor(params.motor),
+                                      AveragedMotor(params.motor), AveragedMotor(params.motor)};
+  std::array<MotorCommand, 4> commands;
+  std::array<RotorLoads, 4> loads;
+  std::array<double, 4> loads_at_radps{};
+  std::vector<Dip> dips;
+  std::vector<Push> pushes;
+  Vector3d spin_start_B_Nms = Vector3d::Zero();
+  BodyState body;
+  VehicleState state;
+};
+
+Vector3d Vehicle::Parts::spin_B() const {
+  double sum = 0.0;  // counter-clockwise seen from above is about -z
+  for (int i = 0; i < 4; ++i) sum -= params.airframe.rotors[i].spin * motors[i].speed_radps();
+  return {0.0, 0.0, params.motor.inertia_kgm2 * sum};
+}
+
+void Vehicle::Parts::run_motors(double dt_s) {
+  std::array<Drive, 4> drives;
+  std::array<ShaftLoad, 4> shaft;
+  std::array<MotorBooks, 4> books, total{};
+  for (int i = 0; i < 4; ++i) {
+    drives[i].duty = std::clamp(commands[i].duty, 0.0, 1.0);
+    drives[i].diode = commands[i].freewheel == Freewheel::diode;
+    shaft[i] = shaft_load(loads[i], loads_at_radps[i]);
+    state.motors[i].winding_peak_A = std::abs(motors[i].current_A());
+  }
+  double below_V = 0.0;
+  for (const Dip& dip : dips) {
+    if (state.t_s >= dip.start_s && state.t_s < dip.end_s) below_V += dip.below_V;
+  }
+  battery.set_dip(below_V);
+  const int steps = std::max(1, static_cast<int>(std::ceil(dt_s / kSubStep_s - 1e-9)));
+  double charge = 0.0, voltage = 0.0;
+  for (int k = 0; k < steps; ++k) {
+    const BusDraw draw =
+        step_bus(motors, drives, shaft, params.avionics_current_A, battery, dt_s / steps, books);
+    charge += draw.charge_C;
+    voltage += draw.bus_V / steps;
+    for (int i = 0; i < 4; ++i) {
+      total[i] += books[i];
+      state.motors[i].winding_peak_A =
+          std::max(state.motors[i].winding_peak_A, std::abs(motors[i].current_A()));
+    }
+  }
+  for (int i = 0; i < 4; ++i) {
+    motors[i].warm(total[i], dt_s);
+    MotorState& m = state.motors[i];
+    m.speed_radps = motors[i].speed_radps();
+    m.winding_current_A = motors[i].current_A();
+    m.bus_current_A = total[i].bus_charge_C / dt_s;
+    m.winding_temperature_K = motors[i].winding_temperature_K();
+    m.blocked = motors[i].blocked();
+  }
+  state.bus_voltage_V = voltage;
+  state.battery_current_A = charge / dt_s;
+  state.charge_used_C = battery.charge_used_C();
+}
+
+Forcing Vehicle::Parts::run_rotors(double dt_s) {
+  Forcing sum;
+  const Eigen::Matrix3d R_BW = body.q_WB.conjugate().toRotationMatrix();
+  const Vector3d v_WB_B = R_BW * body.v_WB_W_mps;
+  RotorConditions conditions;
+  conditions.w_WP_P_radps = body.w_WB_B_radps;
+  conditions.density_kgpm3 = state.air_density_kgpm3;
+  conditions.viscosity_Pas = air.at(body.p_WB_W_m).viscosity_Pas;
+  for (int i = 0; i < 4; ++i) {
+    const Vector3d& arm_B = params.airframe.rotors[i].p_BP_B_m;
+    const Vector3d p_W = hub_W(i);
+    conditions.omega_radps = motors[i].speed_radps();
+    conditions.v_AP_P_mps = v_WB_B + body.w_WB_B_radps.cross(arm_B) - R_BW * air.wind_W_mps(p_W);
+    conditions.height_m = -p_W.z();
+    loads[i] = rotors[i](conditions, dt_s);
+    loads_at_radps[i] = conditions.omega_radps;
+    Vector3d f_B = loads[i].f_P_N;
+    f_B.head<2>() -= params.airframe.rotor_drag_spm * std::abs(loads[i].thrust_N) *
+                     conditions.v_AP_P_mps.head<2>();
+    sum.f_B_N += f_B;
+    sum.tau_B_Nm += loads[i].tau_P_Nm + arm_B.cross(f_B);
+    state.motors[i].thrust_N = loads[i].thrust_N;
+    state.motors[i].shaft_torque_Nm = loads[i].shaft_torque_Nm;
+  }
+  const Vector3d against_B = v_WB_B - R_BW * state.wind_W_mps;
+  sum.f_B_N -= 0.5 * state.air_density_kgpm3 * params.airframe.parasitic_area_m2 *
+               against_B.norm() * against_B;
+  for (const Push& push : pushes) {
+    if (state.t_s < push.end_s) sum.f_W_N += push.force_W_N;
+  }
+  return sum;
+}
+
+void Vehicle::Parts::run_body(Forcing& forcing, double dt_s) {
+  forcing.spin_start_B_Nms = spin_start_B_Nms;
+  forcing.spin_end_B_Nms = spin_B();
+  const BodyState before = body;
+  state.contact_impulse_Ns = contact.in_reach(body, dt_s) ? contact.step(body, forcing, dt_s) : 0.0;
+  state.on_ground = state.contact_impulse_Ns > 0.0;
+  if (state.on_ground) {
+    const Vector3d a_W = (body.v_WB_W_mps - before.v_WB_W_mps) / dt_s;
+    state.specific_force_B_mps2 = body.q_WB.conjugate() * (a_W - Vector3d(0.0, 0.0, kGravity_mps2));
+    state.alpha_WB_B_radps2 = (body.w_WB_B_radps - before.w_WB_B_radps) / dt_s;
+  } else {
+    body = step_free(body, mass, forcing, dt_s);
+    state.specific_force_B_mps2 =
+        (forcing.f_B_N + body.q_WB.conjugate() * forcing.f_W_N) / mass.mass_kg;
+    state.alpha_WB_B_radps2 = angular_acceleration_B(body, mass, forcing, dt_s);
+  }
+  spin_start_B_Nms = forcing.spin_end_B_Nms;
+}
+
+// A disc whose lowest point is in the ground: the propeller stops, and stays stopped.
+void Vehicle::Parts::strike() {
+  const Vector3d axis_W = body.q_WB * Vector3d::UnitZ();
+  const double slope = std::sqrt(std::max(0.0, 1.0 - axis_W.z() * axis_W.z()));
+  for (int i = 0; i < 4; ++i) {
+    if (hub_W(i).z() + params.airframe.rotors[i].radius_m * slope <= 0.0) continue;
+    motors[i].block();
+    state.motors[i].blocked = true;
+    state.motors[i].speed_radps = 0.0;
+  }
+}
+
+void Vehicle::Parts::publish_air() {
+  const Atmosphere here = air.at(body.p_WB_W_m);
+  state.wind_W_mps = air.wind_W_mps(body.p_WB_W_m);
+  state.static_pressure_Pa = here.pressure_Pa;
+  state.air_temperature_K = here.temperature_K;
+  state.air_density_kgpm3 = here.density_kgpm3;
+  state.p_WB_W_m = body.p_WB_W_m;
+  state.v_WB_W_mps = body.v_WB_W_mps;
+  state.q_WB = body.q_WB;
+  state.w_WB_B_radps = body.w_WB_B_radps;
+}
+
+Vehicle::Vehicle(const VehicleParams& params, RotorSet rotors, std::uint64_t seed)
+    : parts_(std::make_unique<Parts>(params, std::move(rotors), seed)) {
+  double gear_m = 0.0;
+  for (const auto& foot : params.airframe.contact.gear_B_m) gear_m = std::max(gear_m, foot.z());
+  parts_->body.p_WB_W_m.z() = -gear_m - params.airframe.contact.foot_radius_m;
+  parts_->state.specific_force_B_mps2.z() = -kGravity_mps2;
+  parts_->state.bus_voltage_V = parts_->battery.source_V();
+  parts_->publish_air();
+}
+Vehicle::~Vehicle() = default;
+Vehicle::Vehicle(Vehicle&&) noexcept = default;
+Vehicle& Vehicle::operator=(Vehicle&&) noexcept = default;
+
+void Vehicle::place(const Vector3d& p_WB_W_m, const Eigen::Quaterniond& q_WB,
+                    const Vector3d& v_WB_W_mps, const Vector3d& w_WB_B_radps) {
+  parts_->body = {p_WB_W_m, v_WB_W_mps, q_WB.normalized(), w_WB_B_radps};
+  parts_->publish_air();
+}
+
+void Vehicle::set_motor_speed(int index, double speed_radps) {
+  parts_->motors.at(index).set_speed(speed_radps);
+  parts_->state.motors[index].speed_radps = speed_radps;
+  parts_->spin_start_B_Nms = parts_->spin_B();
+}
+
+void Vehicle::command(int index, const MotorCommand& command) {
+  WHIRL_CHECK(std::isfinite(command.duty), index, command.duty);
+  parts_->commands.at(index) = command;
+}
+
+void Vehicle::set_steady_wind(const Vector3d& wind) {
+  parts_->air.set_steady_wind(wind);
+}
+void Vehicle::add_gust(const GustWindow& gust) {
+  parts_->air.add_gust(gust);
+}
+void Vehicle::add_jet(const Jet& jet) {
+  parts_->air.add_jet(jet);
+}
+
+void Vehicle::dip_supply(double below_V, double start_s, double duration_s) {
+  parts_->dips.push_back({below_V, start_s, start_s + duration_s});
+}
+
+void Vehicle::push(const Vector3d& force_W_N, double duration_s) {
+  parts_->pushes.push_back({force_W_N, parts_->state.t_s + duration_s});
+}
+
+void Vehicle::step(double dt_s) {
+  WHIRL_CHECK(dt_s > 0.0 && dt_s <= 0.005, dt_s);
+  Parts& p = *parts_;
+  p.air.step(p.body.p_WB_W_m, p.body.v_WB_W_mps, dt_s);
+  p.run_motors(dt_s);
+  Forcing forcing = p.run_rotors(dt_s);
+  p.run_body(forcing, dt_s);
+  p.strike();
+  p.state.t_s += dt_s;
+  p.publish_air();
+}
+
+const VehicleState& Vehicle::state() const {
+  return parts_->state;
+}
+
+}  // namespace whirl::plant

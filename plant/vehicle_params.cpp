@@ -1,0 +1,38 @@
+#include "plant/bounds.hpp"
+#include "plant/vehicle.hpp"
+
+namespace whirl::plant {
+
+VehicleParams hp_quad() {
+  VehicleParams p;
+  AirframeParams& a = p.airframe;
+  a.mass_kg = 0.900;
+  a.inertia_kgm2 = {0.0125, 0.0125, 0.0235};  // from the parts list
+  const double arm_m = 0.25, height_m = 0.03;
+  a.rotors[0] = {{arm_m, 0.0, -height_m}, +1, 0.127};
+  a.rotors[1] = {{0.0, arm_m, -height_m}, -1, 0.127};
+  a.rotors[2] = {{-arm_m, 0.0, -height_m}, +1, 0.127};
+  a.rotors[3] = {{0.0, -arm_m, -height_m}, -1, 0.127};
+  for (double x : {-0.12, 0.12}) {
+    for (double y : {-0.12, 0.12}) a.contact.gear_B_m.emplace_back(x, y, 0.10);
+  }
+  a.contact.foot_radius_m = 0.01;
+  a.parasitic_area_m2 = 0.01;
+  p.battery = lipo_4s_2200();
+  return p;
+}
+
+Result<Done> validate(const VehicleParams& params, const std::string& place) {
+  Bounds b(place);
+  b.merge(validate(params.airframe, place + ": airframe"));
+  b.merge(validate(params.motor, place + ": motor"));
+  b.merge(validate(params.battery, place + ": battery"));
+  b.within("avionics_current_A", params.avionics_current_A, 0.0, 50.0);
+  b.within("ground_height_m", params.air.ground_height_m, -500.0, 9000.0);
+  b.within("ground_temperature_offset_K", params.air.ground_temperature_offset_K, -80.0, 60.0);
+  b.within("wind_at_6m_mps", params.air.dryden.wind_at_6m_mps, 0.0, 40.0);
+  b.within("steady_wind_W_mps", params.air.steady_wind_W_mps.norm(), 0.0, 60.0);
+  return b.result();
+}
+
+}  // namespace whirl::plant
