@@ -34,7 +34,7 @@ function(fw_image name)
 endfunction()
 
 fw_image(flight FLASH 128 RAM 16 FOLDER . SOURCES
-  flight/main.cpp hal/clock.cpp hal/time_base.cpp hal/spi_master.cpp hal/i2c_master.cpp
+  flight/main.cpp ${FW_CORE} hal/clock.cpp hal/time_base.cpp hal/spi_master.cpp hal/i2c_master.cpp
   hal/uart_link.cpp)
 foreach(image hardfault silent sleeper)
   fw_image(${image} FLASH 4 RAM 1 FOLDER images SOURCES images/${image}.cpp)

@@ -1,6 +1,17 @@
 // The flight image: boots, brings up its buses and runs its tasks, one tick per IMU sample.
+//
+//   Tick    the end of the IMU's burst, 1 kHz; a hardware timer when the IMU stays away
+//   Tasks   run to completion, one after the other, in the order of schedule.hpp; between ticks the
+//           core sleeps. Interrupts only move bytes
+//   Watch   the watchdog is fed when each task has run since the last time
+#include <tuple>
+
+#include "firmware/drivers/esc_bus.hpp"
 #include "firmware/drivers/mpu6000.hpp"
+#include "firmware/flight/flight.hpp"
+#include "firmware/flight/schedule.hpp"
 #include "firmware/hal/clock.hpp"
+#include "firmware/hal/fault_record.hpp"
 #include "firmware/hal/i2c_master.hpp"
 #include "firmware/hal/interrupts.hpp"
 #include "firmware/hal/pins.hpp"
@@ -8,62 +19,214 @@
 #include "firmware/hal/time_base.hpp"
 #include "firmware/hal/uart_link.hpp"
 #include "firmware/hal/watchdog.hpp"
+#include "firmware/link/telemetry.hpp"
 
 namespace fw {
 
-constinit Mpu6000<hal::SpiMaster> imu(hal::spi1);
 constinit Faults faults;
-constinit ImuReading reading{};
+constinit Health health;
 
 namespace {
-volatile bool tick_due = false;
+
+constinit Mpu6000<hal::SpiMaster> imu(hal::spi1);
+constinit EscBus<hal::I2cMaster> escs(hal::i2c3);
+volatile std::uint32_t ticks_due = 0;
+volatile bool sample_ready = false;
+
+enum Ran : std::uint8_t {
+  kImu = 1,
+  kAttitude = 2,
+  kPosition = 4,
+  kEsc = 8,
+  kTelemetry = 16,
+  kAll = 31
+};
+
+Flight& flight() {  // built at the first call: Eigen's vectors have no constant initialisers
+  static Flight instance;
+  return instance;
 }
+
+Telemetry& telemetry() {
+  static Telemetry instance(flight());
+  return instance;
+}
+
+}  // namespace
 
 void imu_data_ready() {
-  if (!imu.data_ready(hal::now_us())) tick_due = true;
-}
-void imu_transfer_done() {
-  if (imu.transfer_done()) tick_due = true;
-}
-void fallback_tick() {
-  if (imu.running()) ++faults.imu_samples_lost;
-  tick_due = true;
-}
-void i2c_job_done(const hal::I2cJob&, Status status) {
-  if (status != Status::ok) ++faults.esc_no_answer;
+  if (!imu.data_ready(hal::now_us())) ticks_due = ticks_due + 1;
 }
 
+void imu_transfer_done() {
+  if (!imu.transfer_done()) return;
+  sample_ready = true;
+  ticks_due = ticks_due + 1;
+}
+
+void fallback_tick() {
+  if (imu.running()) ++faults.imu_samples_lost;
+  ticks_due = ticks_due + 1;
+}
+
+void i2c_job_done(const hal::I2cJob& job, Status status) {
+  escs.job_done(job, status);
+}
+
+// Sensor axes are x forward, y left, z up: half a turn about x from the body's.
 __attribute__((noinline)) void imu_task() {
+  constexpr std::uint32_t kFrozen_samples = 50;
+  static constinit ImuBurst last;
+  static constinit std::uint32_t same = 0;
   if (!imu.running()) std::ignore = imu.setup_tick();
-  reading = imu.burst().decode();
+  if (!sample_ready) return flight().on_imu_missing();
+  sample_ready = false;
+  const ImuBurst burst = imu.burst();
+  same = burst == last ? same + 1 : 0;
+  last = burst;
+  if (same == kFrozen_samples) ++faults.imu_frozen;
+  flight().set_imu_frozen(same >= kFrozen_samples);
+  const ImuReading r = burst.decode();
+  const float* a = r.acceleration_mps2;
+  const float* w = r.rate_radps;
+  flight().on_imu({{a[0], -a[1], -a[2]}, {w[0], -w[1], -w[2]}, r.temperature_degC});
+  faults.imu_reconfigured = imu.reconfigured();
+}
+
+__attribute__((noinline)) void attitude_task() {
+  flight().attitude_step();
+}
+
+__attribute__((noinline)) void position_task() {
+  flight().position_step();
+}
+
+__attribute__((noinline)) void esc_task(std::uint32_t tick) {
+  for (unsigned motor = 0; motor < 4; ++motor) {
+    if (escs.take_answered(motor)) flight().on_esc_answered(motor);
+    EscStatus status;
+    if (escs.take_status(motor, status)) flight().on_esc_status(motor, status);
+  }
+  if (schedule::setpoints(tick)) std::ignore = escs.write(flight().setpoints());
+  const int motor = schedule::status_read(tick);
+  if (motor >= 0) std::ignore = escs.request_status(static_cast<unsigned>(motor));
+  faults.esc_no_answer = escs.failures();
+  faults.esc_bad_status = escs.bad_status();
+  faults.i2c_recoveries = hal::i2c3.counters().recoveries;
+  faults.i2c_timeouts = hal::i2c3.counters().timeouts;
+}
+
+__attribute__((noinline)) void telemetry_task(std::uint32_t tick) {
+  std::array<std::uint8_t, 64> bytes;
+  const std::size_t n = hal::radio.read(bytes);
+  telemetry().receive({bytes.data(), n});
+  faults.link_bad_frames = telemetry().bad_frames();
+  const std::span<const std::uint8_t> frame = telemetry().next(tick, faults, health);
+  if (!frame.empty() && hal::radio.send(frame) != Status::ok) ++faults.link_overruns;
 }
 
 namespace {
-void wait_for_tick() {
+
+// Runs what is due in this tick. The attitude task comes before the set-points that use it.
+std::uint8_t run_tick(std::uint32_t tick) {
+  std::uint8_t ran = kImu;
+  imu_task();
+  if (schedule::attitude(tick)) {
+    attitude_task();
+    ran |= kAttitude;
+  }
+  if (schedule::setpoints(tick) || schedule::status_read(tick) >= 0) {
+    esc_task(tick);
+    ran |= kEsc;
+  }
+  if (schedule::position(tick)) {
+    position_task();
+    ran |= kPosition;
+  }
+  if (schedule::telemetry(tick)) {
+    telemetry_task(tick);
+    ran |= kTelemetry;
+  }
+  return ran;
+}
+
+// Sleeps until a tick is due; returns the time slept.
+std::uint32_t wait_for_tick() {
+  const std::uint32_t from_us = hal::now_us();
   for (;;) {
     const hal::InterruptLock lock;
-    if (tick_due) {
-      tick_due = false;
-      return;
+    if (ticks_due > 0) {
+      if (ticks_due > 1) ++faults.deadline_missed;
+      ticks_due = 0;
+      return hal::now_us() - from_us;
     }
     hal::wait_for_interrupt();
   }
 }
+
+void show_state() {
+  hal::LedBlue::set(flight().state() == FlightState::disarmed);
+  hal::LedAmber::set(!flight().emergency() && flight().state() != FlightState::failsafe);
+}
+
+[[noreturn]] void run() {
+  std::uint8_t ran = 0;
+  std::uint32_t slept_us = 0;
+  for (std::uint32_t tick = 0;; ++tick) {
+    slept_us += wait_for_tick();
+    ran |= run_tick(tick);
+    if (ran == kAll) {
+      hal::feed_watchdog();
+      ran = 0;
+    }
+    if (tick % 1000 == 999) {
+      health.load_permille =
+          static_cast<std::uint16_t>(1000u - std::min<std::uint32_t>(slept_us / 1000u, 1000u));
+      slept_us = 0;
+      show_state();
+    }
+  }
+}
+
+const char* boot_text() {
+  if (fw_fault_record.magic == FaultRecord::kMagic) {
+    fw_fault_record.magic = ~FaultRecord::kMagic;  // told once; the registers stay
+    return "boot after a fault, see fw_fault_record";
+  }
+  switch (hal::take_reset_cause()) {
+    case hal::ResetCause::power:
+      return "boot: power";
+    case hal::ResetCause::pin:
+      return "boot: reset pin";
+    case hal::ResetCause::software:
+      return "boot: software reset";
+    case hal::ResetCause::watchdog:
+      return "boot: watchdog";
+    case hal::ResetCause::low_power:
+      return "boot: low-power reset";
+  }
+  return "boot";
+}
+
+void start_leds() {
+  hal::LedAmber::output(false, true);
+  hal::LedBlue::output(false, true);
+}
+
 }  // namespace
 
 }  // namespace fw
 
 extern "C" void fw_main() {
   using namespace fw;
-  std::ignore = hal::start_clocks();
+  health.boot_text = boot_text();
+  const Status clocks = hal::start_clocks();
+  if (clocks != Status::ok) health.boot_text = "boot: no crystal, no flight";
   hal::start_time_base();
-  hal::spi1.init();
+  hal::spi1.init();  // switches on the clocks of all ports in use
+  start_leds();
   hal::i2c3.init();
   hal::radio.init();
   hal::start_watchdog();
-  for (;;) {
-    wait_for_tick();
-    imu_task();
-    hal::feed_watchdog();
-  }
+  run();
 }

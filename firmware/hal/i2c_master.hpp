@@ -10,18 +10,10 @@
 #include <cstdint>
 #include <span>
 
+#include "firmware/hal/i2c_job.hpp"
 #include "firmware/status.hpp"
 
 namespace fw::hal {
-
-struct I2cJob {
-  static constexpr std::size_t kMaxLength = 8;
-  std::uint8_t address = 0;
-  bool read = false;
-  std::uint8_t length = 0;  // a read is of two bytes at least
-  std::uint8_t retries = 1;
-  std::array<std::uint8_t, kMaxLength> bytes{};
-};
 
 struct I2cCounters {
   std::uint32_t not_acknowledged = 0, timeouts = 0, bus_errors = 0, recoveries = 0;

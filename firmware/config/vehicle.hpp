@@ -1,0 +1,45 @@
+// What the firmware believes about its vehicle. Its own numbers: never shared with a simulation.
+//
+//   Frame   B: forward-right-down at the centre of mass; rotors 1..4 at +x, +y, -x, -y
+//   Source  HP quad [Bangura 2017, Fig. 3.1c, tables 3.3 to 3.6]; inertia from its parts list;
+//           gains by the loop analysis in each comment, checked in tests/closed_loop_test.cpp
+#pragma once
+
+namespace fw::config {
+
+inline constexpr float kGravity_mps2 = 9.80665f;
+
+inline constexpr float kMass_kg = 0.900f;
+inline constexpr float kInertia_kgm2[3] = {0.0125f, 0.0125f, 0.0235f};
+inline constexpr float kArm_m = 0.25f;
+// Torque over thrust at hover: shaft power of a figure of merit of 0.69 at 2.21 N, 3950 RPM.
+inline constexpr float kTorquePerThrust_m = 0.0165f;
+inline constexpr float kDrag_spm = 0.04f;  // rotor drag: force = -kDrag T v, sideways
+
+// Set-points in thrust by RPM (mode 2): v = 1..2047 spans this range, v = 0 stops the motor.
+inline constexpr float kThrustMin_N = 0.8f, kThrustMax_N = 8.0f;
+inline constexpr float kThrustUsable_N = 6.0f;  // per rotor, with the battery sagging
+
+// Attitude: torque = -Kw (rate + Kq angle). Crossover 12 rad/s: the ESC (25 ms), half a set-point
+// period (10 ms), the IMU's filter (2 ms) and the averaging (3 ms) leave 45 degrees there.
+inline constexpr float kRateGain_Nms[3] = {0.150f, 0.150f, 0.080f};
+inline constexpr float kAngleOverRate_radps[3] = {4.2f, 4.2f, 1.2f};
+// Angle trim: what the rotors' and the centre of mass's scatter needs in the mean.
+inline constexpr float kAngleIntegral_Nmps[3] = {0.25f, 0.25f, 0.03f};
+inline constexpr float kAngleIntegralLimit_Nm[3] = {0.15f, 0.15f, 0.03f};
+
+// Position: acceleration = -Kp error - Kd velocity error - Ki integral; 40 Hz.
+inline constexpr float kPositionGain_ps2[3] = {3.0f, 3.0f, 6.0f};
+inline constexpr float kVelocityGain_ps[3] = {2.8f, 2.8f, 4.5f};
+inline constexpr float kPositionIntegral_ps3[3] = {1.0f, 1.0f, 3.0f};
+inline constexpr float kIntegralLimit_mps2[3] = {1.5f, 1.5f, 3.0f};
+inline constexpr float kTiltLimit_tan = 0.40f;  // 22 degrees
+
+// Reference: speed and acceleration that a set-point may ask for.
+inline constexpr float kReferenceGain_ps = 1.6f;  // critically damped with four times this inside
+inline constexpr float kSpeedLimit_mps = 1.2f, kClimbLimit_mps = 0.5f;
+inline constexpr float kAccelerationLimit_mps2 = 2.0f, kClimbAccelerationLimit_mps2 = 0.8f;
+
+inline constexpr float kDescent_mps = 0.35f, kTouchdown_mps = 0.25f, kTouchdownHeight_m = 0.35f;
+
+}  // namespace fw::config

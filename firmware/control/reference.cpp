@@ -1,0 +1,49 @@
+#include "firmware/control/reference.hpp"
+
+#include "firmware/config/vehicle.hpp"
+
+namespace fw {
+namespace {
+
+// Limits the horizontal part as a vector, so that its direction stays, and the vertical by itself.
+Vector3 limited(Vector3 v, float horizontal, float vertical) {
+  const float norm = v.head<2>().norm();
+  if (norm > horizontal) v.head<2>() *= horizontal / norm;
+  v.z() = std::clamp(v.z(), -vertical, vertical);
+  return v;
+}
+
+}  // namespace
+
+void Reference::start(const Vector3& p_W_m, float yaw_rad) {
+  p_W_m_ = p_W_m;
+  v_W_mps_.setZero();
+  a_W_mps2_.setZero();
+  yaw_rad_ = yaw_rad;
+}
+
+void Reference::drive(const Vector3& v_wanted_W_mps, float dt_s) {
+  constexpr float kInner_ps = 4.0f * config::kReferenceGain_ps;
+  a_W_mps2_ = limited(kInner_ps * (v_wanted_W_mps - v_W_mps_), config::kAccelerationLimit_mps2,
+                      config::kClimbAccelerationLimit_mps2);
+  p_W_m_ += dt_s * v_W_mps_ + 0.5f * dt_s * dt_s * a_W_mps2_;
+  v_W_mps_ += dt_s * a_W_mps2_;
+}
+
+void Reference::step(const Vector3& goal_W_m, float goal_yaw_rad, float dt_s) {
+  // Far off, brake so that the limit of acceleration suffices: v^2 = 2 a d.
+  const Vector3 error = goal_W_m - p_W_m_;
+  const float braking = std::sqrt(config::kClimbAccelerationLimit_mps2 * std::abs(error.z()));
+  drive(limited(config::kReferenceGain_ps * error, config::kSpeedLimit_mps,
+                std::min(config::kClimbLimit_mps, braking)),
+        dt_s);
+  constexpr float kYawRate_radps = 0.6f;
+  const float turn = wrap_pi(goal_yaw_rad - yaw_rad_);
+  yaw_rad_ = wrap_pi(yaw_rad_ + std::clamp(turn, -kYawRate_radps * dt_s, kYawRate_radps * dt_s));
+}
+
+void Reference::descend(float speed_mps, float dt_s) {
+  drive({0.0f, 0.0f, speed_mps}, dt_s);
+}
+
+}  // namespace fw

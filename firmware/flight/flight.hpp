@@ -1,0 +1,142 @@
+// The flight logic: sensor samples, fixes, commands in; rotor set-points and state out.
+//
+//   Rates   on_imu 1 kHz, attitude_step 200 Hz, position_step 40 Hz. Knows no bus and no clock but
+//           its own count of ticks
+//   States  disarmed -> armed -> flying -> landing -> disarmed; failsafe landing from the two in the
+//           air; motors off at once where nothing can be controlled (IMU lost, tipped over)
+#pragma once
+#include <array>
+#include <cstdint>
+
+#include "firmware/control/attitude_controller.hpp"
+#include "firmware/control/mixer.hpp"
+#include "firmware/control/position_controller.hpp"
+#include "firmware/control/reference.hpp"
+#include "firmware/drivers/esc_protocol.hpp"
+#include "firmware/estimation/attitude_filter.hpp"
+#include "firmware/estimation/ground_calibration.hpp"
+#include "firmware/estimation/position_filter.hpp"
+#include "firmware/math.hpp"
+
+namespace fw {
+
+enum class FlightState : std::uint8_t { disarmed, armed, flying, landing, failsafe };
+
+enum class Reason : std::uint8_t {  // why a command was refused, or a flight ended
+  none,
+  imu_not_running,
+  imu_frozen,
+  imu_not_calibrated,
+  no_capture,
+  estimate_not_converged,
+  tilted,
+  esc_not_armed,
+  esc_fault,
+  esc_silent,
+  no_setpoints,
+  tipped_over,
+  landed,
+  commanded,
+  wrong_state,
+};
+const char* text_of(Reason reason);
+
+struct ImuSample {
+  Vector3 a_B_mps2 = Vector3::Zero(), w_B_radps = Vector3::Zero();
+  float temperature_degC = 0.0f;
+};
+
+struct CaptureFix {
+  Vector3 p_WB_W_m = Vector3::Zero();
+  float roll_rad = 0.0f, pitch_rad = 0.0f, yaw_rad = 0.0f;
+};
+
+class Flight {
+ public:
+  // Inputs.
+  void on_imu(const ImuSample& sample);
+  void on_imu_missing();                                      // a tick without a sample
+  void set_imu_frozen(bool frozen) { imu_frozen_ = frozen; }  // samples that stopped changing
+  void on_fix(const CaptureFix& fix);
+  void on_target(const Vector3& p_W_m, float yaw_rad);
+  void on_esc_answered(unsigned motor) { esc_silent_ms_[motor] = 0; }
+  void on_esc_status(unsigned motor, const EscStatus& status) { esc_status_[motor] = status; }
+  // Commands: none if accepted.
+  Reason arm();
+  Reason disarm();
+  Reason take_off(float height_m);
+  Reason land();
+
+  // Tasks.
+  void attitude_step();
+  void position_step();
+
+  // Outputs.
+  std::array<std::uint16_t, 4> setpoints() const { return setpoints_; }
+  FlightState state() const { return state_; }
+  Reason last_reason() const { return reason_; }
+  std::uint32_t reason_count() const { return reason_count_; }  // steps with each new reason
+  bool emergency() const { return emergency_; }
+  Reason ready_to_arm() const;
+  const AttitudeFilter& attitude() const { return attitude_; }
+  const PositionFilter& position() const { return position_; }
+  const Reference& reference() const { return reference_; }
+  const ImuSample& imu() const { return sample_; }
+  const EscStatus& esc_status(unsigned motor) const { return esc_status_[motor]; }
+  bool capture_fresh() const { return fix_age_ms_ < kCaptureLost_ms; }
+
+ private:
+  static constexpr std::uint32_t kNever = 1'000'000;
+  static constexpr std::uint32_t kCaptureFresh_ms = 200, kCaptureLost_ms = 500;
+  static constexpr std::uint32_t kEscSilent_ms = 500, kTargetsLost_ms = 3000;
+  static constexpr std::uint32_t kImuLost_ms = 20;
+
+  void tick();
+  void estimate();
+  void calibrate_on_ground();
+  void supervise();
+  void watch_flight();
+  void detect_touchdown();
+  void control();
+  void enter(FlightState state, Reason reason);
+  void stop_motors(Reason reason, bool emergency);
+  Reason first_esc_problem() const;
+  bool in_air() const { return state_ >= FlightState::flying; }
+  void follow_reference();
+
+  AttitudeFilter attitude_;
+  PositionFilter position_;
+  GroundCalibration calibration_;
+  AttitudeController attitude_control_;
+  PositionController position_control_;
+  Reference reference_;
+
+  FlightState state_ = FlightState::disarmed;
+  Reason reason_ = Reason::none;
+  std::uint32_t reason_count_ = 0;
+  bool emergency_ = false;
+
+  ImuSample sample_;
+  Vector3 a_sum_ = Vector3::Zero(), w_sum_ = Vector3::Zero();
+  int sum_count_ = 0;
+  Vector3 a_B_mps2_ = Vector3::Zero(), accel_bias_B_mps2_ = Vector3::Zero();
+  bool started_ = false, calibrated_ = false, imu_frozen_ = false;
+  std::uint32_t imu_missing_ms_ = kNever;
+
+  CaptureFix fix_;
+  std::uint32_t fix_age_ms_ = kNever, still_fixes_ = 0;
+  Vector3 target_W_m_ = Vector3::Zero();
+  float target_yaw_rad_ = 0.0f;
+  std::uint32_t target_age_ms_ = kNever;
+  std::array<EscStatus, 4> esc_status_{};
+  std::array<std::uint32_t, 4> esc_silent_ms_{kNever, kNever, kNever, kNever};
+
+  Vector3 ground_W_m_ = Vector3::Zero();
+  float lift_ = 0.0f;  // share of the weight that the rotors are asked to carry
+  float contact_s_ = 0.0f, state_s_ = 0.0f, tipped_s_ = 0.0f;
+  bool airborne_ = false;
+  ThrustAndAttitude wanted_;
+  std::array<std::uint16_t, 4> setpoints_{};
+};
+
+}  // namespace fw

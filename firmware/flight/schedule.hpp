@@ -1,0 +1,34 @@
+// Which task runs in which tick of 1 ms. The table repeats every 100 ms.
+//
+//   Set-points go out in the ticks 0, 20, 40 .. right after the attitude task that computed them.
+//   Status reads come every 50 ms per ESC, at 2, 4, 6, 8 ms from the set-points' ticks or halfway
+//   between them, so that no write ever waits for a read (a write of all four takes 0.5 ms).
+#pragma once
+#include <cstdint>
+
+namespace fw::schedule {
+
+inline constexpr std::uint32_t kAttitudePeriod = 5, kPositionPeriod = 25, kSetpointPeriod = 20,
+                               kStatusPeriod = 50, kTelemetryPeriod = 5;
+inline constexpr std::uint32_t kPositionTick = 3, kTelemetryTick = 2;
+
+constexpr bool attitude(std::uint32_t tick) {
+  return tick % kAttitudePeriod == 0;
+}
+constexpr bool position(std::uint32_t tick) {
+  return tick % kPositionPeriod == kPositionTick;
+}
+constexpr bool setpoints(std::uint32_t tick) {
+  return tick % kSetpointPeriod == 0;
+}
+constexpr bool telemetry(std::uint32_t tick) {
+  return tick % kTelemetryPeriod == kTelemetryTick;
+}
+
+// The motor (0..3) whose status is read in this tick, or -1.
+constexpr int status_read(std::uint32_t tick) {
+  const std::uint32_t phase = tick % kStatusPeriod;
+  return phase >= 2 && phase <= 8 && phase % 2 == 0 ? static_cast<int>(phase / 2 - 1) : -1;
+}
+
+}  // namespace fw::schedule

@@ -1,0 +1,88 @@
+// MAVLink v2 frames: bytes in, checked frames out, and the way back.
+//
+//   Source  mavlink.io/en/guide/serialization.html; CRC-16/MCRF4XX with the message's CRC_EXTRA
+//   Accept  the messages we know; others pass unchecked and unseen. Signed frames are read, their
+//           signature is not checked; frames with other incompatibility flags are dropped
+#pragma once
+#include <array>
+#include <cstdint>
+#include <cstring>
+#include <span>
+
+namespace fw::mavlink {
+
+inline constexpr std::size_t kMaxPayload = 255, kOverhead = 12;
+inline constexpr std::size_t kMaxSent = 64 + kOverhead;
+
+enum MessageId : std::uint32_t {
+  kHeartbeat = 0,
+  kSysStatus = 1,
+  kAttitudeQuaternion = 31,
+  kLocalPositionNed = 32,
+  kCommandLong = 76,
+  kCommandAck = 77,
+  kSetPositionTargetLocalNed = 84,
+  kViconPositionEstimate = 104,
+  kHighresImu = 105,
+  kStatustext = 253,
+};
+
+// CRC_EXTRA, or -1 for a message we do not know.
+int crc_extra(std::uint32_t id);
+
+std::uint16_t crc_add(std::uint16_t crc, std::uint8_t byte);
+
+struct Frame {
+  std::uint32_t id = 0;
+  std::uint8_t system = 0, component = 0, sequence = 0, length = 0;
+  std::array<std::uint8_t, kMaxPayload> payload{};
+
+  // A field; what truncation cut off reads as zero.
+  template <typename T>
+  T get(std::size_t offset) const {
+    T value{};
+    std::memcpy(&value, payload.data() + offset, sizeof value);
+    return value;
+  }
+};
+
+class Parser {
+ public:
+  // True: frame() is complete and its CRC is right.
+  bool push(std::uint8_t byte);
+  const Frame& frame() const { return frame_; }
+  std::uint32_t bad_frames() const { return bad_frames_; }
+
+ private:
+  void begin_payload();
+  bool end_frame();
+
+  static constexpr std::size_t kHeader = 10, kSignature = 13;
+  Frame frame_;
+  std::array<std::uint8_t, kHeader> header_{};
+  std::size_t have_ = 0, total_ = 0;
+  std::uint16_t crc_ = 0, crc_received_ = 0;
+  std::uint32_t bad_frames_ = 0;
+};
+
+// A message under construction: fields in any order, then the frame. No payload above 64 bytes.
+class Message {
+ public:
+  Message(MessageId id, std::uint8_t length) : id_(id), length_(length) {}
+
+  template <typename T>
+  Message& put(std::size_t offset, T value) {
+    std::memcpy(bytes_.data() + 10 + offset, &value, sizeof value);
+    return *this;
+  }
+  // Valid as long as the message.
+  std::span<const std::uint8_t> frame(std::uint8_t system, std::uint8_t component,
+                                      std::uint8_t sequence);
+
+ private:
+  MessageId id_;
+  std::uint8_t length_;
+  std::array<std::uint8_t, kMaxSent> bytes_{};
+};
+
+}  // namespace fw::mavlink

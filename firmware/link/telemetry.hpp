@@ -1,0 +1,62 @@
+// What the vehicle says and hears over MAVLink: a slot every 5 ms, at most one message in each, so
+// that the 57600 baud of a half-duplex radio are filled evenly.
+//
+//   Down    HEARTBEAT 1 Hz, SYS_STATUS 1 Hz, ATTITUDE_QUATERNION 20 Hz, LOCAL_POSITION_NED 10 Hz,
+//           HIGHRES_IMU 10 Hz; COMMAND_ACK and STATUSTEXT in free slots
+//   Up      VICON_POSITION_ESTIMATE, SET_POSITION_TARGET_LOCAL_NED, COMMAND_LONG (400 arm, disarm;
+//           22 take off to param 7; 21 land)
+//   State   HEARTBEAT.custom_mode is the FlightState; system_status 2 not ready, 3 ready, 4 active,
+//           5 failsafe, 6 motors stopped in an emergency
+#pragma once
+#include <concepts>
+#include <cstdint>
+#include <span>
+
+#include "firmware/flight/flight.hpp"
+#include "firmware/link/mavlink.hpp"
+#include "firmware/status.hpp"
+
+namespace fw {
+
+struct Health {  // what only the image knows
+  std::uint16_t load_permille = 0;
+  const char* boot_text = "";  // reset cause, sent once
+};
+
+class Telemetry {
+ public:
+  explicit Telemetry(Flight& flight) : flight_(flight) {}
+
+  void receive(std::span<const std::uint8_t> bytes);
+  // The message of this slot, or nothing. Valid until the next call.
+  std::span<const std::uint8_t> next(std::uint32_t time_ms, const Faults& faults,
+                                     const Health& health);
+  std::uint32_t bad_frames() const { return parser_.bad_frames(); }
+
+ private:
+  void on_vicon(const mavlink::Frame& frame);
+  void on_target(const mavlink::Frame& frame);
+  void on_command(const mavlink::Frame& frame);
+
+  mavlink::Message heartbeat() const;
+  mavlink::Message sys_status(const Faults& faults, const Health& health) const;
+  mavlink::Message attitude(std::uint32_t time_ms) const;
+  mavlink::Message position(std::uint32_t time_ms) const;
+  mavlink::Message highres_imu(std::uint32_t time_ms) const;
+  mavlink::Message ack();
+  static mavlink::Message status_text(const char* text, bool bad);
+  std::span<const std::uint8_t> send(const mavlink::Message& message);
+
+  Flight& flight_;
+  mavlink::Parser parser_;
+  mavlink::Message last_{mavlink::kHeartbeat, 9};
+  std::uint32_t slot_ = 0;
+  std::uint8_t sequence_ = 0;
+  bool ack_due_ = false;
+  std::uint16_t ack_command_ = 0;
+  Reason ack_reason_ = Reason::none;
+  std::uint32_t reasons_told_ = 0;
+  bool refusal_due_ = false, booted_told_ = false;
+};
+
+}  // namespace fw
