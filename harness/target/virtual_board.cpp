@@ -1,0 +1,297 @@
+#include "harness/target/virtual_board.hpp"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <cstdio>
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "io_bridges/link/channel.hpp"
+#include "io_bridges/qemu/board/parts.hpp"
+
+namespace whirl {
+namespace {
+
+constexpr int kSlice_ms = 100;       // how soon the death of QEMU is noticed
+constexpr int kLast_words = 12;      // lines of output that an error repeats
+constexpr int kFarewell_ms = 10000;  // for the statistics at the end
+
+int text_in_memory(const char* name, const std::string& text) {
+  const int fd = memfd_create(name, MFD_CLOEXEC);
+  if (fd < 0) return fd;
+  if (write(fd, text.data(), text.size()) != static_cast<ssize_t>(text.size())) {
+    close(fd);
+    return -1;
+  }
+  return fd;
+}
+
+std::string last_lines(const std::string& text, int lines) {
+  std::size_t from = text.size();
+  while (from > 0 && lines > 0) {
+    from = text.rfind('\n', from - 1);
+    if (from == std::string::npos) return text;
+    if (from + 1 < text.size()) --lines;
+  }
+  return text.substr(from == 0 ? 0 : from + 1);
+}
+
+std::string how_it_ended(int status) {
+  if (WIFSIGNALED(status)) {
+    return std::string("QEMU was ended by signal ") + strsignal(WTERMSIG(status));
+  }
+  return "QEMU ended with exit code " + std::to_string(WEXITSTATUS(status));
+}
+
+// The few facts of the board's description that the command line of QEMU needs.
+struct Launch {
+  std::string machine;
+  int icount_shift = 3;
+  int gdb_port = 0;
+};
+
+Result<Launch> read_launch(const std::string& board_json) {
+  const auto json = nlohmann::json::parse(board_json, nullptr, false);
+  if (!json.is_object()) return Error{ErrorKind::internal, "board", "description is not JSON", ""};
+  const std::string mcu = json.value("mcu", "");
+  const board::Part* part = board::find_part(mcu);
+  if (part == nullptr) {
+    return Error{ErrorKind::bad_input, "board", "unknown mcu '" + mcu + "'", "use stm32f405rg"};
+  }
+  const int ns = json.value("ns_per_instruction", 8);
+  Launch launch{std::string(part->qemu_machine), 0, json.value("gdb_port", 0)};
+  while (launch.icount_shift < 10 && (1 << launch.icount_shift) != ns) ++launch.icount_shift;
+  if (launch.icount_shift == 10) {
+    return Error{ErrorKind::bad_input, "board",
+                 "ns_per_instruction " + std::to_string(ns) + " is not a power of two below 1024",
+                 "use 8"};
+  }
+  return launch;
+}
+
+}  // namespace
+
+struct VirtualBoard::Process {
+  explicit Process(io::Channel channel) : link(std::move(channel)) {}
+  ~Process() {
+    end();
+    if (log_fd >= 0) close(log_fd);
+  }
+  Process(const Process&) = delete;
+  Process& operator=(const Process&) = delete;
+
+  bool gone() {  // reaps
+    if (pid == 0) return true;
+    if (waitpid(pid, &status, WNOHANG) != pid) return false;
+    pid = 0;
+    return true;
+  }
+  void end() {
+    if (pid == 0) return;
+    kill(pid, SIGKILL);
+    waitpid(pid, &status, 0);
+    pid = 0;
+  }
+
+  io::Channel link;
+  pid_t pid = 0;
+  int status = 0;
+  int log_fd = -1;
+  bool watch_silence = true;
+  std::int64_t until_ns = 0;
+};
+
+VirtualBoard::VirtualBoard(VirtualBoardOptions options) : options_(std::move(options)) {
+  if (options_.plugin.empty()) options_.plugin = default_plugin();
+}
+
+VirtualBoard::~VirtualBoard() = default;
+
+int VirtualBoard::pid() const {
+  return process_ ? process_->pid : 0;
+}
+
+std::string VirtualBoard::output() const {
+  if (!process_ || process_->log_fd < 0) return "";
+  struct stat status {};
+  if (fstat(process_->log_fd, &status) != 0) return "";
+  constexpr off_t kTail = 8192;
+  std::string text(static_cast<std::size_t>(std::min(status.st_size, kTail)), '\0');
+  const ssize_t got = pread(process_->log_fd, text.data(), text.size(),
+                            status.st_size - static_cast<off_t>(text.size()));
+  text.resize(got < 0 ? 0 : static_cast<std::size_t>(got));
+  return text;
+}
+
+namespace {
+
+std::vector<std::string> command_line(const VirtualBoardOptions& options, const Launch& launch,
+                                      int link_fd, int config_fd) {
+  std::vector<std::string> line = {
+      options.qemu,
+      "-M",
+      launch.machine,
+      "-nodefaults",
+      "-display",
+      "none",
+      "-serial",
+      "none",
+      "-monitor",
+      "none",
+      "-icount",
+      "shift=" + std::to_string(launch.icount_shift) + ",sleep=off,align=off",
+      "-plugin",
+      options.plugin + ",link=" + std::to_string(link_fd) + ",config=" + std::to_string(config_fd) +
+          (options.any_qemu_version ? ",any_qemu=on" : "")};
+  if (launch.gdb_port != 0) {
+    line.insert(line.end(), {"-gdb", "tcp:127.0.0.1:" + std::to_string(launch.gdb_port), "-S"});
+  }
+  line.insert(line.end(), options.qemu_options.begin(), options.qemu_options.end());
+  return line;
+}
+
+// Lets only the two given descriptors through to QEMU.
+pid_t launch_process(const std::vector<std::string>& line, int log_fd, int link_fd, int config_fd) {
+  std::vector<char*> argv;
+  for (const std::string& word : line) argv.push_back(const_cast<char*>(word.c_str()));
+  argv.push_back(nullptr);
+  const pid_t parent = getpid();
+  const pid_t pid = fork();
+  if (pid != 0) return pid;
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (getppid() != parent) _exit(127);  // it died before we asked
+  const int null = open("/dev/null", O_RDONLY);
+  fcntl(link_fd, F_SETFD, 0);
+  fcntl(config_fd, F_SETFD, 0);
+  dup2(null, 0);
+  dup2(log_fd, 1);
+  dup2(log_fd, 2);
+  execvp(argv[0], argv.data());
+  dprintf(2, "%s: %s\n", argv[0], strerror(errno));
+  _exit(127);
+}
+
+}  // namespace
+
+Result<Done> VirtualBoard::start() {
+  auto launch = read_launch(options_.board_json);
+  if (!launch) return launch.error();
+  if (access(options_.plugin.c_str(), R_OK) != 0) {
+    return Error{ErrorKind::internal, options_.plugin, "the board's plug-in is not there",
+                 "build the target whirl_board"};
+  }
+  auto link = io::Channel::create(io::Side::harness);
+  if (!link) return link.error();
+  process_ = std::make_unique<Process>(std::move(link.value()));
+  const int config_fd = text_in_memory("whirl-board", options_.board_json);
+  process_->log_fd = memfd_create("whirl-qemu-output", MFD_CLOEXEC);
+  if (config_fd < 0 || process_->log_fd < 0) {
+    return Error{ErrorKind::host, "virtual board", "no shared memory", ""};
+  }
+  fcntl(process_->log_fd, F_SETFL, O_APPEND);
+  process_->watch_silence = launch.value().gdb_port == 0;
+  process_->pid =
+      launch_process(command_line(options_, launch.value(), process_->link.fd(), config_fd),
+                     process_->log_fd, process_->link.fd(), config_fd);
+  close(config_fd);
+  if (process_->pid < 0) {
+    process_->pid = 0;
+    return Error{ErrorKind::host, options_.qemu, "cannot start a process", ""};
+  }
+  io::Batch nothing;  // the board reports at t = 0 that it stands
+  auto arrived = arrive(nothing);
+  if (!arrived) return arrived.error();
+  return Done{};
+}
+
+void VirtualBoard::run(std::int64_t until_ns, const io::Batch& sensed) {
+  WHIRL_CHECK(process_ != nullptr);
+  process_->until_ns = until_ns;
+  posted_ = process_->link.post(until_ns, sensed.bytes());
+}
+
+Result<TargetState> VirtualBoard::arrive(io::Batch& happened) {
+  happened.clear();
+  if (!posted_) return posted_.error();
+  const auto from = std::chrono::steady_clock::now();
+  while (!process_->link.wait(kSlice_ms)) {
+    // Dead, and nothing came in the moment before: the order of the two questions matters.
+    if (process_->gone() && !process_->link.wait(0)) {
+      return Error{ErrorKind::internal, "virtual board",
+                   how_it_ended(process_->status) + "; its last words:\n" +
+                       last_lines(output(), kLast_words),
+                   ""};
+    }
+    const auto silent = std::chrono::steady_clock::now() - from;
+    if (process_->watch_silence && silent > std::chrono::seconds(options_.silence_s)) {
+      process_->end();
+      return Error{ErrorKind::internal, "virtual board",
+                   "no answer for " + std::to_string(options_.silence_s) +
+                       " s of host time at virtual " + std::to_string(process_->until_ns) +
+                       " ns; its last words:\n" + last_lines(output(), kLast_words),
+                   ""};
+    }
+  }
+  const io::Delivery delivery = process_->link.received();
+  const io::BoardState state = process_->link.state();
+  if (state == io::BoardState::failed) return process_->link.failure();
+  happened.assign(delivery.bytes);
+  if (state == io::BoardState::cpu_locked) return TargetState::cpu_locked;
+  return state == io::BoardState::ended ? TargetState::ended : TargetState::running;
+}
+
+void VirtualBoard::stop(io::Batch& happened) {
+  happened.clear();
+  if (!process_ || process_->pid == 0) return;
+  const io::BoardState state = process_->link.state();
+  if (state == io::BoardState::running) {
+    io::Batch last;
+    last.add(io::Kind::end_of_run, 0, process_->until_ns, nullptr, 0);
+    posted_ = process_->link.post(process_->until_ns, last.bytes());
+    if (process_->link.wait(kFarewell_ms)) happened.assign(process_->link.received().bytes);
+  }
+  process_->end();
+}
+
+std::vector<std::pair<std::string, std::string>> VirtualBoard::versions() const {
+  std::vector<std::pair<std::string, std::string>> list;
+  if (!process_) return list;
+  const std::string text = process_->link.hello();
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t tab = text.find('\t', at), end = text.find('\n', at);
+    if (tab == std::string::npos || end == std::string::npos || tab > end) break;
+    list.emplace_back(text.substr(at, tab - at), text.substr(tab + 1, end - tab - 1));
+    at = end + 1;
+  }
+  return list;
+}
+
+Result<std::string> probe_qemu(const std::string& qemu) {
+  FILE* pipe = popen(("'" + qemu + "' --version 2>&1").c_str(), "r");
+  if (pipe == nullptr) return Error{ErrorKind::host, qemu, "cannot be asked for its version", ""};
+  char line[256] = "";
+  if (fgets(line, sizeof line, pipe) == nullptr) line[0] = '\0';
+  const int status = pclose(pipe);
+  std::string text(line);
+  while (!text.empty() && text.back() == '\n') text.pop_back();
+  if (status != 0) {
+    return Error{ErrorKind::host, qemu, "not found or not running: " + text,
+                 "apt-get install qemu-system-arm"};
+  }
+  return text;
+}
+
+std::string default_plugin() {
+  return WHIRL_BOARD_PLUGIN;
+}
+
+}  // namespace whirl

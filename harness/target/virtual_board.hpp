@@ -1,0 +1,52 @@
+// The virtual board as a target: one QEMU process with our board in it.
+//
+//   Life      start() launches QEMU and waits until the image has been loaded; stop(), or the end of
+//             this process, ends it: no QEMU outlives its harness
+//   Silence   no answer for silence_s of host time, or the process gone: an Error with the last lines
+//             that QEMU wrote. Off when a gdb port is set: the world stands still while gdb holds it.
+//   Threads   start() and all that follows belong to one thread (PDEATHSIG hangs on it)
+#pragma once
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "harness/target/target.hpp"
+
+namespace whirl {
+
+struct VirtualBoardOptions {
+  std::string board_json;  // the board's description; see io_bridges/qemu/board/config.hpp
+  std::string qemu = "qemu-system-arm";
+  std::string plugin;  // whirl_board.so; empty: where the build put it
+  int silence_s = 30;
+  bool any_qemu_version = false;          // do not insist on the tested list
+  std::vector<std::string> qemu_options;  // for developers: "-d", "in_asm", ...
+};
+
+class VirtualBoard final : public Target {
+ public:
+  explicit VirtualBoard(VirtualBoardOptions options);
+  ~VirtualBoard() override;
+
+  Result<Done> start() override;
+  void run(std::int64_t until_ns, const io::Batch& sensed) override;
+  Result<TargetState> arrive(io::Batch& happened) override;
+  void stop(io::Batch& happened) override;
+  std::vector<std::pair<std::string, std::string>> versions() const override;
+
+  int pid() const;             // 0: not running
+  std::string output() const;  // what QEMU wrote so far, the last few KiB
+
+ private:
+  struct Process;
+  std::unique_ptr<Process> process_;
+  VirtualBoardOptions options_;
+  Result<Done> posted_ = Done{};
+};
+
+// For `whirl doctor`: QEMU's first line of --version, or what is wrong.
+Result<std::string> probe_qemu(const std::string& qemu = "qemu-system-arm");
+std::string default_plugin();
+
+}  // namespace whirl

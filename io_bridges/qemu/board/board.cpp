@@ -1,0 +1,214 @@
+#include "io_bridges/qemu/board/board.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <tuple>
+
+#include "io_bridges/qemu/board/chip_factory.hpp"
+
+namespace whirl::board {
+namespace {
+
+constexpr std::uint32_t kPeripherals = 0x40000000, kPeripherals_size = 0x20000000;
+constexpr std::uint32_t kPage = 0x1000;
+
+std::string hex(std::uint32_t value) {
+  char text[16];
+  std::snprintf(text, sizeof text, "0x%08x", value);
+  return text;
+}
+
+}  // namespace
+
+Result<Setup> read_setup(std::string_view board_json) {
+  auto config = parse_board(board_json);
+  if (!config) return config.error();
+  const Part* part = find_part(config.value().mcu);
+  if (part == nullptr) {
+    return Error{ErrorKind::bad_input, config.value().board,
+                 "unknown mcu '" + config.value().mcu + "'", "use stm32f405rg"};
+  }
+  auto image = load_image(config.value().image, *part);
+  if (!image) return image.error();
+  return Setup{std::move(config.value()), part, std::move(image.value())};
+}
+
+Board::Board(Setup setup, io::Channel channel, Emulator& emulator)
+    : setup_(std::move(setup)),
+      channel_(std::move(channel)),
+      emulator_(emulator),
+      chip_(make_chip(*setup_.part,
+                      {events_, *this, *this, *this, [this](const io::Finding& f) { find(f); },
+                       setup_.config.hse_Hz, setup_.config.lse_Hz})),
+      systick_(events_, chip_->clocks(), [this] { emulator_.pend_systick(); }),
+      cycle_counter_(events_, chip_->clocks()),
+      unanswered_(
+          kPeripherals, [this] { return emulator_.accessing_pc(); },
+          [this] { return events_.now(); },
+          [this](std::uint32_t address, const Unanswered::Touch& touch) {
+            find({touch.t_ns, "board",
+                  "no model answers at " + hex(address) + (touch.read ? ", read" : ", written") +
+                      " by " + setup_.image.describe(touch.pc) + " (" + hex(touch.pc) + ")"});
+          }),
+      itm_("ITM", 0),
+      flash_patch_("FPB", 0),
+      tpiu_("TPIU", 0),
+      etm_("ETM", 0),
+      debug_mcu_("DBGMCU", setup_.part->idcode),
+      boundary_(events_, [this] { synchronise(); }) {
+  events_.set_clock([this] { return emulator_.now(); });
+  events_.set_rearm([this](Nanoseconds deadline) { emulator_.arm(deadline); });
+  chip_->on_reset_request([this](stm32::ResetCause cause) { emulator_.reset_core(cause); });
+}
+
+Board::~Board() = default;
+
+stm32::Region Board::unanswered_region() {
+  return {kPeripherals, kPeripherals_size, &unanswered_};
+}
+
+std::vector<stm32::Region> Board::core_regions() {
+  return {{0xE0000000, kPage, &itm_},         {0xE0001000, kPage, &cycle_counter_},
+          {0xE0002000, kPage, &flash_patch_}, {0xE0040000, kPage, &tpiu_},
+          {0xE0041000, kPage, &etm_},         {0xE0042000, kPage, &debug_mcu_}};
+}
+
+std::vector<std::uint8_t> Board::system_rom() const {
+  const Part& part = *setup_.part;
+  std::vector<std::uint8_t> rom(part.system_rom.size, 0xFF);  // erased: no boot loader in it
+  const auto put = [&](std::uint32_t address, std::uint64_t value, unsigned size) {
+    std::memcpy(&rom[address - part.system_rom.base], &value, size);
+  };
+  put(part.uid_base, 0x0032003151470D31u ^ setup_.config.seed, 8);  // one chip per seed
+  put(part.uid_base + 8, 0x30363938, 4);
+  put(part.flash_size_base, part.flash.size / 1024, 2);
+  return rom;
+}
+
+void Board::power_on(const std::string& versions) {
+  chip_->reset(stm32::ResetCause::power_on);
+  systick_.reset();
+  cycle_counter_.reset();
+  channel_.set_hello(versions);
+  boundary_.at(0);
+  channel_.set_state(io::BoardState::running);
+  std::ignore = channel_.post(0, happened_.bytes());
+  happened_.clear();
+  reported_ = true;
+}
+
+void Board::on_timer() {
+  events_.run_until(emulator_.now());
+  emulator_.arm(events_.next_deadline());
+}
+
+void Board::synchronise() {
+  const Nanoseconds now = events_.now();
+  // What else happens at this very instant belongs to the step that ends here.
+  if (events_.next_deadline() <= now) return boundary_.at(now);
+  if (!reported_) {
+    const auto posted = channel_.post(now, happened_.bytes());
+    if (!posted) {
+      channel_.fail(posted.error());
+      emulator_.end();
+    }
+    happened_.clear();
+  }
+  reported_ = false;
+  await_orders();
+}
+
+void Board::await_orders() {
+  channel_.wait(-1);  // for ever: the harness takes this process with it when it dies
+  const io::Delivery orders = channel_.received();
+  io::Reader reader(orders.bytes);
+  while (reader.next()) obey(reader);
+  WHIRL_CHECK(reader.complete());
+  WHIRL_CHECK(orders.t_ns > events_.now(), orders.t_ns, events_.now());
+  boundary_.at(orders.t_ns);
+}
+
+void Board::obey(const io::Reader& message) {
+  if (message.header().kind == io::Kind::end_of_run) {
+    add_statistics();
+    finish(io::BoardState::ended);
+  }
+}
+
+void Board::add_statistics() {
+  nlohmann::json list = nlohmann::json::array();
+  for (const auto& [address, touch] : unanswered_.touched()) {
+    list.push_back({{"address", hex(address)},
+                    {"by", setup_.image.describe(touch.pc)},
+                    {"t_ns", touch.t_ns},
+                    {"read", touch.read},
+                    {"written", touch.written},
+                    {"times", touch.times}});
+  }
+  const std::string text = nlohmann::json{{"unanswered", list}}.dump();
+  happened_.add(io::Kind::statistics, 0, events_.now(), text.data(),
+                static_cast<std::uint32_t>(text.size()));
+}
+
+void Board::finish(io::BoardState state) {
+  channel_.set_state(state);
+  std::ignore = channel_.post(events_.now(), happened_.bytes());
+  emulator_.end();
+  std::abort();  // never reached; GCC forgets [[noreturn]] on virtual calls
+}
+
+void Board::core_was_reset(stm32::ResetCause cause) {
+  happened_.add(io::Kind::board_reset, static_cast<std::uint16_t>(cause), events_.now(), nullptr,
+                0);
+  chip_->reset(cause);
+  systick_.reset();
+  cycle_counter_.reset();
+}
+
+void Board::core_locked_up(const std::string& why) {
+  io::CpuFault fault;
+  fault.exception = 255;
+  happened_.add(io::Kind::cpu_fault, 0, events_.now(), fault, why.data(),
+                static_cast<std::uint32_t>(why.size()));
+  finish(io::BoardState::cpu_locked);
+}
+
+void Board::find(const io::Finding& finding) {
+  const std::string text = finding.where + '\0' + finding.what;
+  happened_.add(io::Kind::finding, 0, finding.t_ns, text.data(),
+                static_cast<std::uint32_t>(text.size()));
+}
+
+void Board::set(int irq, bool level) {
+  emulator_.set_interrupt(irq, level);
+}
+
+bool Board::read(std::uint32_t address, unsigned size, std::uint32_t& value) {
+  value = 0;
+  return emulator_.read_bus(address, &value, size);
+}
+
+bool Board::write(std::uint32_t address, unsigned size, std::uint32_t value) {
+  return emulator_.write_bus(address, &value, size);
+}
+
+std::uint64_t Board::read(std::uint32_t address, unsigned size) {
+  std::uint64_t value = 0;
+  emulator_.peek(address, &value, size);
+  return value;
+}
+
+void Board::program(std::uint32_t address, std::uint64_t value, unsigned size) {
+  const std::uint64_t cells = read(address, size) & value;  // programming clears bits only
+  emulator_.write_cells(address, &cells, size);
+}
+
+void Board::erase(std::uint32_t address, std::uint32_t bytes) {
+  const std::vector<std::uint8_t> blank(bytes, 0xFF);
+  emulator_.write_cells(address, blank.data(), blank.size());
+}
+
+}  // namespace whirl::board

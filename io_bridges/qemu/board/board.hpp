@@ -1,0 +1,94 @@
+// The board: a part with its memories and peripherals, the devices on it, and the link to the
+// harness. Everything of the virtual board that knows no QEMU.
+//
+//   Time     one EventQueue, driven by the emulator's virtual clock
+//   Sync     at each boundary the board posts what happened since the last one, waits for what is
+//            sensed at this instant and for the next boundary, and goes on
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "io_bridges/devices/event_queue.hpp"
+#include "io_bridges/link/channel.hpp"
+#include "io_bridges/link/messages.hpp"
+#include "io_bridges/qemu/board/config.hpp"
+#include "io_bridges/qemu/board/cortex_m.hpp"
+#include "io_bridges/qemu/board/emulator.hpp"
+#include "io_bridges/qemu/board/image.hpp"
+#include "io_bridges/qemu/board/parts.hpp"
+#include "io_bridges/qemu/board/unanswered.hpp"
+#include "io_bridges/qemu/stm32/chip_model.hpp"
+
+namespace whirl::board {
+
+// What one board process is made of, once its description and image have been found good.
+struct Setup {
+  BoardConfig config;
+  const Part* part = nullptr;
+  Image image;
+};
+
+Result<Setup> read_setup(std::string_view board_json);
+
+class Board final : stm32::InterruptLines, stm32::SystemBus, stm32::FlashArray {
+ public:
+  Board(Setup setup, io::Channel channel, Emulator& emulator);
+  ~Board() override;
+
+  const Part& part() const { return *setup_.part; }
+  const Image& image() const { return setup_.image; }
+  const BoardConfig& config() const { return setup_.config; }
+  io::EventQueue& events() { return events_; }
+
+  // For the plug-in to map: the part's blocks, the rest of the peripheral space, the core's own.
+  const std::vector<stm32::Region>& regions() const { return chip_->regions(); }
+  stm32::Region unanswered_region();
+  std::vector<stm32::Region> core_regions();  // in 0xE0000000.., outside the SCS
+  SysTick& systick() { return systick_; }
+  CycleCounter& cycle_counter() { return cycle_counter_; }
+  std::vector<std::uint8_t> system_rom() const;
+  bool flash_store(std::uint32_t address, unsigned size, std::uint32_t value) {
+    return chip_->flash_store(address, size, value);
+  }
+
+  // Life, called by the plug-in.
+  void power_on(const std::string& versions);  // memories are mapped and loaded
+  void on_timer();                             // the armed deadline is here
+  void core_was_reset(stm32::ResetCause cause);
+  [[noreturn]] void core_locked_up(const std::string& why);
+
+  // Messages to the harness, in order of time.
+  io::Batch& happened() { return happened_; }
+  void find(const io::Finding& finding);
+
+ private:
+  void set(int irq, bool level) override;                                          // InterruptLines
+  bool read(std::uint32_t address, unsigned size, std::uint32_t& value) override;  // SystemBus
+  bool write(std::uint32_t address, unsigned size, std::uint32_t value) override;
+  void program(std::uint32_t address, std::uint64_t value, unsigned size) override;  // FlashArray
+  std::uint64_t read(std::uint32_t address, unsigned size) override;
+  void erase(std::uint32_t address, std::uint32_t bytes) override;
+
+  void synchronise();
+  void await_orders();
+  void obey(const io::Reader& message);
+  void add_statistics();
+  [[noreturn]] void finish(io::BoardState state);
+
+  Setup setup_;
+  io::Channel channel_;
+  Emulator& emulator_;
+  io::EventQueue events_;
+  io::Batch happened_;
+  std::unique_ptr<stm32::ChipModel> chip_;
+  SysTick systick_;
+  CycleCounter cycle_counter_;
+  Unanswered unanswered_;
+  StoredWords itm_, flash_patch_, tpiu_, etm_, debug_mcu_;
+  io::Event boundary_;
+  bool reported_ = false;  // the batch of this boundary has been posted
+};
+
+}  // namespace whirl::board

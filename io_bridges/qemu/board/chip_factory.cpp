@@ -1,0 +1,13 @@
+#include "io_bridges/qemu/board/chip_factory.hpp"
+
+#include "harness/base/check.hpp"
+#include "io_bridges/qemu/board/bench_chip.hpp"
+
+namespace whirl::board {
+
+std::unique_ptr<stm32::ChipModel> make_chip(const Part& part, const stm32::ChipHost& host) {
+  if (part.mcu == "bench_m4") return make_bench_chip(host);
+  WHIRL_CHECK(false, part.mcu);
+}
+
+}  // namespace whirl::board

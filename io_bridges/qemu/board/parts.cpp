@@ -1,0 +1,53 @@
+#include "io_bridges/qemu/board/parts.hpp"
+
+namespace whirl::board {
+namespace {
+
+constexpr std::uint32_t kKiB = 1024;
+
+constexpr Part kParts[] = {
+    {
+        .mcu = "stm32f405rg",
+        .qemu_machine = "netduinoplus2",
+        .flash = {0x08000000, 1024 * kKiB},
+        .sram = {0x20000000, 128 * kKiB},
+        .machine_sram = {0x20000000, 192 * kKiB},
+        .ccm = {0x10000000, 64 * kKiB},
+        .system_rom = {0x1FFF0000, 64 * kKiB},
+        .otp_base = 0x1FFF7800,
+        .uid_base = 0x1FFF7A10,
+        .flash_size_base = 0x1FFF7A22,
+        .idcode = 0x10076413,  // DEV_ID 0x413, REV_ID 0x1007 (RM0090 38.6.1)
+        .priority_bits = 4,
+        .sysclk_maximum_Hz = 168e6,
+        .elf_machine = 40,
+    },
+    // For tests of the virtual board itself: see bench_chip.hpp.
+    {
+        .mcu = "bench_m4",
+        .qemu_machine = "netduinoplus2",
+        .flash = {0x08000000, 1024 * kKiB},
+        .sram = {0x20000000, 128 * kKiB},
+        .machine_sram = {0x20000000, 192 * kKiB},
+        .ccm = {0x10000000, 64 * kKiB},
+        .system_rom = {0x1FFF0000, 64 * kKiB},
+        .otp_base = 0x1FFF7800,
+        .uid_base = 0x1FFF7A10,
+        .flash_size_base = 0x1FFF7A22,
+        .idcode = 0x10076413,  // DEV_ID 0x413, REV_ID 0x1007 (RM0090 38.6.1)
+        .priority_bits = 4,
+        .sysclk_maximum_Hz = 168e6,
+        .elf_machine = 40,
+    },
+};
+
+}  // namespace
+
+const Part* find_part(std::string_view mcu) {
+  for (const Part& part : kParts) {
+    if (part.mcu == mcu) return &part;
+  }
+  return nullptr;
+}
+
+}  // namespace whirl::board

@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "io_bridges/qemu/plugin/machine.hpp"
+
+#include <unistd.h>
+
+#include <cstdlib>
+#include <cstring>
+
+namespace whirl::qemu {
+namespace {
+
+// Over the machine (0), under nothing: gaps first, then blocks.
+constexpr int kGaps = 5, kBlocks = 10, kMemories = 10;
+constexpr int kInterrupts = 82;  // of the F405; the machine wires 96
+constexpr int kSysTickException = 15;
+constexpr int kXpsr = 25;    // number in arm_cpu_gdb_read_register
+constexpr int kRounds = 64;  // of a sleep before other work of the CPU's thread gets a turn
+constexpr std::size_t kHostPage = 4096;
+constexpr std::uint8_t kUntouched = 0xA5;  // RAM is not 0 at power-up; the stack watch counts on it
+
+bool nobody_answers(void*, hwaddr, unsigned, bool, Attributes) {
+  return false;
+}
+std::uint64_t read_nothing(void*, hwaddr, unsigned) {
+  return 0;
+}
+void write_nothing(void*, hwaddr, std::uint64_t, unsigned) {}
+
+const RegionOps kBarred = {read_nothing, write_nothing, nullptr,
+                           nullptr,      kLittleEndian, {1, 4, true, nobody_answers},
+                           {1, 4, true}};
+
+std::uint64_t read_block(void* block, hwaddr offset, unsigned size) {
+  return static_cast<stm32::Peripheral*>(block)->read(static_cast<std::uint32_t>(offset), size);
+}
+
+void write_block(void* block, hwaddr offset, std::uint64_t value, unsigned size) {
+  static_cast<stm32::Peripheral*>(block)->write(static_cast<std::uint32_t>(offset),
+                                                static_cast<std::uint32_t>(value), size);
+}
+
+// Aligned accesses of 1, 2 and 4 bytes reach the block as they are.
+const RegionOps kBlockOps = {read_block,   write_block,   nullptr,
+                             nullptr,      kLittleEndian, {1, 4, false, nullptr},
+                             {1, 4, false}};
+
+std::uint64_t read_flash(void*, hwaddr, unsigned) {
+  return 0;
+}  // never called: reads go to memory
+
+std::uint32_t store_into_flash(void* self, hwaddr offset, std::uint64_t value, unsigned size,
+                               Attributes) {
+  auto& board = *static_cast<board::Board*>(self);
+  const auto address = board.part().flash.base + static_cast<std::uint32_t>(offset);
+  return board.flash_store(address, size, static_cast<std::uint32_t>(value)) ? kOk : kBusError;
+}
+
+const RegionOps kFlashOps = {read_flash,       nullptr,       nullptr,
+                             store_into_flash, kLittleEndian, {1, 4, false, nullptr},
+                             {1, 4, false}};
+
+}  // namespace
+
+Machine::Machine(const Api& api, board::Setup setup, io::Channel channel)
+    : api_(api), board_(std::move(setup), std::move(channel), *this) {}
+
+Machine::~Machine() = default;
+
+MemoryRegion& Machine::new_region() {
+  regions_.push_back(std::make_unique<MemoryRegion>());
+  return *regions_.back();
+}
+
+Result<Done> Machine::build(const std::string& versions) {
+  bool ambiguous = false;
+  Object* core = api_.object_resolve_path_type("", "armv7m", &ambiguous);
+  if (core == nullptr || ambiguous) {
+    return whirl::Error{ErrorKind::internal, "QEMU", "the machine has no ARMv7-M core", ""};
+  }
+  nvic_ = api_.object_resolve_path_component(core, "nvic");
+  core_memory_ = reinterpret_cast<MemoryRegion*>(
+      api_.object_resolve_path_component(core, "armv7m-container[0]"));
+  Object* registers =
+      nvic_ == nullptr ? nullptr : api_.object_resolve_path_component(nvic_, "nvic_sysregs[0]");
+  if (core_memory_ == nullptr || registers == nullptr) {
+    return whirl::Error{ErrorKind::internal, "QEMU", "the core has no NVIC where 7.2 has it", ""};
+  }
+  cpu_ = api_.qemu_get_cpu(0);
+  for (int irq = 0; irq < kInterrupts; ++irq) {
+    interrupts_.push_back(api_.qdev_get_gpio_in(core, irq));
+  }
+  register_text_ = api_.g_byte_array_new();
+  system_control_ =
+      std::make_unique<SystemControl>(api_, board_, reinterpret_cast<MemoryRegion*>(registers),
+                                      [this] { reset_core(stm32::ResetCause::software); });
+  api_.timer_init_full(
+      &timer_, nullptr, kVirtualClock, 1, 0,
+      [](void* self) { static_cast<Machine*>(self)->board_.on_timer(); }, this);
+  map_memories();
+  load_image();
+  board_.power_on(versions);
+  // QEMU resets the machine once more before it starts; the first thing that runs is this work.
+  api_.async_run_on_cpu(
+      cpu_,
+      [](Cpu*, WorkData self) {
+        static_cast<Machine*>(self.pointer)->system_control_->core_was_reset();
+      },
+      WorkData{.pointer = this});
+  return Done{};
+}
+
+void Machine::map_block(MemoryRegion* parent, const stm32::Region& block, int priority) {
+  MemoryRegion& region = new_region();
+  api_.memory_region_init_io(&region, nullptr, &kBlockOps, block.block, block.block->name(),
+                             block.size);
+  api_.memory_region_add_subregion_overlap(parent, block.base, &region, priority);
+}
+
+void Machine::map_ram(MemoryRegion* parent, const char* name, const board::MemoryBlock& block) {
+  if (block.size == 0) return;
+  void* memory = std::aligned_alloc(kHostPage, block.size);  // lives as long as the process
+  std::memset(memory, kUntouched, block.size);
+  MemoryRegion& region = new_region();
+  api_.memory_region_init_ram_ptr(&region, nullptr, name, block.size, memory);
+  api_.memory_region_add_subregion_overlap(parent, block.base, &region, kMemories);
+}
+
+void Machine::map_memories() {
+  const board::Part& part = board_.part();
+  MemoryRegion* system = api_.get_system_memory();
+
+  MemoryRegion& flash = new_region();
+  api_.memory_region_init_rom_device_nomigrate(&flash, nullptr, &kFlashOps, &board_, "whirl.flash",
+                                               part.flash.size, nullptr);
+  api_.memory_region_add_subregion_overlap(system, part.flash.base, &flash, kMemories);
+  MemoryRegion& alias = new_region();
+  api_.memory_region_init_alias(&alias, nullptr, "whirl.boot", &flash, 0, part.flash.size);
+  api_.memory_region_add_subregion_overlap(system, 0, &alias, kMemories);
+
+  MemoryRegion& rom = new_region();
+  api_.memory_region_init_rom_device_nomigrate(&rom, nullptr, &kBarred, nullptr, "whirl.system_rom",
+                                               part.system_rom.size, nullptr);
+  api_.memory_region_add_subregion_overlap(system, part.system_rom.base, &rom, kMemories);
+  map_ram(core_memory_, "whirl.ccm", part.ccm);
+
+  const std::uint32_t end = part.sram.base + part.sram.size;
+  const std::uint32_t machine_end = part.machine_sram.base + part.machine_sram.size;
+  if (machine_end > end) {
+    MemoryRegion& barred = new_region();
+    api_.memory_region_init_io(&barred, nullptr, &kBarred, nullptr, "whirl.no_memory",
+                               machine_end - end);
+    api_.memory_region_add_subregion_overlap(system, end, &barred, kMemories);
+  }
+
+  map_block(system, board_.unanswered_region(), kGaps);
+  for (const stm32::Region& block : board_.regions()) map_block(system, block, kBlocks);
+  for (const stm32::Region& block : board_.core_regions()) map_block(core_memory_, block, kBlocks);
+  system_control_->map(core_memory_, new_region());
+}
+
+void Machine::load_image() {
+  const board::Part& part = board_.part();
+  const std::vector<std::uint8_t> blank(part.flash.size, 0xFF);
+  write_cells(part.flash.base, blank.data(), blank.size());
+  for (const board::Segment& segment : board_.image().segments()) {
+    write_cells(segment.address, segment.bytes.data(), segment.bytes.size());
+  }
+  const std::vector<std::uint8_t> rom = board_.system_rom();
+  write_cells(part.system_rom.base, rom.data(), rom.size());
+  const std::vector<std::uint8_t> noise(part.sram.size, kUntouched);
+  write_bus(part.sram.base, noise.data(), noise.size());
+}
+
+void Machine::arm(io::Nanoseconds deadline) {
+  if (deadline == io::kNever) return api_.timer_del(&timer_);
+  api_.timer_mod(&timer_, deadline);
+}
+
+void Machine::set_interrupt(int irq, bool level) {
+  api_.qemu_set_irq(interrupts_[static_cast<std::size_t>(irq)], level ? 1 : 0);
+}
+
+void Machine::pend_systick() {
+  api_.armv7m_nvic_set_pending(nvic_, kSysTickException, false);
+}
+
+void Machine::reset_core(stm32::ResetCause cause) {
+  struct Order {
+    Machine* machine;
+    stm32::ResetCause cause;
+  };
+  api_.async_run_on_cpu(
+      cpu_,
+      [](Cpu*, WorkData data) {
+        const std::unique_ptr<Order> order(static_cast<Order*>(data.pointer));
+        Machine& self = *order->machine;
+        self.api_.qemu_devices_reset(kGuestReset);
+        self.system_control_->core_was_reset();
+        self.board_.core_was_reset(order->cause);
+      },
+      WorkData{.pointer = new Order{this, cause}});
+}
+
+bool Machine::read_bus(std::uint32_t address, void* to, std::size_t size) {
+  return api_.address_space_rw(api_.address_space_memory, address, kPrivileged, to, size, false) ==
+         kOk;
+}
+
+bool Machine::write_bus(std::uint32_t address, const void* from, std::size_t size) {
+  return api_.address_space_rw(api_.address_space_memory, address, kPrivileged,
+                               const_cast<void*>(from), size, true) == kOk;
+}
+
+bool Machine::peek(std::uint32_t address, void* to, std::size_t size) {
+  AddressSpace* space = api_.cpu_get_address_space(cpu_, 0);
+  return api_.address_space_rw(space, address, kPrivileged, to, size, false) == kOk;
+}
+
+void Machine::write_cells(std::uint32_t address, const void* from, std::size_t size) {
+  api_.address_space_write_rom(api_.address_space_memory, address, kPrivileged, from, size);
+}
+
+std::uint32_t Machine::core_register(int number) const {
+  api_.g_byte_array_set_size(register_text_, 0);
+  if (api_.arm_cpu_gdb_read_register(cpu_, register_text_, number) != 4) return 0;
+  std::uint32_t value = 0;
+  std::memcpy(&value, register_text_->data, sizeof value);
+  return value;
+}
+
+std::uint32_t Machine::accessing_pc() const {
+  return core_register(15);
+}
+
+void Machine::end() {
+  _exit(0);
+}
+
+// Exact sleep. With -icount QEMU's main loop may move the clock on as soon as the CPU has halted,
+// that is, before the last few instructions have been accounted: about one sleep in 50,000 is then
+// off by some instructions, depending on the host. Work queued before the halt keeps the CPU "not
+// idle" until all is accounted; the work itself then moves the clock to the next event and runs it
+// here, in the CPU's thread, again and again until something wakes the core. The main loop has no
+// part in it, and no thread is switched.
+void Machine::before_sleep() {
+  api_.async_run_on_cpu(
+      cpu_, [](Cpu*, WorkData self) { static_cast<Machine*>(self.pointer)->sleep(); },
+      WorkData{.pointer = this});
+}
+
+void Machine::sleep() {
+  for (int round = 0; round < kRounds; ++round) {
+    if (!api_.cpu_thread_is_idle(cpu_)) return;
+    api_.icount_start_warp_timer();
+    api_.qemu_clock_run_timers(kVirtualClock);
+  }
+  before_sleep();
+}
+
+}  // namespace whirl::qemu

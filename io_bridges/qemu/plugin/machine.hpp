@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+//
+// The board inside QEMU: its memories and registers over those of the machine, its events on QEMU's
+// virtual clock, its interrupts in the NVIC.
+//
+//   Memory    system memory carries what every bus master sees; the core's container above it what
+//             only the core sees (CCM, SCS, debug blocks)
+//   Time      one QEMU timer for the earliest event of the board's queue
+//   Sleep     WFI is exact and needs no thread switch: see sleep()
+//   Reset     is done by the CPU's own thread between two instructions, not by QEMU's main loop,
+//             whose moment would depend on the host
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "io_bridges/qemu/board/board.hpp"
+#include "io_bridges/qemu/plugin/qemu_api.hpp"
+#include "io_bridges/qemu/plugin/system_control.hpp"
+
+namespace whirl::qemu {
+
+class Machine final : public board::Emulator {
+ public:
+  Machine(const Api& api, board::Setup setup, io::Channel channel);
+  ~Machine() override;
+
+  // The machine exists, nothing has run: map, load, power on.
+  Result<Done> build(const std::string& versions);
+  // From the execution callback of a WFI: see the file's end.
+  void before_sleep();
+
+  board::Board& board() { return board_; }
+  const Api& api() const { return api_; }
+  Cpu* cpu() const { return cpu_; }
+  SystemControl& system_control() { return *system_control_; }
+  // R0..R15 (0..15) and XPSR (25) as of the start of the current basic block.
+  std::uint32_t core_register(int number) const;
+
+  io::Nanoseconds now() const override { return api_.qemu_clock_get_ns(kVirtualClock); }
+  void arm(io::Nanoseconds deadline) override;
+  void set_interrupt(int irq, bool level) override;
+  void pend_systick() override;
+  void reset_core(stm32::ResetCause cause) override;
+  bool read_bus(std::uint32_t address, void* to, std::size_t size) override;
+  bool write_bus(std::uint32_t address, const void* from, std::size_t size) override;
+  bool peek(std::uint32_t address, void* to, std::size_t size) override;
+  void write_cells(std::uint32_t address, const void* from, std::size_t size) override;
+  std::uint32_t accessing_pc() const override;
+  [[noreturn]] void end() override;
+
+ private:
+  MemoryRegion& new_region();
+  void map_block(MemoryRegion* parent, const stm32::Region& block, int priority);
+  void map_ram(MemoryRegion* parent, const char* name, const board::MemoryBlock& block);
+  void map_memories();
+  void load_image();
+  void sleep();
+
+  const Api& api_;
+  board::Board board_;
+  Cpu* cpu_ = nullptr;
+  Object* nvic_ = nullptr;
+  MemoryRegion* core_memory_ = nullptr;
+  std::vector<Irq*> interrupts_;
+  std::vector<std::unique_ptr<MemoryRegion>> regions_;
+  std::unique_ptr<SystemControl> system_control_;
+  GByteArray* register_text_ = nullptr;
+  Timer timer_;
+};
+
+}  // namespace whirl::qemu

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+//
+// Entry of the plug-in: qemu-system-arm ... -plugin whirl_board.so,link=FD,config=FD[,any_qemu=on]
+//
+//   link      descriptor of the shared memory to the harness (io_bridges/link/channel.hpp)
+//   config    descriptor of the board's description, JSON
+//   any_qemu  go on with a QEMU that is not on the tested list
+//   Errors    reach the harness through the link, in words; the process then ends
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <memory>
+#include <optional>
+
+#include "io_bridges/qemu/plugin/machine.hpp"
+#include "io_bridges/qemu/plugin/plugin_api.hpp"
+
+extern "C" {
+__attribute__((visibility("default"))) int qemu_plugin_version = 1;
+__attribute__((visibility("default"))) int qemu_plugin_install(qemu_plugin_id_t id,
+                                                               const void* info, int argc,
+                                                               char** argv);
+}
+
+namespace whirl::qemu {
+namespace {
+
+constexpr std::uint16_t kWfi = 0xBF30;
+
+struct Plugin {
+  Api api;
+  std::string versions;
+  std::unique_ptr<Machine> machine;
+  Notifier board_exists{};
+};
+Plugin* plugin = nullptr;  // QEMU's callbacks carry no pointer of ours
+
+struct Options {
+  int link = -1, config = -1;
+  bool any_qemu = false;
+};
+
+Options read_options(int argc, char** argv) {
+  Options options;
+  for (int i = 0; i < argc; ++i) {
+    const std::string text = argv[i];
+    if (text.rfind("link=", 0) == 0) options.link = std::atoi(text.c_str() + 5);
+    if (text.rfind("config=", 0) == 0) options.config = std::atoi(text.c_str() + 7);
+    if (text == "any_qemu=on") options.any_qemu = true;
+  }
+  return options;
+}
+
+std::string read_all(int fd) {
+  struct stat status {};
+  if (fstat(fd, &status) != 0) return "";
+  std::string text(static_cast<std::size_t>(status.st_size), '\0');
+  const ssize_t got = pread(fd, text.data(), text.size(), 0);
+  text.resize(got < 0 ? 0 : static_cast<std::size_t>(got));
+  return text;
+}
+
+Result<std::string> check_qemu(const Api& api, const std::vector<std::string>& missing,
+                               bool any_version) {
+  if (!missing.empty()) {
+    std::string names;
+    for (const std::string& name : missing) names += " " + name;
+    return whirl::Error{ErrorKind::host, "QEMU", "it does not export" + names,
+                        std::string("use QEMU ") + tested_versions()};
+  }
+  const Version version = version_of(api);
+  if (!version.tested && !any_version) {
+    return whirl::Error{ErrorKind::host, "QEMU",
+                        "version " + version.number + " (" + version.package + ") is not tested",
+                        std::string("use ") + tested_versions() + ", or --any-qemu to try it"};
+  }
+  return "qemu\t" + version.number + " (" + version.package + ")\n";
+}
+
+void translated(qemu_plugin_id_t, qemu_plugin_tb* block) {
+  for (std::size_t i = 0; i < qemu_plugin_tb_n_insns(block); ++i) {
+    qemu_plugin_insn* insn = qemu_plugin_tb_get_insn(block, i);
+    std::uint16_t code = 0;
+    std::memcpy(&code, qemu_plugin_insn_data(insn), sizeof code);
+    if (code == kWfi && qemu_plugin_insn_size(insn) == 2) {
+      qemu_plugin_register_vcpu_insn_exec_cb(
+          insn, [](unsigned, void*) { plugin->machine->before_sleep(); }, 0, nullptr);
+    }
+  }
+}
+
+[[noreturn]] void refuse(io::Channel& channel, const whirl::Error& error) {
+  std::fprintf(stderr, "whirl_board: %s\n", error.message().c_str());
+  channel.fail(error);
+  _exit(1);
+}
+
+// QEMU aborts when the core locks up (a fault within HardFault or NMI).
+void on_abort(int) {
+  std::signal(SIGABRT, SIG_DFL);
+  plugin->machine->board().core_locked_up("QEMU ended the core: see its last words");
+}
+
+int install(qemu_plugin_id_t id, const Options& options) {
+  auto link = io::Channel::attach(io::Side::board, options.link);
+  if (!link) {
+    std::fprintf(stderr, "whirl_board: %s\n", link.error().message().c_str());
+    return 1;
+  }
+  io::Channel channel = std::move(link.value());
+  plugin = new Plugin;
+  const auto versions = check_qemu(plugin->api, resolve(plugin->api), options.any_qemu);
+  if (!versions) refuse(channel, versions.error());
+  auto setup = board::read_setup(read_all(options.config));
+  if (!setup) refuse(channel, setup.error());
+  plugin->versions = versions.value();
+  plugin->machine =
+      std::make_unique<Machine>(plugin->api, std::move(setup.value()), std::move(channel));
+  plugin->board_exists.notify = [](Notifier*, void*) {
+    const auto built = plugin->machine->build(plugin->versions);
+    if (!built) {
+      std::fprintf(stderr, "whirl_board: %s\n", built.error().message().c_str());
+      _exit(1);
+    }
+    std::signal(SIGABRT, on_abort);
+  };
+  plugin->api.qemu_add_machine_init_done_notifier(&plugin->board_exists);
+  qemu_plugin_register_vcpu_tb_trans_cb(id, translated);
+  return 0;
+}
+
+}  // namespace
+}  // namespace whirl::qemu
+
+int qemu_plugin_install(qemu_plugin_id_t id, const void*, int argc, char** argv) {
+  return whirl::qemu::install(id, whirl::qemu::read_options(argc, argv));
+}

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+//
+// The System Control Space (0xE000E000, 4 KiB) as the part has it, in front of QEMU's NVIC.
+//
+//   Here       SysTick (the board's own), DEMCR, four priority bits, SYSRESETREQ
+//   Passed on  everything else, to QEMU's nvic_sysregs
+//   Priority   the part stores the upper four bits. Stored with the lower ones set, a mask in
+//              BASEPRI acts as on the part whether or not its own lower bits are set; reads mask
+//   Left out   MRS of BASEPRI returns the lower bits as written
+#pragma once
+#include <cstdint>
+#include <functional>
+
+#include "io_bridges/qemu/board/board.hpp"
+#include "io_bridges/qemu/plugin/qemu_api.hpp"
+
+namespace whirl::qemu {
+
+class SystemControl {
+ public:
+  SystemControl(const Api& api, board::Board& board, MemoryRegion* nvic,
+                std::function<void()> reset_request);
+
+  void map(MemoryRegion* parent, MemoryRegion& region);
+  void core_was_reset();  // priorities back to the stored form of 0
+
+  std::uint32_t vector_table() const { return vector_table_; }
+  void on_vector_table(std::function<void()> moved) { moved_ = std::move(moved); }
+  std::uint32_t word(std::uint32_t offset);  // of QEMU's NVIC, from 0xE000E000
+
+ private:
+  static std::uint32_t read_hook(void*, hwaddr, std::uint64_t*, unsigned, Attributes);
+  static std::uint32_t write_hook(void*, hwaddr, std::uint64_t, unsigned, Attributes);
+  std::uint32_t read(std::uint32_t offset, std::uint64_t& value, unsigned size, Attributes);
+  std::uint32_t write(std::uint32_t offset, std::uint64_t value, unsigned size, Attributes);
+
+  const Api& api_;
+  board::Board& board_;
+  MemoryRegion* nvic_;
+  std::function<void()> reset_request_, moved_;
+  std::uint32_t demcr_ = 0;
+  std::uint32_t vector_table_ = 0;
+};
+
+}  // namespace whirl::qemu
