@@ -17,7 +17,7 @@ io_bridges/qemu/stm32    harness/base/ io_bridges/protocols/ io_bridges/devices/
 io_bridges/qemu/plugin   harness/base/ io_bridges/
 io_bridges/qemu/board    harness/base/ io_bridges/ plant/
 results                  harness/base/ io_bridges/link/ io_bridges/protocols/ results/
-harness                  harness/ io_bridges/protocols/ io_bridges/link/ plant/ results/ firmware/esc/core/
+harness                  harness/ io_bridges/protocols/ io_bridges/link/ io_bridges/devices/faults.hpp plant/ results/ firmware/esc/core/
 harness/flight           harness/ io_bridges/ plant/ results/ firmware/esc/core/
 harness/stand            harness/ io_bridges/ plant/ results/ firmware/esc/core/
 firmware                 firmware/

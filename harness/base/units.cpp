@@ -82,6 +82,49 @@ constexpr std::array kUnits{
     Unit{"Gauss", Dimension::magnetic_field, 1e-4},
 };
 
+struct Word {
+  Dimension dimension;
+  const char* name;
+  const char* symbol;  // of the SI unit
+  const char* suffix;  // the same as the end of a name
+};
+
+constexpr std::array kWords{
+    Word{Dimension::none, "number", "", ""},
+    Word{Dimension::ratio, "ratio", "", ""},
+    Word{Dimension::time, "time", "s", "s"},
+    Word{Dimension::frequency, "frequency", "Hz", "Hz"},
+    Word{Dimension::length, "length", "m", "m"},
+    Word{Dimension::speed, "speed", "m/s", "mps"},
+    Word{Dimension::acceleration, "acceleration", "m/s2", "mps2"},
+    Word{Dimension::angle, "angle", "rad", "rad"},
+    Word{Dimension::angular_rate, "angular rate", "rad/s", "radps"},
+    Word{Dimension::mass, "mass", "kg", "kg"},
+    Word{Dimension::inertia, "moment of inertia", "kg m2", "kgm2"},
+    Word{Dimension::force, "force", "N", "N"},
+    Word{Dimension::torque, "torque", "N m", "Nm"},
+    Word{Dimension::pressure, "pressure", "Pa", "Pa"},
+    Word{Dimension::voltage, "voltage", "V", "V"},
+    Word{Dimension::current, "current", "A", "A"},
+    Word{Dimension::resistance, "resistance", "ohm", "ohm"},
+    Word{Dimension::inductance, "inductance", "H", "H"},
+    Word{Dimension::charge, "charge", "C", "C"},
+    Word{Dimension::power, "power", "W", "W"},
+    Word{Dimension::energy, "energy", "J", "J"},
+    Word{Dimension::temperature, "temperature", "K", "K"},
+    Word{Dimension::density, "density", "kg/m3", "kgpm3"},
+    Word{Dimension::data, "data size", "B", "B"},
+    Word{Dimension::baud, "baud rate", "baud", "baud"},
+    Word{Dimension::magnetic_field, "magnetic field", "T", "T"},
+};
+
+const Word& word(Dimension dimension) {
+  for (const Word& entry : kWords) {
+    if (entry.dimension == dimension) return entry;
+  }
+  return kWords[0];
+}
+
 std::string_view trimmed(std::string_view text) {
   const auto first = text.find_first_not_of(" \t");
   if (first == std::string_view::npos) return {};
@@ -99,61 +142,30 @@ std::string quoted(std::string_view text) {
 }  // namespace
 
 const char* name(Dimension dimension) {
-  switch (dimension) {
-    case Dimension::none:
-      return "number";
-    case Dimension::ratio:
-      return "ratio";
-    case Dimension::time:
-      return "time";
-    case Dimension::frequency:
-      return "frequency";
-    case Dimension::length:
-      return "length";
-    case Dimension::speed:
-      return "speed";
-    case Dimension::acceleration:
-      return "acceleration";
-    case Dimension::angle:
-      return "angle";
-    case Dimension::angular_rate:
-      return "angular rate";
-    case Dimension::mass:
-      return "mass";
-    case Dimension::inertia:
-      return "moment of inertia";
-    case Dimension::force:
-      return "force";
-    case Dimension::torque:
-      return "torque";
-    case Dimension::pressure:
-      return "pressure";
-    case Dimension::voltage:
-      return "voltage";
-    case Dimension::current:
-      return "current";
-    case Dimension::resistance:
-      return "resistance";
-    case Dimension::inductance:
-      return "inductance";
-    case Dimension::charge:
-      return "charge";
-    case Dimension::power:
-      return "power";
-    case Dimension::energy:
-      return "energy";
-    case Dimension::temperature:
-      return "temperature";
-    case Dimension::density:
-      return "density";
-    case Dimension::data:
-      return "data size";
-    case Dimension::baud:
-      return "baud rate";
-    case Dimension::magnetic_field:
-      return "magnetic field";
+  return word(dimension).name;
+}
+
+const char* si_symbol(Dimension dimension) {
+  return word(dimension).symbol;
+}
+
+const char* si_suffix(Dimension dimension) {
+  return word(dimension).suffix;
+}
+
+std::string unit_symbol(std::string_view text) {
+  const std::string_view body = trimmed(text);
+  double number = 0.0;
+  const char* end = std::from_chars(body.data(), body.data() + body.size(), number).ptr;
+  return std::string(trimmed({end, body.data() + body.size()}));
+}
+
+double in_unit(double value_SI, std::string_view symbol) {
+  if (symbol.empty()) return value_SI;
+  for (const Unit& unit : kUnits) {
+    if (unit.symbol == symbol) return (value_SI - unit.offset_SI) / unit.scale;
   }
-  return "?";
+  return std::nan("");
 }
 
 std::vector<std::string_view> units_of(Dimension dimension) {

@@ -60,4 +60,10 @@ Result<std::int64_t> parse_duration_ns(std::string_view text, std::string_view p
 
 std::vector<std::string_view> units_of(Dimension dimension);
 
+// The way back, for what people read. The symbol of "50 ms" is "ms"; that of a bare number is "".
+std::string unit_symbol(std::string_view quantity_text);
+double in_unit(double value_SI, std::string_view symbol);  // NaN for a symbol that is not known
+const char* si_symbol(Dimension dimension);                // "m/s"; "" for ratio and none
+const char* si_suffix(Dimension dimension);                // of a name: "mps"; "" likewise
+
 }  // namespace whirl

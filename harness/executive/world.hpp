@@ -32,9 +32,10 @@ struct Signal {
 struct FaultSpec {
   std::uint32_t number = 0;
   std::string kind;
-  std::string device;  // "imu", "esc2"; may be empty
-  std::int32_t bus = 0;
-  std::int32_t address = -1;  // -1: any
+  std::string device;         // "imu", "esc2"; may be empty
+  std::int32_t bus = -1;      // I2C3: 3, SPI1: 1, USART2: 2; -1: any
+  std::int32_t address = -1;  // I2C address, or the device's number on its board; -1: any
+  std::int32_t axis = 0;      // sensors: 0..2 accelerometer x y z, 3..5 gyro x y z
   std::int64_t start_ns = 0;
   std::int64_t end_ns = INT64_MAX;  // INT64_MAX: for ever
   double value = 0.0;               // SI; its meaning depends on the kind
@@ -52,6 +53,9 @@ class World {
   // t:command { ... } and t:gust { ... } at now_ns.
   virtual Result<Done> command(const lua::Table& wish, std::int64_t now_ns) = 0;
   virtual Result<Done> gust(const lua::Table& wish, std::int64_t now_ns) = 0;
+
+  // When the last bit of the latest command had passed the wire; negative: not known (yet).
+  virtual std::int64_t command_on_wire_ns() const { return -1; }
 
   // True: this kind is the world's to apply (capture lost, supply dip), and it will report its
   // number in applied_faults() once it has acted. False: it is the board's.

@@ -83,6 +83,7 @@ struct Sandbox::Inner {
   Limits limits;
   std::int64_t left = 0;
   std::size_t used_B = 0;
+  void* owner = nullptr;
   fs::path root;  // include stays below it
 
   static void* allocate(void* ud, void* block, std::size_t old_size, std::size_t size) {
@@ -163,9 +164,17 @@ lua_State* Sandbox::state() const {
   return inner_->L;
 }
 
-void Sandbox::refill() {
+void Sandbox::refill(lua_State* thread) {
   inner_->left = inner_->limits.instructions;
-  lua_sethook(inner_->L, Inner::count, LUA_MASKCOUNT, kHookStep);
+  lua_sethook(thread == nullptr ? inner_->L : thread, Inner::count, LUA_MASKCOUNT, kHookStep);
+}
+
+void Sandbox::set_owner(void* owner) {
+  inner_->owner = owner;
+}
+
+void* Sandbox::owner(lua_State* L) {
+  return Inner::of(L).owner;
 }
 
 Result<Done> Sandbox::run_file(const std::string& path) {

@@ -31,7 +31,11 @@ class Sandbox {
   Sandbox(Sandbox&&) noexcept;
 
   lua_State* state() const;
-  void refill();  // a new instruction budget: before each resume
+  // A new instruction budget for this thread of the state (null: the main one).
+  void refill(lua_State* thread = nullptr);
+  // What C functions called from the chunk find by owner(L).
+  void set_owner(void* owner);
+  static void* owner(lua_State* L);
 
   // Loads and runs a chunk; what it returns (one value) is left on the stack.
   Result<Done> run_file(const std::string& path);

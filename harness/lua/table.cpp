@@ -1,5 +1,6 @@
 #include "harness/lua/table.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -61,8 +62,9 @@ int line_of(const std::string& source, std::string_view key) {
   return found;
 }
 
-const Node* unknown_below(const Node& node) {
+const Node* unknown_below(const Node& node, const std::vector<std::string>& except = {}) {
   for (const auto& [key, child] : node.fields) {
+    if (std::find(except.begin(), except.end(), key) != except.end()) continue;
     if (!child->asked) return child.get();
     if (const Node* found = unknown_below(*child)) return found;
   }
@@ -105,6 +107,23 @@ std::vector<std::string> Table::keys() const {
 
 std::size_t Table::size() const {
   return node_->list.size();
+}
+
+Kind Table::kind(std::string_view key) const {
+  const auto it = node_->fields.find(key);
+  WHIRL_CHECK(it != node_->fields.end(), key);
+  switch (it->second->type) {
+    case Node::Type::boolean:
+      return Kind::flag;
+    case Node::Type::integer:
+    case Node::Type::real:
+      return Kind::number;
+    case Node::Type::text:
+      return Kind::text;
+    case Node::Type::table:
+      return Kind::table;
+  }
+  return Kind::table;
 }
 
 double Table::in_range(double value, Range range, std::string_view key,
@@ -316,15 +335,18 @@ std::string Table::sibling(std::string_view relative) const {
 }
 
 Result<Done> Table::finish() const {
+  return finish_except({});
+}
+
+Result<Done> Table::finish_except(const std::vector<std::string>& keys) const {
   if (doc_->first) return *doc_->first;
-  if (const Node* node = unknown_below(doc_->root)) {
-    const std::string key(last_part(node->path));
-    const int line = doc_->call_place.empty() ? line_of(doc_->source, key) : 0;
-    std::string where = doc_->call_place.empty() ? doc_->file : doc_->call_place;
-    if (line != 0) where += ":" + std::to_string(line);
-    return Error{ErrorKind::bad_input, where, "unknown key '" + node->path + "'", ""};
-  }
-  return Done{};
+  const Node* node = unknown_below(doc_->root, keys);
+  if (node == nullptr) return Done{};
+  const std::string key(last_part(node->path));
+  const int line = doc_->call_place.empty() ? line_of(doc_->source, key) : 0;
+  std::string where = doc_->call_place.empty() ? doc_->file : doc_->call_place;
+  if (line != 0) where += ":" + std::to_string(line);
+  return Error{ErrorKind::bad_input, where, "unknown key '" + node->path + "'", ""};
 }
 
 }  // namespace whirl::lua

@@ -46,6 +46,8 @@ inline Range between(double low, double high) {
   return {.low = low, .high = high};
 }
 
+enum class Kind { flag, number, text, table };
+
 struct Node;      // one value of the file
 struct Document;  // the file: its text, its name, its first complaint
 
@@ -56,6 +58,7 @@ class Table {
   bool has(std::string_view key) const;
   std::vector<std::string> keys() const;  // sorted; does not count as asking for them
   std::size_t size() const;               // of the list part
+  Kind kind(std::string_view key) const;  // pre: has(key)
 
   // "3.2 N" in SI. A bare number is taken only where the dimension is none.
   double quantity(std::string_view key, Dimension dimension, Range range = kAny) const;
@@ -93,6 +96,8 @@ class Table {
   const std::string& file() const;                       // as it was given to read_file
   std::string sibling(std::string_view relative) const;  // a path beside this file
   Result<Done> finish() const;                           // of the whole document
+  // As finish(), but what is below these keys of the root is somebody else's to read and finish.
+  Result<Done> finish_except(const std::vector<std::string>& keys) const;
 
  private:
   const Node* find(std::string_view key) const;

@@ -36,6 +36,7 @@ enum class Kind : std::uint16_t {
   statistics = 42,   // text, JSON: watchers' summaries, unanswered registers; at the end of a run
   board_reset = 43,  // ResetCause in port
   clock_setup = 44,  // ClockSetup: what the firmware set in RCC
+  busy_time = 45,    // BusyTime: about ten a second
 };
 
 struct Header {
@@ -104,6 +105,11 @@ struct FunctionCall {
 
 struct InterruptLatency {
   std::int64_t raised_ns = 0;  // Header::t_ns is the first instruction of the handler
+};
+
+struct BusyTime {  // of (since_ns, Header::t_ns]
+  std::int64_t since_ns = 0;
+  std::int64_t busy_ns = 0;  // outside of sleep; interrupts included
 };
 
 struct ClockSetup {

@@ -1,5 +1,6 @@
 #include "harness/base/units.hpp"
 
+#include <cmath>
 #include <numbers>
 
 #include "harness/base/near.hpp"
@@ -46,6 +47,30 @@ TEST(Units, NameThePlaceTheWrongDimensionAndTheCure) {
   ASSERT_FALSE(wrong.ok());
   EXPECT_EQ(wrong.error().message(),
             "hover.lua:12: '3 N' is a force, not a time (a time is written with ns us ms s min)");
+}
+
+TEST(Units, TheWayBackShowsWhatWasWritten) {
+  for (const char* text : {"50 ms", "3.2 N", "25 degC", "10 %", "4500 rpm", "0.0125 kg m2"}) {
+    const auto quantity = parse_quantity(text, "test").value();
+    const std::string symbol = unit_symbol(text);
+    EXPECT_TRUE(near(in_unit(quantity.value_SI, symbol), std::stod(text),
+                     round_off(8, std::stod(text) + 300.0)))
+        << text;
+  }
+  EXPECT_EQ(unit_symbol("-3"), "");
+  EXPECT_TRUE(std::isnan(in_unit(1.0, "furlong")));
+  EXPECT_STREQ(si_suffix(Dimension::speed), "mps");
+}
+
+TEST(Units, EverySISymbolMeansOne) {
+  for (int d = 0; d <= static_cast<int>(Dimension::magnetic_field); ++d) {
+    const auto dimension = static_cast<Dimension>(d);
+    const std::string symbol = si_symbol(dimension);
+    if (symbol.empty()) continue;
+    const auto one = parse_quantity_as("1 " + symbol, dimension, "test");
+    ASSERT_TRUE(one.ok()) << symbol;
+    EXPECT_EQ(one.value(), 1.0) << symbol;
+  }
 }
 
 TEST(Units, DurationsAreWholeNanoseconds) {

@@ -1,0 +1,133 @@
+#include "harness/executive/board_file.hpp"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "harness/lua/table.hpp"
+
+namespace whirl {
+namespace {
+
+using nlohmann::json;
+
+// Any value of a table as JSON: quantities in SI, other texts as they are.
+json passed_through(const lua::Table& table) {
+  json out = json::object();
+  for (const std::string& key : table.keys()) {
+    switch (table.kind(key)) {
+      case lua::Kind::text: {
+        const std::string text = table.text(key);
+        const auto quantity = parse_quantity(text, "");
+        out[key] = quantity ? json(quantity.value().value_SI) : json(text);
+        break;
+      }
+      case lua::Kind::number:
+        out[key] = table.number(key);
+        break;
+      case lua::Kind::flag:
+        out[key] = table.flag_or(key, false);
+        break;
+      case lua::Kind::table: {
+        const lua::Table inner = table.table(key);
+        out[key] = inner.size() > 0 ? json(table.numbers(key)) : passed_through(inner);
+        break;
+      }
+    }
+  }
+  return out;
+}
+
+BoardDevice read_device(const lua::Table& t) {
+  BoardDevice device;
+  json entry = json::object();
+  entry["name"] = device.name = t.text("name");
+  entry["type"] = device.type = t.text("type");
+  entry["bus"] = device.bus = t.text("bus");
+  if (t.has("address")) {
+    entry["address"] = device.address = static_cast<int>(t.integer("address", 0x08, 0x77));
+  }
+  if (t.has("motor")) entry["motor"] = device.motor = static_cast<int>(t.integer("motor", 1, 4));
+  if (t.has("cs")) entry["cs"] = t.text("cs");
+  if (t.has("int")) entry["int"] = t.text("int");
+  if (t.has("baud")) entry["baud"] = t.quantity("baud", Dimension::baud, lua::above(0.0));
+  entry["params"] = t.has("params") ? passed_through(t.table("params")) : json::object();
+  device.json = entry.dump();
+  return device;
+}
+
+void refuse_doubles(const lua::Table& file, const Board& board) {
+  for (std::size_t i = 0; i < board.devices.size(); ++i) {
+    for (std::size_t k = 0; k < i; ++k) {
+      const BoardDevice &a = board.devices[k], &b = board.devices[i];
+      if (a.name == b.name) file.refuse("devices", "two devices are called '" + a.name + "'");
+      if (a.address >= 0 && a.bus == b.bus && a.address == b.address) {
+        file.refuse("devices", a.name + " and " + b.name + " share one address on " + a.bus);
+      }
+    }
+  }
+}
+
+}  // namespace
+
+const BoardDevice* Board::find(const std::string& device) const {
+  const int i = number(device);
+  return i < 0 ? nullptr : &devices[static_cast<std::size_t>(i)];
+}
+
+int Board::number(const std::string& device) const {
+  const auto it = std::find_if(devices.begin(), devices.end(),
+                               [&](const BoardDevice& d) { return d.name == device; });
+  return it == devices.end() ? -1 : static_cast<int>(it - devices.begin());
+}
+
+int Board::watch_number(const std::string& function) const {
+  const auto it = std::find(watch.begin(), watch.end(), function);
+  return it == watch.end() ? -1 : static_cast<int>(it - watch.begin());
+}
+
+Result<Board> read_board(const std::string& path) {
+  const auto file = lua::read_file(path);
+  if (!file) return file.error();
+  const lua::Table& t = file.value();
+  Board board;
+  board.file = path;
+  board.name = t.text("board");
+  board.mcu = t.text("mcu");
+  board.hse_Hz = t.quantity("hse", Dimension::frequency, lua::above(0.0));
+  board.lse_Hz = t.quantity_or("lse", Dimension::frequency, 0.0, lua::at_least(0.0));
+  const double instruction_s =
+      t.quantity_or("instruction", Dimension::time, 8e-9, lua::between(1e-9, 1e-6));
+  board.ns_per_instruction = static_cast<int>(instruction_s * 1e9 + 0.5);
+  for (const lua::Table& entry : t.tables("devices")) board.devices.push_back(read_device(entry));
+  json pins = json::array();
+  for (const lua::Table& entry : t.tables("pins")) {
+    pins.push_back({{"name", entry.text("name")}, {"pin", entry.text("pin")}});
+  }
+  board.pins_json = pins.dump();
+  board.watch = t.texts("watch");
+  refuse_doubles(t, board);
+  if (auto good = t.finish(); !good) return good.error();
+  return board;
+}
+
+std::string board_json(const Board& board, const BoardRun& run) {
+  json out;
+  out["board"] = board.name;
+  out["mcu"] = board.mcu;
+  out["hse_Hz"] = board.hse_Hz;
+  out["lse_Hz"] = board.lse_Hz;
+  out["image"] = run.image;
+  out["ns_per_instruction"] = board.ns_per_instruction;
+  out["seed"] = run.seed;
+  out["sync_ns"] = run.sync_ns;
+  out["devices"] = json::array();
+  for (const BoardDevice& device : board.devices)
+    out["devices"].push_back(json::parse(device.json));
+  out["pins"] = json::parse(board.pins_json);
+  out["watch"] = board.watch;
+  out["gdb"] = run.gdb;
+  out["gdb_port"] = run.gdb_port;
+  return out.dump(1);
+}
+
+}  // namespace whirl

@@ -1,0 +1,49 @@
+// A board as a Lua file: which MCU, which crystal, which parts hang on which bus.
+//
+//   Gives   the description with SI numbers as JSON for the board's process, and what the harness
+//           itself must know: devices by name, watched functions by number
+//   Params  a device's own parameters pass through: texts that are quantities become SI numbers
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "harness/base/result.hpp"
+
+namespace whirl {
+
+struct BoardDevice {
+  std::string name;  // "imu", "esc1"
+  std::string type;  // "mpu6000", "esc_i2c"
+  std::string bus;   // "spi1", "i2c3", "usart2"
+  int address = -1;  // I2C
+  int motor = 0;     // of an ESC; 0: none
+  std::string json;  // the whole entry
+};
+
+struct Board {
+  std::string file, name, mcu;
+  double hse_Hz = 0, lse_Hz = 0;
+  int ns_per_instruction = 8;
+  std::vector<BoardDevice> devices;
+  std::vector<std::string> watch;
+  std::string pins_json;
+
+  const BoardDevice* find(const std::string& device) const;
+  int number(const std::string& device) const;  // place in the list; -1: not there
+  int watch_number(const std::string& function) const;
+};
+
+Result<Board> read_board(const std::string& path);
+
+struct BoardRun {  // what differs from run to run
+  std::string image;
+  std::uint64_t seed = 1;
+  std::int64_t sync_ns = 1'000'000;
+  bool gdb = false;
+  int gdb_port = 0;
+};
+// The text that the board's process reads.
+std::string board_json(const Board& board, const BoardRun& run);
+
+}  // namespace whirl

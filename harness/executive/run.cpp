@@ -1,0 +1,243 @@
+#include "harness/executive/run.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <optional>
+
+#include "harness/base/digest.hpp"
+#include "harness/executive/cpu_fault.hpp"
+#include "harness/plan/script.hpp"
+#include "io_bridges/devices/faults.hpp"
+
+namespace whirl {
+namespace {
+
+constexpr std::int64_t kStep_ns = 1'000'000;
+
+// Adds the host time of its scope to a figure. For reports only.
+class Stopwatch {
+ public:
+  using Clock = std::chrono::steady_clock;
+  explicit Stopwatch(double& sum_s) : sum_s_(sum_s), begin_(Clock::now()) {}
+  ~Stopwatch() { sum_s_ += std::chrono::duration<double>(Clock::now() - begin_).count(); }
+  Stopwatch(const Stopwatch&) = delete;
+  Stopwatch& operator=(const Stopwatch&) = delete;
+
+ private:
+  double& sum_s_;
+  Clock::time_point begin_;
+};
+
+results::TruthLog truth_log_for(const World& world) {
+  std::vector<results::TruthLog::Column> columns;
+  for (const Signal& signal : world.signals()) {
+    columns.push_back({signal.name, si_suffix(signal.dimension)});
+  }
+  return {std::move(columns), kStep_ns};
+}
+
+class Run {
+ public:
+  explicit Run(const RunParts& parts)
+      : parts_(parts),
+        record_{{}, truth_log_for(parts.world), {}},
+        stage_{parts.world,    parts.board,    record_.truth,
+               record_.events, record_.report, [this](const FaultSpec& f) { return inject(f); }},
+        script_(parts.file, parts.plan, stage_),
+        row_(parts.world.signals().size()) {
+    results::Report& r = record_.report;
+    r.plan = parts.plan.name;
+    r.file = parts.plan.file;
+    r.tags = parts.plan.tags;
+    r.seed = parts.seed;
+    r.timing_profile = std::to_string(parts.board.ns_per_instruction) + " ns per instruction";
+  }
+
+  RunRecord go(const ProgressSink& progress) {
+    {
+      Stopwatch total(record_.report.host.total_s);
+      if (start()) loop(progress);
+      end();
+    }
+    record_.report.virtual_s = static_cast<double>(stage_.now_ns) * 1e-9;
+    record_.report.digest = digest_.hex();
+    results::conclude(record_.report);
+    return std::move(record_);
+  }
+
+ private:
+  bool start() {
+    Stopwatch watch(record_.report.host.start_s);
+    if (auto started = parts_.target.start(); !started) return fail(started.error());
+    record_.report.versions = parts_.target.versions();
+    parts_.world.step(0, happened_, sensed_);
+    log_truth();
+    return true;
+  }
+
+  void loop(const ProgressSink& progress) {
+    const auto begin = Stopwatch::Clock::now();
+    auto last_shown = begin;
+    while (act() && step()) {
+      if (!progress || stage_.now_ns % (10 * kStep_ns) != 0) continue;
+      const auto now = Stopwatch::Clock::now();
+      if (now - last_shown < std::chrono::milliseconds(100)) continue;
+      last_shown = now;
+      progress({static_cast<double>(stage_.now_ns) * 1e-9,
+                std::chrono::duration<double>(now - begin).count(), script_.step_name(),
+                parts_.world});
+    }
+  }
+
+  // The script's turn. False: the run is over.
+  bool act() {
+    Stopwatch watch(record_.report.host.script_s);
+    if (stage_.now_ns >= parts_.plan.timeout_ns) return time_out();
+    const auto state = script_.advance();
+    if (!state) return fail(state.error());
+    return state.value() == plan::Script::State::waiting;
+  }
+
+  bool step() {
+    const std::int64_t next_ns = stage_.now_ns + kStep_ns;
+    parts_.target.run(next_ns, sensed_);
+    {
+      Stopwatch watch(record_.report.host.logging_s);
+      file_batch(sensed_);
+    }
+    {
+      Stopwatch watch(record_.report.host.world_s);
+      sensed_.clear();
+      parts_.world.step(next_ns, happened_, sensed_);
+    }
+    happened_.clear();
+    std::optional<Result<TargetState>> arrived;
+    {
+      Stopwatch watch(record_.report.host.target_wait_s);
+      arrived = parts_.target.arrive(happened_);
+    }
+    stage_.now_ns = next_ns;
+    Stopwatch watch(record_.report.host.logging_s);
+    log_truth();
+    if (!*arrived) return fail(arrived->error());
+    file_batch(happened_);
+    if (!record_.events.cpu_faults.empty()) return core_fault();
+    if (arrived->value() == TargetState::running) return true;
+    return stopped_early(arrived->value());
+  }
+
+  void end() {
+    io::Batch rest;
+    parts_.target.stop(rest);
+    file_batch(rest);
+    results::Report& report = record_.report;
+    report.statistics_json = record_.events.statistics;
+    // Guards and windows are judged also when the run has failed: their figures help to see why.
+    if (auto judged = script_.finish(); !judged) fail(judged.error());
+    for (const results::FaultRow& fault : report.faults) {
+      if (fault.applied_s >= 0.0) continue;
+      fail({ErrorKind::bad_input, parts_.plan.file,
+            "fault " + fault.kind + " on " + fault.target + " was applied by nobody",
+            "is it timed within the run, and does its place see any traffic?"});
+    }
+    for (const results::TextRecord& f : record_.events.findings) {
+      report.findings.push_back({static_cast<double>(f.t_ns) * 1e-9, f.where, f.what});
+    }
+  }
+
+  // The first reason stays. Always false, for `return fail(...)`.
+  bool fail(const Error& error) {
+    results::Report& r = record_.report;
+    if (!r.reason.empty() && r.verdict == results::Verdict::error) return false;
+    r.verdict =
+        error.kind == ErrorKind::host ? results::Verdict::inconclusive : results::Verdict::error;
+    r.bad_input = error.kind == ErrorKind::bad_input;
+    r.reason = error.message();
+    return false;
+  }
+
+  bool fail_plan(const std::string& reason) {
+    record_.report.verdict = results::Verdict::fail;
+    if (record_.report.reason.empty()) record_.report.reason = reason;
+    return false;
+  }
+
+  void must_hold(const std::string& name, const std::string& note) {
+    results::Expectation e;
+    e.name = name;
+    e.how = "holds";
+    e.place = parts_.plan.place;
+    e.t_s = static_cast<double>(stage_.now_ns) * 1e-9;
+    e.note = note;
+    script_.add(std::move(e));
+  }
+
+  bool time_out() {
+    const std::string limit = std::to_string(parts_.plan.timeout_ns / 1'000'000'000) + " s";
+    const std::string where =
+        script_.step_name().empty() ? "" : " in step '" + script_.step_name() + "'";
+    must_hold("plan ends before its timeout", "still waiting" + where);
+    return fail_plan("still waiting" + where + " at the plan's timeout of " + limit +
+                     " virtual time");
+  }
+
+  bool core_fault() {
+    const results::CpuFaultRow row = describe(record_.events.cpu_faults.front());
+    record_.report.cpu_faults.push_back(row);
+    must_hold("the firmware runs without a fault", row.name + " in " + row.where);
+    return fail_plan("firmware fault: " + row.name + " in " + row.where);
+  }
+
+  bool stopped_early(TargetState state) {
+    const char* what =
+        state == TargetState::cpu_locked ? "the core locked up" : "the board switched itself off";
+    must_hold("the firmware runs to the end of the plan", what);
+    return fail_plan(what);
+  }
+
+  void log_truth() {
+    parts_.world.read(row_);
+    record_.truth.append(row_);
+  }
+
+  void file_batch(const io::Batch& batch) {
+    digest_.add_bytes(batch.bytes().data(), batch.bytes().size());
+    if (!record_.events.add(batch)) {
+      fail({ErrorKind::internal, "", "a batch of messages was cut short", ""});
+    }
+  }
+
+  Result<Done> inject(const FaultSpec& spec) {
+    const auto kind = io::fault_kind(spec.kind);
+    if (!kind)
+      return Error{ErrorKind::bad_input, "", "unknown kind of fault '" + spec.kind + "'", ""};
+    io::FaultCommand command;
+    command.number = spec.number;
+    command.kind = static_cast<std::uint32_t>(*kind);
+    command.start_ns = spec.start_ns;
+    command.end_ns = spec.end_ns;
+    command.bus = spec.bus;
+    command.address = spec.address;
+    command.axis = spec.axis;
+    command.value = spec.value;
+    sensed_.add(io::Kind::fault, static_cast<std::uint16_t>(spec.number), stage_.now_ns, command,
+                spec.kind.data(), static_cast<std::uint32_t>(spec.kind.size()));
+    return Done{};
+  }
+
+  const RunParts& parts_;
+  RunRecord record_;
+  plan::Stage stage_;
+  plan::Script script_;
+  std::vector<double> row_;
+  io::Batch sensed_, happened_;
+  Digest digest_;
+};
+
+}  // namespace
+
+RunRecord execute(const RunParts& parts, const ProgressSink& progress) {
+  return Run(parts).go(progress);
+}
+
+}  // namespace whirl

@@ -1,0 +1,47 @@
+// One run of one plan: target and world in lockstep, the plan's script between them, a report at the
+// end.
+//
+//   Step     at t_k the script acts; then the target runs (t_k, t_k+1] while the world takes the same
+//            step with what the target had done until t_k, and what had happened is filed
+//   Digest   over every batch, both ways, in order; host times enter nowhere but Report::host
+//   Ends     the script returns; a fault of the core; the plan's timeout in virtual time; an error
+#pragma once
+#include <functional>
+#include <memory>
+
+#include "harness/executive/board_file.hpp"
+#include "harness/executive/world.hpp"
+#include "harness/plan/plan_file.hpp"
+#include "harness/target/target.hpp"
+#include "results/event_log.hpp"
+#include "results/report.hpp"
+#include "results/truth_log.hpp"
+
+namespace whirl {
+
+struct RunParts {
+  plan::PlanFile& file;
+  const plan::Plan& plan;
+  const Board& board;
+  World& world;
+  Target& target;
+  std::uint64_t seed = 1;
+};
+
+struct RunRecord {
+  results::Report report;
+  results::TruthLog truth;
+  results::EventLog events;
+};
+
+struct Progress {
+  double t_s = 0;
+  double host_s = 0;
+  const std::string& step;
+  const World& world;
+};
+using ProgressSink = std::function<void(const Progress&)>;  // about ten times a host second
+
+RunRecord execute(const RunParts& parts, const ProgressSink& progress = nullptr);
+
+}  // namespace whirl

@@ -1,0 +1,281 @@
+// t:record and what a record can be asked. The metrics themselves are in harness/metrics.
+#include <algorithm>
+#include <cmath>
+
+#include "harness/metrics/response.hpp"
+#include "harness/plan/raise.hpp"
+#include "harness/plan/values.hpp"
+
+namespace whirl::plan {
+namespace {
+
+constexpr const char* kRecord = "record";
+constexpr std::int64_t kBefore_ns = 200'000'000;  // the reference of a change
+
+// Where in the truth a record lies, with its reference before it.
+struct Rows {
+  std::size_t first, command, last;  // last: one beyond
+};
+
+Rows rows_of(const Stage& stage, const RecordInfo& info) {
+  const auto& truth = stage.truth;
+  const std::size_t command = truth.row_at(info.from_ns);
+  const auto before = static_cast<std::size_t>(kBefore_ns / truth.step_ns());
+  const std::size_t last = std::min(truth.row_at(info.to_ns) + 1, truth.rows());
+  return {command > before ? command - before : 0, std::min(command, last), last};
+}
+
+metrics::Record view(const Stage& stage, const RecordInfo& info, std::size_t column) {
+  const Rows rows = rows_of(stage, info);
+  return {stage.truth.values(column).subspan(rows.first, rows.last - rows.first),
+          stage.truth.step_ns(), rows.command - rows.first};
+}
+
+// The column a call speaks of: the only one, or the one named first; then come its own arguments.
+struct Chosen {
+  const RecordInfo* info;
+  std::size_t column;
+  int next;  // index of the next argument
+  std::string name;
+};
+
+Chosen choose(lua_State* L) {
+  Script& self = Script::of(L);
+  const RecordInfo& info = self.records[check_handle(L, 1, kRecord)];
+  const auto& columns = self.stage().truth.columns();
+  if (info.columns.size() == 1) return {&info, info.columns[0], 2, columns[info.columns[0]].name};
+  const std::string wanted = check_text(L, 2, "a record of several signals: the signal's name");
+  for (std::size_t column : info.columns) {
+    if (columns[column].name == wanted) return {&info, column, 3, wanted};
+  }
+  raise(L, "signal '" + wanted + "' is not in this record");
+  return {};
+}
+
+int push(lua_State* L, double value, Dimension dimension, const std::string& name) {
+  push_measurement(L, {value, dimension, name});
+  return 1;
+}
+
+using Metric = double (*)(const metrics::Record&);
+
+template <Metric metric>
+int time_metric(lua_State* L, const char* what) {
+  const Chosen c = choose(L);
+  return push(L, metric(view(Script::of(L).stage(), *c.info, c.column)), Dimension::time,
+              c.name + what);
+}
+template <Metric metric>
+int value_metric(lua_State* L, const char* what) {
+  const Chosen c = choose(L);
+  Script& self = Script::of(L);
+  return push(L, metric(view(self.stage(), *c.info, c.column)), self.dimension(c.column),
+              c.name + what);
+}
+
+int rise_time(lua_State* L) {
+  return time_metric<metrics::rise_time_s>(L, " rise time");
+}
+int fall_time(lua_State* L) {
+  return time_metric<metrics::fall_time_s>(L, " fall time");
+}
+// From the last bit of the command on the wire, where the world knows when that was.
+int response_time(lua_State* L) {
+  const Chosen c = choose(L);
+  const double from_call_s =
+      metrics::response_time_s(view(Script::of(L).stage(), *c.info, c.column));
+  const double wire_s = static_cast<double>(c.info->wire_ns - c.info->from_ns) * 1e-9;
+  return push(L, from_call_s - wire_s, Dimension::time, c.name + " response time");
+}
+int overshoot(lua_State* L) {
+  const Chosen c = choose(L);
+  return push(L, metrics::overshoot_ratio(view(Script::of(L).stage(), *c.info, c.column)),
+              Dimension::ratio, c.name + " overshoot");
+}
+int mean(lua_State* L) {
+  return value_metric<metrics::mean>(L, " mean");
+}
+int final(lua_State* L) {
+  return value_metric<metrics::final_mean>(L, " final mean");
+}
+int maximum(lua_State* L) {
+  return value_metric<metrics::maximum>(L, " max");
+}
+int minimum(lua_State* L) {
+  return value_metric<metrics::minimum>(L, " min");
+}
+
+int quantile(lua_State* L, double p, const char* what) {
+  const Chosen c = choose(L);
+  Script& self = Script::of(L);
+  const auto record = view(self.stage(), *c.info, c.column);
+  return push(L, metrics::quantile(record.values.subspan(record.command), p),
+              self.dimension(c.column), c.name + what);
+}
+int p50(lua_State* L) {
+  return quantile(L, 0.5, " p50");
+}
+int p99(lua_State* L) {
+  return quantile(L, 0.99, " p99");
+}
+
+// The distance from a reference at each sample: of one signal, or the norm over those named in a
+// table { north = "0 m", east = "0 m" }.
+struct Errors {
+  std::vector<double> values;  // from the reference rows on
+  std::size_t command = 0;
+  Dimension dimension = Dimension::none;
+  std::string name;
+};
+
+void add_squares(Errors& errors, const metrics::Record& record, double reference) {
+  errors.values.resize(record.values.size(), 0.0);
+  errors.command = record.command;
+  for (std::size_t i = 0; i < record.values.size(); ++i) {
+    const double e = record.values[i] - reference;
+    errors.values[i] += e * e;
+  }
+}
+
+Errors errors_about(lua_State* L, int index) {
+  Script& self = Script::of(L);
+  const RecordInfo& info = self.records[check_handle(L, 1, kRecord)];
+  Errors errors;
+  if (lua_istable(L, index)) {
+    const lua::Table wish = check_table(L, index);
+    for (const std::string& key : wish.keys()) {
+      const std::size_t column = self.column(L, key);
+      if (std::find(info.columns.begin(), info.columns.end(), column) == info.columns.end()) {
+        raise(L, "signal '" + key + "' is not in this record");
+      }
+      if (!errors.name.empty() && errors.dimension != self.dimension(column)) {
+        raise(L, "signals of different dimensions have no common distance");
+      }
+      errors.dimension = self.dimension(column);
+      errors.name += (errors.name.empty() ? "" : ", ") + key;
+      add_squares(errors, view(self.stage(), info, column), wish.quantity(key, errors.dimension));
+    }
+    check_finish(L, wish);
+    if (errors.name.empty()) raise(L, "a reference { signal = \"0 m\" } is wanted");
+  } else {
+    const Chosen c = choose(L);
+    errors.dimension = self.dimension(c.column);
+    errors.name = c.name;
+    add_squares(errors, view(self.stage(), info, c.column),
+                check_limit(L, index, errors.dimension).value_SI);
+  }
+  for (double& value : errors.values) value = std::sqrt(value);
+  return errors;
+}
+
+int reference_index(lua_State* L) {
+  return lua_istable(L, 2) ? 2 : choose(L).next;
+}
+
+int rms_error(lua_State* L) {
+  const Errors e = errors_about(L, reference_index(L));
+  const metrics::Record record{e.values, 1'000'000, e.command};
+  return push(L, metrics::rms_about(record, 0.0), e.dimension, e.name + " RMS error");
+}
+int max_error(lua_State* L) {
+  const Errors e = errors_about(L, reference_index(L));
+  return push(L, metrics::maximum({e.values, 1'000'000, e.command}), e.dimension,
+              e.name + " max error");
+}
+
+// RMS about zero.
+int rms(lua_State* L) {
+  const Chosen c = choose(L);
+  Script& self = Script::of(L);
+  return push(L, metrics::rms_about(view(self.stage(), *c.info, c.column), 0.0),
+              self.dimension(c.column), c.name + " RMS");
+}
+
+// record:settled("10 cm", "1.1 m"), record:settled("10 cm", { north = "0 m" }), or
+// record:settled("5 %"): about the final mean, in percent of the change.
+int settled(lua_State* L) {
+  Script& self = Script::of(L);
+  const RecordInfo& info = self.records[check_handle(L, 1, kRecord)];
+  const int band = info.columns.size() == 1 || lua_istable(L, 3) ? 2 : 3;
+  const std::int64_t step_ns = self.stage().truth.step_ns();
+  if (!lua_isnoneornil(L, band + 1)) {
+    const Errors e = errors_about(L, band + 1);
+    const double width = check_limit(L, band, e.dimension).value_SI;
+    return push(L, metrics::settled_s({e.values, step_ns, e.command}, 0.0, width), Dimension::time,
+                e.name + " settling time");
+  }
+  const Chosen c = choose(L);
+  const metrics::Record record = view(self.stage(), info, c.column);
+  const double to = metrics::final_mean(record);
+  double from = 0.0;
+  for (std::size_t i = 0; i < record.command; ++i) from += record.values[i];
+  from = record.command == 0 ? std::nan("") : from / static_cast<double>(record.command);
+  const double width = check_limit(L, band, Dimension::ratio).value_SI * std::abs(to - from);
+  return push(L, metrics::settled_s(record, to, width), Dimension::time, c.name + " settling time");
+}
+
+std::vector<std::size_t> columns_of(lua_State* L, int index) {
+  Script& self = Script::of(L);
+  std::vector<std::size_t> columns;
+  if (!lua_istable(L, index)) return {self.column(L, check_text(L, index, "a signal's name"))};
+  const auto n = static_cast<int>(lua_rawlen(L, index));
+  for (int i = 1; i <= n; ++i) {
+    lua_rawgeti(L, index, i);
+    columns.push_back(self.column(L, check_text(L, -1, "a signal's name")));
+    lua_pop(L, 1);
+  }
+  if (columns.empty()) raise(L, "a record of no signals");
+  return columns;
+}
+
+int recorded(lua_State* L, int, lua_KContext number) {
+  Script& self = Script::of(L);
+  RecordInfo& info = self.records[static_cast<std::size_t>(number)];
+  info.to_ns = self.stage().now_ns;
+  const std::int64_t wire_ns = self.stage().world.command_on_wire_ns();
+  info.wire_ns = wire_ns >= info.from_ns && wire_ns <= info.to_ns ? wire_ns : info.from_ns;
+  push_handle(L, kRecord, static_cast<std::size_t>(number));
+  return 1;
+}
+
+// t:record(signals, duration [, function]): calls the function, waits, gives the record.
+int record(lua_State* L) {
+  Script& self = Script::of(L);
+  RecordInfo info;
+  info.columns = columns_of(L, 2);
+  const std::int64_t duration_ns = check_duration_ns(L, 3);
+  info.from_ns = self.stage().now_ns;
+  if (!lua_isnoneornil(L, 4)) {
+    lua_pushvalue(L, 4);
+    lua_call(L, 0, 0);  // a t:wait in there is refused by Lua: the record begins at the command
+  }
+  const std::size_t number = self.records.size();
+  self.records.push_back(std::move(info));
+  self.wait_until(self.stage().now_ns + duration_ns);
+  return lua_yieldk(L, 0, static_cast<lua_KContext>(number), recorded);
+}
+
+}  // namespace
+
+void add_record_calls(lua_State* L) {
+  const luaL_Reg calls[] = {{"record", record}, {nullptr, nullptr}};
+  luaL_setfuncs(L, calls, 0);
+  const luaL_Reg methods[] = {{"rise_time", rise_time},
+                              {"fall_time", fall_time},
+                              {"response_time", response_time},
+                              {"overshoot", overshoot},
+                              {"settled", settled},
+                              {"mean", mean},
+                              {"final", final},
+                              {"max", maximum},
+                              {"min", minimum},
+                              {"rms", rms},
+                              {"rms_error", rms_error},
+                              {"max_error", max_error},
+                              {"p50", p50},
+                              {"p99", p99},
+                              {nullptr, nullptr}};
+  declare_handle(L, kRecord, methods);
+}
+
+}  // namespace whirl::plan

@@ -1,0 +1,114 @@
+// t:wait, t:wait_until, t:within, t:step, t:log, t:value, t:now: the plan and the clock of the run.
+#include "harness/plan/raise.hpp"
+#include "harness/plan/values.hpp"
+
+namespace whirl::plan {
+namespace {
+
+double seconds(std::int64_t ns) {
+  return static_cast<double>(ns) * 1e-9;
+}
+
+int wait(lua_State* L) {
+  Script& self = Script::of(L);
+  self.wait_until(self.stage().now_ns + check_duration_ns(L, 2));
+  return lua_yield(L, 0);
+}
+
+int keep_condition(lua_State* L, int index) {
+  if (!lua_isfunction(L, index)) {
+    raise(L, std::string("a condition function(s) ... end is wanted, not a ") +
+                 luaL_typename(L, index));
+  }
+  lua_pushvalue(L, index);
+  return luaL_ref(L, LUA_REGISTRYINDEX);
+}
+
+// t:wait_until(condition, timeout) -> whether it came true. No verdict: see t:within.
+int wait_until(lua_State* L) {
+  Script& self = Script::of(L);
+  const std::int64_t end = self.stage().now_ns + check_duration_ns(L, 3);
+  self.wait_until(end, keep_condition(L, 2));
+  return lua_yieldk(L, 0, 0, [](lua_State* l, int, lua_KContext) {
+    lua_pushboolean(l, Script::of(l).condition_met() ? 1 : 0);
+    return 1;
+  });
+}
+
+// t:within(limit, condition [, name]): waits for it, and expects it within the limit.
+int within(lua_State* L) {
+  Script& self = Script::of(L);
+  const std::int64_t limit_ns = check_duration_ns(L, 2);
+  const int ref = keep_condition(L, 3);
+  if (!lua_isnoneornil(L, 4)) check_text(L, 4, "a name");
+  lua_settop(L, 4);
+  lua_pushstring(L, place_of(L).c_str());
+  self.wait_until(self.stage().now_ns + limit_ns, ref);
+  return lua_yieldk(L, 0, self.stage().now_ns, [](lua_State* l, int, lua_KContext since_ns) {
+    Script& script = Script::of(l);
+    const std::int64_t now = script.stage().now_ns;
+    const bool met = script.condition_met();
+    const double took_s = met ? seconds(now - since_ns) : std::numeric_limits<double>::quiet_NaN();
+    const char* place = lua_tostring(l, 5);
+    const std::string name =
+        lua_isnil(l, 4) ? std::string("within, ") + place : std::string(lua_tostring(l, 4));
+    script.judge({took_s, Dimension::time, name}, How::at_most, std::nullopt,
+                 check_limit(l, 2, Dimension::time), place, seconds(now),
+                 met ? "" : "never came true");
+    lua_pushboolean(l, met ? 1 : 0);
+    return 1;
+  });
+}
+
+int step(lua_State* L) {
+  Script::of(L).set_step(check_text(L, 2, "a step's name"));
+  return 0;
+}
+
+int log(lua_State* L) {
+  Stage& stage = Script::of(L).stage();
+  stage.report.log.push_back({seconds(stage.now_ns), "plan", luaL_tolstring(L, 2, nullptr)});
+  return 0;
+}
+
+// t:value("height") -> measurement; t:value("tilt", "deg") -> a plain number in that unit.
+int value(lua_State* L) {
+  Script& self = Script::of(L);
+  const std::string signal = check_text(L, 2, "a signal's name");
+  const std::size_t column = self.column(L, signal);
+  const double x = self.stage().truth.last(column);
+  if (lua_isnoneornil(L, 3)) {
+    push_measurement(L, {x, self.dimension(column), signal});
+    return 1;
+  }
+  const std::string unit = check_text(L, 3, "a unit");
+  const auto one = parse_quantity_as("1 " + unit, self.dimension(column), "");
+  if (!one) raise(L, one.error());
+  lua_pushnumber(L, in_unit(x, unit));
+  return 1;
+}
+
+int now(lua_State* L) {
+  push_measurement(L, {seconds(Script::of(L).stage().now_ns), Dimension::time, "time"});
+  return 1;
+}
+
+// t:quantity("5 cm") -> 0.05: the SI number, for arithmetic in conditions.
+int quantity(lua_State* L) {
+  const auto parsed = parse_quantity(check_text(L, 2, "a quantity"), "");
+  if (!parsed) raise(L, parsed.error());
+  lua_pushnumber(L, parsed.value().value_SI);
+  return 1;
+}
+
+}  // namespace
+
+void add_time_calls(lua_State* L) {
+  const luaL_Reg calls[] = {
+      {"wait", wait},    {"wait_until", wait_until}, {"within", within}, {"step", step},
+      {"log", log},      {"value", value},           {"now", now},       {"quantity", quantity},
+      {nullptr, nullptr}};
+  luaL_setfuncs(L, calls, 0);
+}
+
+}  // namespace whirl::plan

@@ -1,0 +1,278 @@
+// t:budget, t:bus, t:latency: windows on what the firmware did and when, judged at the end.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "harness/metrics/timing.hpp"
+#include "harness/plan/raise.hpp"
+#include "harness/plan/values.hpp"
+
+namespace whirl::plan {
+namespace {
+
+double seconds(std::int64_t ns) {
+  return static_cast<double>(ns) * 1e-9;
+}
+
+std::string in_text(double x_s, const std::string& unit) {
+  char text[48];
+  std::snprintf(text, sizeof text, "%.4g %s", in_unit(x_s, unit), unit.c_str());
+  return text;
+}
+
+std::string spread(const metrics::Distribution& d, const std::string& unit) {
+  if (d.count == 0) return "nothing to measure";
+  return "p50 " + in_text(d.p50, unit) + ", p99 " + in_text(d.p99, unit) + ", " +
+         std::to_string(d.count) + " values";
+}
+
+std::optional<Limit> optional_limit(const lua::Table& wish, const char* key, Dimension dimension) {
+  if (!wish.has(key)) return std::nullopt;
+  const double value = wish.quantity(key, dimension, lua::at_least(0.0));
+  return Limit{value, unit_symbol(wish.text(key))};
+}
+
+std::int64_t window_end(Script& self, const lua::Table& wish) {
+  return wish.has("during") ? self.stage().now_ns + wish.duration_ns("during") : kForever;
+}
+
+// The period of what happens at `times` in [from, to]: with its deviation from nominal. The edges
+// count too: a thing that stopped, or never began, has a gap there.
+std::vector<double> deviations(std::span<const std::int64_t> times, std::int64_t from,
+                               std::int64_t to, double nominal_s) {
+  std::vector<double> all = metrics::deviations_s(metrics::periods_s(times), nominal_s);
+  const double head = seconds((times.empty() ? to : times.front()) - from);
+  const double tail = seconds(to - (times.empty() ? from : times.back()));
+  for (double gap : {head, tail}) {
+    if (gap > nominal_s) all.push_back(gap - nominal_s);
+  }
+  return all;
+}
+
+struct Budget {
+  std::string function, place;
+  std::optional<Limit> period, jitter, execution, response, busy;
+};
+
+void judge_spread(Script& self, std::span<const double> values, const Limit& limit,
+                  const std::string& name, const std::string& place, std::int64_t to_ns) {
+  const auto d = metrics::distribution(values);
+  self.judge({d.max, Dimension::time, name}, How::at_most, std::nullopt, limit, place,
+             seconds(to_ns), spread(d, limit.unit));
+}
+
+void judge_calls(Script& self, const Budget& b, std::int64_t from, std::int64_t to) {
+  std::vector<std::int64_t> entries;
+  std::vector<double> execution, response;
+  const int number = self.stage().board.watch_number(b.function);
+  const auto found = self.stage().events.calls.find(static_cast<std::uint16_t>(number));
+  if (found != self.stage().events.calls.end()) {
+    for (const auto& call : found->second) {
+      if (call.entry_ns < from || call.return_ns > to) continue;
+      entries.push_back(call.entry_ns);
+      execution.push_back(seconds(call.execution_ns));
+      response.push_back(seconds(call.return_ns - call.entry_ns));
+    }
+  }
+  if (b.jitter) {
+    judge_spread(self, deviations(entries, from, to, b.period->value_SI), *b.jitter,
+                 b.function + " period jitter", b.place, to);
+  }
+  if (b.execution) {
+    judge_spread(self, execution, *b.execution, b.function + " execution time", b.place, to);
+  }
+  if (b.response) {
+    judge_spread(self, response, *b.response, b.function + " response time", b.place, to);
+  }
+}
+
+void judge_busy(Script& self, const Budget& b, std::int64_t from, std::int64_t to) {
+  self.judge({self.stage().events.busy_share(from, to), Dimension::ratio, "CPU busy share"},
+             How::at_most, std::nullopt, *b.busy, b.place, seconds(to));
+}
+
+// The { ... } of t:budget("name") { ... }
+int take_budget(lua_State* L) {
+  Script& self = Script::of(L);
+  const lua::Table wish = check_table(L, 1);
+  Budget b{lua_tostring(L, lua_upvalueindex(1)), place_of(L), {}, {}, {}, {}, {}};
+  b.period = optional_limit(wish, "period", Dimension::time);
+  b.jitter = optional_limit(wish, "jitter", Dimension::time);
+  b.execution = optional_limit(wish, "execution", Dimension::time);
+  b.response = optional_limit(wish, "response", Dimension::time);
+  b.busy = optional_limit(wish, "busy", Dimension::ratio);
+  const std::int64_t end = window_end(self, wish);
+  check_finish(L, wish);
+  const bool calls = b.jitter || b.execution || b.response;
+  if (b.period.has_value() != b.jitter.has_value()) raise(L, "period and jitter go together");
+  if (!calls && !b.busy)
+    raise(L, "a budget of nothing", "give jitter, execution, response or busy");
+  if (calls && self.stage().board.watch_number(b.function) < 0) {
+    raise(L, "'" + b.function + "' is not watched",
+          "add it to the watch list of the plan or board");
+  }
+  self.add_window(end, [b, calls](Script& script, std::int64_t from, std::int64_t to) {
+    if (calls) judge_calls(script, b, from, to);
+    if (b.busy) judge_busy(script, b, from, to);
+  });
+  return 0;
+}
+
+int budget(lua_State* L) {
+  check_text(L, 2, "a function's name, or \"cpu\"");
+  lua_pushvalue(L, 2);
+  lua_pushcclosure(L, take_budget, 1);
+  return 1;
+}
+
+struct BusWish {
+  std::string name, place;
+  bool spi = false, any_direction = true, read = false;
+  int bus = 0, address = 0;
+  std::optional<Limit> period, tolerance;
+  std::int64_t nacks = 0;
+};
+
+void judge_bus(Script& self, const BusWish& w, std::int64_t from, std::int64_t to) {
+  std::vector<std::int64_t> starts;
+  std::int64_t refused = 0;
+  for (const auto& r : self.stage().events.bus) {
+    if (r.spi != w.spi || r.bus != w.bus || r.address != w.address) continue;
+    if (!w.any_direction && r.read != w.read) continue;
+    if (r.start_ns < from || r.start_ns > to) continue;
+    starts.push_back(r.start_ns);
+    refused += r.acked ? 0 : 1;
+  }
+  if (w.period) {
+    judge_spread(self, deviations(starts, from, to, w.period->value_SI), *w.tolerance,
+                 w.name + " period deviation", w.place, to);
+  }
+  if (w.spi) return;  // SPI has no acknowledge
+  const double count = starts.empty() ? std::nan("") : static_cast<double>(refused);
+  self.judge({count, Dimension::none, w.name + " NACKs"}, How::at_most, std::nullopt,
+             Limit{static_cast<double>(w.nacks), ""}, w.place, seconds(to),
+             std::to_string(starts.size()) + " transactions");
+}
+
+// t:bus { device = "esc1", direction = "write", period = "20 ms", tolerance = "0.5 ms" }
+int bus(lua_State* L) {
+  Script& self = Script::of(L);
+  const Board& board = self.stage().board;
+  const lua::Table wish = check_table(L, 2);
+  const std::string name = wish.text("device");
+  const BoardDevice* device = board.find(name);
+  if (device == nullptr) raise(L, "unknown device '" + name + "' on " + board.name);
+  BusWish w;
+  w.name = name;
+  w.place = place_of(L);
+  w.spi = device->bus.starts_with("spi");
+  if (!w.spi && !device->bus.starts_with("i2c"))
+    raise(L, name + " is on " + device->bus + ", not I2C or SPI");
+  w.bus = std::stoi(device->bus.substr(3));
+  w.address = w.spi ? board.number(name) : device->address;
+  if (wish.has("direction")) {
+    w.any_direction = false;
+    w.read = wish.choice("direction", {"read", "write"}) == "read";
+    w.name += w.read ? " read" : " write";
+  }
+  w.period = optional_limit(wish, "period", Dimension::time);
+  w.tolerance = optional_limit(wish, "tolerance", Dimension::time);
+  w.nacks = wish.integer_or("nacks", 0, 0);
+  const std::int64_t end = window_end(self, wish);
+  check_finish(L, wish);
+  if (w.period.has_value() != w.tolerance.has_value()) raise(L, "period and tolerance go together");
+  self.add_window(end, [w](Script& script, std::int64_t from, std::int64_t to) {
+    judge_bus(script, w, from, to);
+  });
+  return 0;
+}
+
+struct LatencyWish {
+  std::string name, place;
+  std::uint16_t sensor = 0;
+  std::vector<std::uint16_t> through;
+  std::vector<const BoardDevice*> actuators;
+  Limit limit;
+};
+
+std::vector<metrics::Span> writes_to(const Stage& stage, const BoardDevice& device,
+                                     std::int64_t from, std::int64_t to) {
+  std::vector<metrics::Span> writes;
+  const int bus = std::stoi(device.bus.substr(3));
+  for (const auto& r : stage.events.bus) {
+    if (r.spi || r.read || r.bus != bus || r.address != device.address) continue;
+    if (r.start_ns >= from && r.stop_ns <= to) writes.push_back({r.start_ns, r.stop_ns});
+  }
+  return writes;
+}
+
+void judge_latency(Script& self, const LatencyWish& w, std::int64_t from, std::int64_t to) {
+  const auto& events = self.stage().events;
+  std::vector<std::vector<metrics::Span>> tasks;
+  for (std::uint16_t number : w.through) {
+    auto& spans = tasks.emplace_back();
+    const auto calls = events.calls.find(number);
+    if (calls == events.calls.end()) continue;
+    for (const auto& call : calls->second) spans.push_back({call.entry_ns, call.return_ns});
+  }
+  const auto ready = events.data_ready_ns.find(w.sensor);
+  results::Histogram histogram{w.name, "s", {}, w.limit.value_SI};
+  std::size_t untraced = 0;
+  for (const BoardDevice* device : w.actuators) {
+    const auto trace = metrics::trace_latency(
+        ready == events.data_ready_ns.end() ? std::span<const std::int64_t>{} : ready->second,
+        tasks, writes_to(self.stage(), *device, from, to));
+    for (const auto& sample : trace.samples) histogram.samples.push_back(sample.latency_s);
+    untraced += trace.untraced;
+  }
+  const auto d = metrics::distribution(histogram.samples);
+  // A write that cannot be traced has no known latency: that is not a pass.
+  const double worst = untraced > 0 ? std::nan("") : d.max;
+  std::string note = spread(d, w.limit.unit);
+  if (untraced > 0)
+    note += "; " + std::to_string(untraced) + " writes cannot be traced to a sample";
+  self.judge({worst, Dimension::time, w.name}, How::at_most, std::nullopt, w.limit, w.place,
+             seconds(to), note);
+  self.stage().report.histograms.push_back(std::move(histogram));
+}
+
+// t:latency { from = "imu", through = { "fw::imu_task", ... }, to = "esc", at_most = "7 ms" }
+int latency(lua_State* L) {
+  Script& self = Script::of(L);
+  const Board& board = self.stage().board;
+  const lua::Table wish = check_table(L, 2);
+  const std::string from = wish.text("from"), to = wish.text("to");
+  LatencyWish w;
+  w.name = from + " to " + to + " latency";
+  w.place = place_of(L);
+  if (board.number(from) < 0) raise(L, "unknown device '" + from + "' on " + board.name);
+  w.sensor = static_cast<std::uint16_t>(board.number(from));
+  for (const std::string& function : wish.texts("through")) {
+    const int number = board.watch_number(function);
+    if (number < 0) raise(L, "'" + function + "' is not watched", "add it to the watch list");
+    w.through.push_back(static_cast<std::uint16_t>(number));
+  }
+  for (const BoardDevice& device : board.devices) {
+    const bool meant = device.name == to || (to == "esc" && device.motor > 0);
+    if (meant && device.bus.starts_with("i2c")) w.actuators.push_back(&device);
+  }
+  if (w.actuators.empty()) raise(L, "no I2C device '" + to + "' on " + board.name);
+  w.limit.value_SI = wish.quantity("at_most", Dimension::time, lua::above(0.0));
+  w.limit.unit = unit_symbol(wish.text("at_most"));
+  const std::int64_t end = window_end(self, wish);
+  check_finish(L, wish);
+  self.add_window(end, [w](Script& script, std::int64_t begin_ns, std::int64_t end_ns) {
+    judge_latency(script, w, begin_ns, end_ns);
+  });
+  return 0;
+}
+
+}  // namespace
+
+void add_timing_calls(lua_State* L) {
+  const luaL_Reg calls[] = {
+      {"budget", budget}, {"bus", bus}, {"latency", latency}, {nullptr, nullptr}};
+  luaL_setfuncs(L, calls, 0);
+}
+
+}  // namespace whirl::plan

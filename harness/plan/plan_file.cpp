@@ -1,0 +1,88 @@
+#include "harness/plan/plan_file.hpp"
+
+#include <algorithm>
+#include <lua.hpp>
+
+#include "harness/lua/node.hpp"
+#include "harness/plan/raise.hpp"
+
+namespace whirl::plan {
+namespace {
+
+constexpr std::int64_t kDefaultTimeout_ns = 120'000'000'000;
+
+Result<Plan> read_plan(const lua::Table& t, std::string name, const std::string& file,
+                       const std::string& place) {
+  Plan plan;
+  plan.name = std::move(name);
+  plan.file = file;
+  plan.place = place;
+  plan.image = t.text("image");
+  plan.board = t.text_or("board", "px4fmu_v1");
+  plan.vehicle = t.text_or("vehicle", "");
+  if (t.has("stand")) plan.stand = t.table("stand");
+  if (t.has("world")) plan.world = t.table("world");
+  if (t.has("vehicle") == t.has("stand")) {
+    t.refuse("vehicle", "a plan has a vehicle or a stand, one of the two");
+  }
+  plan.tags = t.texts("tags");
+  plan.watch = t.texts("watch");
+  plan.seed = static_cast<std::uint64_t>(t.integer_or("seed", 1, 0));
+  plan.timeout_ns = t.duration_ns_or("timeout", kDefaultTimeout_ns);
+  // What the world is made of is read (and its unknown keys refused) by who makes the world.
+  if (auto good = t.finish_except({"stand", "world"}); !good) return good.error();
+  return plan;
+}
+
+}  // namespace
+
+bool Plan::has_tag(const std::string& tag) const {
+  return std::find(tags.begin(), tags.end(), tag) != tags.end();
+}
+
+// plan "name" { ... }: the call with the name gives a function that takes the table.
+int PlanFile::declare(lua_State* L) {
+  if (lua_type(L, 1) != LUA_TSTRING || lua_gettop(L) != 1) {
+    return luaL_error(L, "write it as: plan \"name\" { ... }");
+  }
+  lua_pushcclosure(L, take, 1);
+  return 1;
+}
+
+int PlanFile::take(lua_State* L) {
+  auto* self = static_cast<PlanFile*>(lua::Sandbox::owner(L));
+  const std::string name = lua_tostring(L, lua_upvalueindex(1));
+  if (!lua_istable(L, 1))
+    return luaL_error(L, "plan \"%s\": a table { ... } is wanted", name.c_str());
+  if (lua_getfield(L, 1, "run") != LUA_TFUNCTION) {
+    return luaL_error(L, "plan \"%s\": run = function(t) ... end is missing", name.c_str());
+  }
+  const int run_ref = luaL_ref(L, LUA_REGISTRYINDEX);
+  lua_pushnil(L);
+  lua_setfield(L, 1, "run");
+  const std::string place = place_of(L);
+  const auto tree = lua::tree_from_stack(L, 1, self->path_, "", place);
+  if (!tree) return raise(L, tree.error());
+  auto plan = read_plan({tree.value(), &tree.value()->root}, name, self->path_, place);
+  if (!plan) return raise(L, plan.error());
+  for (const Plan& other : self->plans_) {
+    if (other.name == name) return luaL_error(L, "two plans are called \"%s\"", name.c_str());
+  }
+  plan.value().run_ref = run_ref;
+  self->plans_.push_back(std::move(plan.value()));
+  return 0;
+}
+
+Result<std::unique_ptr<PlanFile>> PlanFile::load(const std::string& path) {
+  std::unique_ptr<PlanFile> file(new PlanFile(path));
+  file->sandbox_.set_owner(file.get());
+  lua_register(file->sandbox_.state(), "plan", declare);
+  if (auto ran = file->sandbox_.run_file(path); !ran) return ran.error();
+  lua_settop(file->sandbox_.state(), 0);
+  if (file->plans_.empty()) {
+    return Error{ErrorKind::bad_input, path, "declares no plan", "write: plan \"name\" { ... }"};
+  }
+  return file;
+}
+
+}  // namespace whirl::plan

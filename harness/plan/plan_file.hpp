@@ -1,0 +1,50 @@
+// A plan file: Lua that declares one or more plans, each with what it needs and a function to run.
+//
+//   plan "hover" { image = "flight", board = "px4fmu_v1", vehicle = "hp_quad", tags = { "quick" },
+//                  seed = 1, timeout = "60 s", watch = { "fw::imu_task" }, world = { ... },
+//                  run = function(t) ... end }
+//   Stand    instead of vehicle: stand = { prop = "hk_10x4.5", battery = "4s_2200" }
+//   Limits   tags and names are checked; a plan without run, image or name is refused with its line
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "harness/base/result.hpp"
+#include "harness/lua/sandbox.hpp"
+#include "harness/lua/table.hpp"
+
+namespace whirl::plan {
+
+struct Plan {
+  std::string name, file, place;
+  std::string image, board, vehicle;  // as written: names or paths
+  std::vector<std::string> tags, watch;
+  std::uint64_t seed = 1;
+  std::int64_t timeout_ns = 0;
+  std::optional<lua::Table> stand, world;
+  int run_ref = 0;  // in the file's Lua registry
+
+  bool has_tag(const std::string& tag) const;
+};
+
+class PlanFile {
+ public:
+  static Result<std::unique_ptr<PlanFile>> load(const std::string& path);
+
+  const std::vector<Plan>& plans() const { return plans_; }
+  lua::Sandbox& sandbox() { return sandbox_; }
+
+ private:
+  explicit PlanFile(std::string path) : path_(std::move(path)) {}
+  static int declare(lua_State* L);
+  static int take(lua_State* L);
+
+  std::string path_;
+  lua::Sandbox sandbox_;
+  std::vector<Plan> plans_;
+};
+
+}  // namespace whirl::plan

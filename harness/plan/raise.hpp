@@ -1,0 +1,16 @@
+// Errors from C++ into Lua: with the line of the plan that called.
+#pragma once
+#include <string>
+
+#include "harness/base/result.hpp"
+
+struct lua_State;
+
+namespace whirl::plan {
+
+std::string place_of(lua_State* L);  // "hover.lua:12", of the plan's innermost line
+// Raises; never returns (the int is for `return raise(...)`). A place that the error brings wins.
+int raise(lua_State* L, const Error& error);
+int raise(lua_State* L, const std::string& what, const std::string& cure = {});
+
+}  // namespace whirl::plan

@@ -1,0 +1,124 @@
+#include "harness/plan/values.hpp"
+
+#include <cstdio>
+
+#include "harness/lua/node.hpp"
+#include "harness/plan/raise.hpp"
+
+namespace whirl::plan {
+namespace {
+
+constexpr const char* kMeasurement = "measurement";
+
+int show_measurement(lua_State* L) {
+  const Measurement m = check_measurement(L, 1);
+  char text[64];
+  std::snprintf(text, sizeof text, "%.6g %s", m.value_SI, si_symbol(m.dimension));
+  lua_pushstring(L, text);
+  return 1;
+}
+
+}  // namespace
+
+void declare_measurement(lua_State* L) {
+  luaL_newmetatable(L, kMeasurement);
+  lua_pushcfunction(L, show_measurement);
+  lua_setfield(L, -2, "__tostring");
+  lua_pop(L, 1);
+}
+
+void push_measurement(lua_State* L, const Measurement& m) {
+  lua_createtable(L, 0, 3);
+  lua_pushnumber(L, m.value_SI);
+  lua_setfield(L, -2, "value");
+  lua_pushinteger(L, static_cast<int>(m.dimension));
+  lua_setfield(L, -2, "dimension");
+  lua_pushstring(L, m.name.c_str());
+  lua_setfield(L, -2, "name");
+  luaL_setmetatable(L, kMeasurement);
+}
+
+Measurement check_measurement(lua_State* L, int index) {
+  if (lua_type(L, index) == LUA_TNUMBER) return {lua_tonumber(L, index), Dimension::none, "value"};
+  bool ours = false;
+  if (lua_istable(L, index) && lua_getmetatable(L, index) != 0) {
+    luaL_getmetatable(L, kMeasurement);
+    ours = lua_rawequal(L, -1, -2) != 0;
+    lua_pop(L, 2);
+  }
+  if (!ours) {
+    raise(L, std::string("a measurement or a number is wanted, not a ") + luaL_typename(L, index));
+  }
+  Measurement m;
+  lua_getfield(L, index, "value");
+  lua_getfield(L, index < 0 ? index - 1 : index, "dimension");
+  lua_getfield(L, index < 0 ? index - 2 : index, "name");
+  m.value_SI = lua_tonumber(L, -3);
+  m.dimension = static_cast<Dimension>(lua_tointeger(L, -2));
+  m.name = luaL_optstring(L, -1, "value");
+  lua_pop(L, 3);
+  return m;
+}
+
+Limit check_limit(lua_State* L, int index, Dimension wanted) {
+  if (lua_type(L, index) == LUA_TNUMBER && wanted == Dimension::none) {
+    return {lua_tonumber(L, index), ""};
+  }
+  if (lua_type(L, index) != LUA_TSTRING) {
+    raise(L, std::string("a ") + name(wanted) + " as a text is wanted, not a " +
+                 luaL_typename(L, index));
+  }
+  const std::string text = lua_tostring(L, index);
+  const auto value = parse_quantity_as(text, wanted, "");
+  if (!value) raise(L, value.error());
+  return {value.value(), unit_symbol(text)};
+}
+
+std::int64_t check_duration_ns(lua_State* L, int index) {
+  const std::string text = check_text(L, index, "a duration such as \"1 s\"");
+  const auto ns = parse_duration_ns(text, "");
+  if (!ns) raise(L, ns.error());
+  if (ns.value() < 1'000'000) raise(L, "'" + text + "' is shorter than a step of 1 ms");
+  return ns.value();
+}
+
+std::string check_text(lua_State* L, int index, const char* what) {
+  if (lua_type(L, index) != LUA_TSTRING) {
+    raise(L, std::string(what) + " is wanted, not a " + luaL_typename(L, index));
+  }
+  return lua_tostring(L, index);
+}
+
+lua::Table check_table(lua_State* L, int index) {
+  if (!lua_istable(L, index)) {
+    raise(L, std::string("a table { ... } is wanted, not a ") + luaL_typename(L, index));
+  }
+  const auto tree = lua::tree_from_stack(L, index, "", "", place_of(L));
+  if (!tree) raise(L, tree.error());
+  return {tree.value(), &tree.value()->root};
+}
+
+void check_finish(lua_State* L, const lua::Table& table) {
+  if (auto good = table.finish(); !good) raise(L, good.error());
+}
+
+void push_handle(lua_State* L, const char* type, std::size_t number) {
+  *static_cast<std::size_t*>(lua_newuserdatauv(L, sizeof number, 0)) = number;
+  luaL_setmetatable(L, type);
+}
+
+std::size_t check_handle(lua_State* L, int index, const char* type) {
+  const auto* number = static_cast<std::size_t*>(luaL_testudata(L, index, type));
+  if (number == nullptr) raise(L, std::string("call it with a colon, as ") + type + ":method()");
+  return *number;
+}
+
+void declare_handle(lua_State* L, const char* type, const luaL_Reg* methods) {
+  luaL_newmetatable(L, type);
+  lua_newtable(L);
+  luaL_setfuncs(L, methods, 0);
+  lua_setfield(L, -2, "__index");
+  lua_pop(L, 1);
+}
+
+}  // namespace whirl::plan

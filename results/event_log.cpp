@@ -1,0 +1,145 @@
+#include "results/event_log.hpp"
+
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+
+namespace whirl::results {
+namespace {
+
+std::string text_of(std::span<const std::uint8_t> bytes) {
+  return {bytes.begin(), bytes.end()};
+}
+
+TextRecord finding_of(std::int64_t t_ns, const std::string& text) {
+  const auto cut = text.find('\0');
+  if (cut == std::string::npos) return {t_ns, "", text};
+  return {t_ns, text.substr(0, cut), text.substr(cut + 1)};
+}
+
+}  // namespace
+
+std::size_t EventLog::keep(std::span<const std::uint8_t> data) {
+  const std::size_t first = bytes.size();
+  bytes.insert(bytes.end(), data.begin(), data.end());
+  return first;
+}
+
+void EventLog::add_bus(const io::Reader& reader, bool spi) {
+  const auto head = reader.as<io::BusTransaction>();
+  const auto tail = reader.tail_after(sizeof head);
+  bus.push_back({spi, reader.header().port, head.address, head.read != 0, head.acked != 0,
+                 head.length, head.start_ns, reader.header().t_ns, keep(tail),
+                 static_cast<std::uint32_t>(tail.size())});
+}
+
+bool EventLog::add(const io::Batch& batch) {
+  io::Reader reader(batch.bytes());
+  while (reader.next()) {
+    const io::Header& header = reader.header();
+    switch (header.kind) {
+      case io::Kind::i2c_transaction:
+        add_bus(reader, false);
+        break;
+      case io::Kind::spi_transaction:
+        add_bus(reader, true);
+        break;
+      case io::Kind::uart_frame:
+      case io::Kind::uart_received:
+        uart.push_back({header.port, header.kind == io::Kind::uart_frame, header.t_ns,
+                        keep(reader.payload()), header.size});
+        break;
+      case io::Kind::data_ready:
+        data_ready_ns[header.port].push_back(header.t_ns);
+        break;
+      case io::Kind::finding:
+        findings.push_back(finding_of(header.t_ns, text_of(reader.payload())));
+        break;
+      case io::Kind::cpu_fault:
+        cpu_faults.push_back({header.t_ns, reader.as<io::CpuFault>(),
+                              text_of(reader.tail_after(sizeof(io::CpuFault)))});
+        break;
+      case io::Kind::fault_applied:
+        faults_applied_ns.emplace(header.port, header.t_ns);
+        break;
+      case io::Kind::function_call: {
+        const auto call = reader.as<io::FunctionCall>();
+        calls[header.port].push_back({call.entry_ns, header.t_ns, call.execution_ns});
+        break;
+      }
+      case io::Kind::interrupt_latency:
+        interrupts.push_back(
+            {header.port, reader.as<io::InterruptLatency>().raised_ns, header.t_ns});
+        break;
+      case io::Kind::statistics:
+        statistics = text_of(reader.payload());
+        break;
+      case io::Kind::board_reset:
+        resets.push_back({header.t_ns, header.port});
+        break;
+      case io::Kind::clock_setup:
+        clocks.push_back(reader.as<io::ClockSetup>());
+        break;
+      case io::Kind::busy_time: {
+        const auto piece = reader.as<io::BusyTime>();
+        busy.push_back({piece.since_ns, header.t_ns, piece.busy_ns});
+        break;
+      }
+      case io::Kind::body_motion:
+      case io::Kind::esc_state:
+      case io::Kind::fault:
+      case io::Kind::end_of_run:
+      case io::Kind::esc_setpoint:
+        break;  // truth.csv and the bus log have them
+    }
+  }
+  return reader.complete();
+}
+
+double EventLog::busy_share(std::int64_t from_ns, std::int64_t to_ns) const {
+  std::int64_t all = 0, used = 0;
+  for (const BusyRecord& piece : busy) {
+    if (piece.from_ns < from_ns || piece.to_ns > to_ns) continue;
+    all += piece.to_ns - piece.from_ns;
+    used += piece.busy_ns;
+  }
+  return all > 0 ? static_cast<double>(used) / static_cast<double>(all) : std::nan("");
+}
+
+Result<Done> EventLog::write_bus_csv(const std::string& path) const {
+  std::ofstream out(path, std::ios::binary);
+  out << "start_s,stop_s,bus,address,direction,acknowledged,length,bytes\n";
+  std::string line;
+  char text[96];
+  for (const BusRecord& r : bus) {
+    std::snprintf(text, sizeof text, "%.9f,%.9f,%s%d,0x%02X,%s,%d,%u,",
+                  static_cast<double>(r.start_ns) * 1e-9, static_cast<double>(r.stop_ns) * 1e-9,
+                  r.spi ? "spi" : "i2c", r.bus, r.address,
+                  r.spi ? "both" : (r.read ? "read" : "write"), r.acked ? 1 : 0, r.length);
+    line = text;
+    for (std::uint32_t i = 0; i < r.kept; ++i) {
+      static constexpr char kHex[] = "0123456789ABCDEF";
+      const std::uint8_t byte = bytes[r.first_byte + i];
+      line += kHex[byte >> 4];
+      line += kHex[byte & 15];
+    }
+    line += '\n';
+    out << line;
+  }
+  if (!out.flush()) return Error{ErrorKind::internal, path, "cannot be written", ""};
+  return Done{};
+}
+
+Result<Done> EventLog::write_telemetry(const std::string& path) const {
+  std::ofstream out(path, std::ios::binary);
+  for (const UartRecord& r : uart) {
+    if (r.sent) continue;
+    const std::uint64_t t_us = static_cast<std::uint64_t>(r.t_ns) / 1000;
+    for (int shift = 56; shift >= 0; shift -= 8) out.put(static_cast<char>(t_us >> shift));
+    out.write(reinterpret_cast<const char*>(bytes.data() + r.first_byte), r.length);
+  }
+  if (!out.flush()) return Error{ErrorKind::internal, path, "cannot be written", ""};
+  return Done{};
+}
+
+}  // namespace whirl::results

@@ -1,0 +1,99 @@
+// Everything that crossed the boundary in a run, decoded once: bus traffic, calls, interrupts, faults.
+#pragma once
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "harness/base/result.hpp"
+#include "io_bridges/link/messages.hpp"
+
+namespace whirl::results {
+
+struct BusRecord {
+  bool spi = false;
+  std::uint16_t bus = 0;
+  std::uint16_t address = 0;  // SPI: device number
+  bool read = false;
+  bool acked = true;
+  std::uint32_t length = 0;
+  std::int64_t start_ns = 0;
+  std::int64_t stop_ns = 0;
+  std::size_t first_byte = 0;  // into EventLog::bytes
+  std::uint32_t kept = 0;
+};
+
+struct CallRecord {
+  std::int64_t entry_ns = 0;
+  std::int64_t return_ns = 0;
+  std::int64_t execution_ns = 0;
+};
+
+struct InterruptRecord {
+  std::uint16_t exception = 0;
+  std::int64_t raised_ns = 0;
+  std::int64_t entered_ns = 0;
+};
+
+struct BusyRecord {
+  std::int64_t from_ns = 0, to_ns = 0, busy_ns = 0;
+};
+
+struct UartRecord {
+  std::uint16_t port = 0;
+  bool sent = false;  // to the board
+  std::int64_t t_ns = 0;
+  std::size_t first_byte = 0;
+  std::uint32_t length = 0;
+};
+
+struct TextRecord {
+  std::int64_t t_ns = 0;
+  std::string where;
+  std::string what;
+};
+
+struct CpuFaultRecord {
+  std::int64_t t_ns = 0;
+  io::CpuFault registers;
+  std::string backtrace;
+};
+
+struct ResetRecord {
+  std::int64_t t_ns = 0;
+  std::uint16_t cause = 0;
+};
+
+class EventLog {
+ public:
+  // Takes a batch of either direction; false: it was cut short, which no target may do.
+  bool add(const io::Batch& batch);
+
+  std::vector<BusRecord> bus;
+  std::vector<UartRecord> uart;
+  std::vector<InterruptRecord> interrupts;
+  std::map<std::uint16_t, std::vector<CallRecord>> calls;            // by watch number
+  std::map<std::uint16_t, std::vector<std::int64_t>> data_ready_ns;  // by device number
+  std::map<std::uint32_t, std::int64_t> faults_applied_ns;           // first, by fault number
+  std::vector<TextRecord> findings;
+  std::vector<CpuFaultRecord> cpu_faults;
+  std::vector<ResetRecord> resets;
+  std::vector<BusyRecord> busy;
+  std::vector<io::ClockSetup> clocks;
+  std::vector<std::uint8_t> bytes;
+  std::string statistics;
+
+  // Share of [from, to] outside of sleep, from the pieces that lie wholly inside; NaN without any.
+  double busy_share(std::int64_t from_ns, std::int64_t to_ns) const;
+
+  Result<Done> write_bus_csv(const std::string& path) const;
+  // What the board sent on a UART, framed as it came: time in us (big-endian u64) before each chunk
+  // of one message, as ground stations keep their logs.
+  Result<Done> write_telemetry(const std::string& path) const;
+
+ private:
+  std::size_t keep(std::span<const std::uint8_t> data);
+  void add_bus(const io::Reader& reader, bool spi);
+};
+
+}  // namespace whirl::results

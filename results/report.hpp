@@ -1,0 +1,115 @@
+// What is told of one run: the verdict, every expectation with what it measured, and the figures.
+//
+//   Units    an expectation shows its numbers in the unit that the plan wrote; all else is SI
+//   Clock    host times are for people and never for verdicts
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace whirl::results {
+
+enum class Verdict { pass, fail, inconclusive, error };
+const char* name(Verdict verdict);
+
+struct Expectation {
+  std::string name;
+  Verdict verdict = Verdict::fail;
+  std::string how;             // "at most", "at least", "within", "equal", "holds"
+  double measured = 0.0;       // in `unit`; NaN: could not be measured
+  std::optional<double> low;   // in `unit`
+  std::optional<double> high;  // in `unit`
+  std::string unit;            // as written in the plan: "ms"; "" for a bare number
+  double margin = 0.0;         // to the nearer limit, negative when failed, in `unit`
+  std::string place;           // "hover.lua:31"
+  double t_s = 0.0;            // when it was judged, or the worst value happened
+  std::string note;            // "never reached", "2 of 1000 periods late"
+
+  std::string limit_text() const;  // "at most 50 ms"
+};
+
+// A distribution with its samples, for a histogram.
+struct Histogram {
+  std::string name;
+  std::string unit;  // of the samples: "s"
+  std::vector<double> samples;
+  double limit = 0.0;
+};
+
+// A watched function, over the whole run.
+struct TaskRow {
+  std::string name;
+  std::size_t calls = 0;
+  double period_mean_s = 0, period_max_s = 0;
+  double execution_p50_s = 0, execution_p99_s = 0, execution_max_s = 0;
+  double response_p99_s = 0, response_max_s = 0;
+};
+
+struct FaultRow {
+  std::string kind;
+  std::string target;  // "i2c3 0x2A"
+  double start_s = 0;
+  double end_s = 0;       // infinity: to the end
+  double applied_s = -1;  // negative: nobody applied it
+};
+
+struct Note {
+  double t_s = 0;
+  std::string who;  // "plan", "MPU6000", "I2C3"
+  std::string text;
+};
+
+// Where the host's time went.
+struct HostTimes {
+  double total_s = 0;
+  double start_s = 0;        // until the target had started
+  double target_wait_s = 0;  // the world was done, the target was not
+  double world_s = 0;        // physics, beside the target
+  double script_s = 0;       // the plan's Lua
+  double logging_s = 0;      // records, digest
+  double results_s = 0;      // writing this folder
+};
+
+struct CpuFaultRow {
+  std::string name;       // "HardFault"
+  std::string where;      // "fw::crash at 0x08001234"
+  std::string registers;  // one per line
+  std::string backtrace;  // one frame per line
+  double t_s = 0;
+};
+
+struct Report {
+  std::string plan, file;
+  std::vector<std::string> tags;
+  Verdict verdict = Verdict::error;
+  bool bad_input = false;  // of an error: the user's (exit code 2), not ours (4)
+  std::string reason;      // one line; empty for a pass
+  std::uint64_t seed = 0;
+  std::string digest;
+  double virtual_s = 0;
+  HostTimes host;
+  std::string timing_profile;  // "8 ns per instruction"
+  std::vector<std::pair<std::string, std::string>> versions;
+  std::vector<Expectation> expectations;
+  std::vector<Histogram> histograms;
+  std::vector<TaskRow> tasks;
+  std::vector<FaultRow> faults;
+  std::vector<Note> findings;
+  std::vector<Note> log;
+  std::vector<CpuFaultRow> cpu_faults;
+  std::string statistics_json;  // the board's own words; may be empty
+
+  double speed_factor() const { return host.total_s > 0 ? virtual_s / host.total_s : 0.0; }
+};
+
+// The verdict that follows from the expectations; an error or a fault set before stays.
+void conclude(Report& report);
+
+// Exit codes: 0 pass, 1 failed, 2 bad input, 3 inconclusive, 4 internal.
+int exit_code(const Report& report);
+// Of several: internal error > bad input > failed > inconclusive > pass.
+int worse_exit_code(int a, int b);
+
+}  // namespace whirl::results
