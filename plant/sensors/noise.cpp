@@ -1,0 +1,57 @@
+#include "plant/sensors/noise.hpp"
+
+#include <cmath>
+
+namespace whirl::plant {
+namespace {
+
+// Terms of equal variance, a decade apart, add up to B^2 / (2 pi f) with this deviation each.
+double term_deviation(double instability) {
+  return instability * std::sqrt(std::log(10.0) / 3.14159265358979323846);
+}
+
+constexpr double kFlickerGrain_s = 0.01;  // its fastest term takes 1 s
+
+}  // namespace
+
+double WhiteNoise::sample(double dt_s) {
+  return density_ == 0.0 ? 0.0 : density_ / std::sqrt(dt_s) * stream_.normal();
+}
+
+GaussMarkov::GaussMarkov(double deviation, double time_s, std::uint64_t seed,
+                         const std::string& name)
+    : deviation_(deviation), time_s_(time_s), stream_(seed, name) {
+  value_ = deviation_ * stream_.normal();
+}
+
+double GaussMarkov::step(double dt_s) {
+  if (deviation_ == 0.0) return 0.0;
+  const double fade = std::exp(-dt_s / time_s_);
+  value_ = fade * value_ + deviation_ * std::sqrt(1.0 - fade * fade) * stream_.normal();
+  return value_;
+}
+
+Flicker::Flicker(double instability, std::uint64_t seed, const std::string& name)
+    : terms_{GaussMarkov(term_deviation(instability), 1.0, seed, name + ".1s"),
+             GaussMarkov(term_deviation(instability), 10.0, seed, name + ".10s"),
+             GaussMarkov(term_deviation(instability), 100.0, seed, name + ".100s"),
+             GaussMarkov(term_deviation(instability), 1000.0, seed, name + ".1000s")} {}
+
+double Flicker::step(double dt_s) {
+  waiting_s_ += dt_s;
+  double sum = 0.0;
+  const bool due = waiting_s_ >= kFlickerGrain_s;
+  for (GaussMarkov& term : terms_) sum += due ? term.step(waiting_s_) : term.value();
+  if (due) waiting_s_ = 0.0;
+  return sum;
+}
+
+double draw_normal(double deviation, std::uint64_t seed, const std::string& name) {
+  return deviation * RandomStream(seed, name).normal();
+}
+
+double draw_uniform(double low, double high, std::uint64_t seed, const std::string& name) {
+  return low + (high - low) * RandomStream(seed, name).uniform();
+}
+
+}  // namespace whirl::plant
