@@ -1,0 +1,39 @@
+// What a run is put together from, and who puts it together.
+//
+//   The program composes the virtual board and the flight world (main.cpp); the tests compose fakes,
+//   and so prove verdicts, exit codes and results without an emulator.
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "harness/base/result.hpp"
+#include "harness/executive/board_file.hpp"
+#include "harness/executive/world.hpp"
+#include "harness/plan/plan_file.hpp"
+#include "harness/target/target.hpp"
+
+namespace whirl::cli {
+
+struct Setup {
+  const plan::Plan& plan;
+  const Board& board;
+  std::string root;          // of the project: test_plans, build, results
+  std::string image;         // path of the ELF
+  std::string vehicle_file;  // path; empty for a stand
+  std::string board_text;    // JSON for the board's process
+  std::uint64_t seed = 1;
+  int gdb_port = 0;  // 0: no gdb
+};
+
+struct Composition {
+  std::function<Result<std::unique_ptr<World>>(const Setup&)> world;
+  std::function<Result<std::unique_ptr<Target>>(const Setup&)> target;
+  std::string root;
+};
+
+// The whole program but its composition. Returns the exit code.
+int run_program(int argc, char** argv, const Composition& composition);
+
+}  // namespace whirl::cli

@@ -1,0 +1,19 @@
+// What people see on the terminal while plans run and when they have ended.
+#pragma once
+#include <string>
+
+#include "harness/cli/run_one.hpp"
+
+namespace whirl::cli {
+
+bool is_terminal();  // standard error is one
+
+// A line on standard error that is rewritten in place; nothing where that is no terminal.
+ProgressSink progress_line(const std::string& plan);
+void clear_progress();
+
+// One plan's outcome: a line, and the failed expectations below it.
+std::string outcome(const Finished& finished, const std::string& root);
+std::string summary(int passed, int failed, int inconclusive, int errors);
+
+}  // namespace whirl::cli

@@ -1,0 +1,26 @@
+// Which plans a command speaks of.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "harness/base/result.hpp"
+#include "harness/cli/options.hpp"
+
+namespace whirl::cli {
+
+struct PlanChoice {
+  std::string file;
+  std::string name;
+  std::vector<std::string> tags;
+  std::string image, board, vehicle;
+};
+
+// Lua files below the given paths that declare plans. Files in folders named boards, vehicles or
+// propellers are data. An unreadable or wrong file is an Error in the list, not the end of it.
+struct FoundPlans {
+  std::vector<PlanChoice> plans;
+  std::vector<Error> errors;
+};
+FoundPlans find_plans(const RunOptions& options, const std::string& root);
+
+}  // namespace whirl::cli

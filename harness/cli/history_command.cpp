@@ -1,0 +1,27 @@
+#include "harness/cli/history_command.hpp"
+
+#include <cstdio>
+
+#include "results/history.hpp"
+
+namespace whirl::cli {
+
+int history_command(const HistoryOptions& options, const std::string& root) {
+  const auto rows = results::recall(root + "/results/history.sqlite", options.plan,
+                                    options.expectation, options.last);
+  if (!rows) {
+    std::fprintf(stderr, "whirl: %s\n", rows.error().message().c_str());
+    return 2;
+  }
+  std::string shown;
+  for (const results::PastExpectation& row : rows.value()) {
+    const std::string head = row.plan + ": " + row.name;
+    if (head != shown) std::printf("%s%s\n", shown.empty() ? "" : "\n", head.c_str());
+    shown = head;
+    std::printf("  %s  %-12s measured %-10.4g margin %-10.4g %-6s seed %s\n", row.when.c_str(),
+                row.verdict.c_str(), row.measured, row.margin, row.unit.c_str(), row.seed.c_str());
+  }
+  return 0;
+}
+
+}  // namespace whirl::cli

@@ -1,0 +1,22 @@
+// What the command line asked for.
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace whirl::cli {
+
+struct RunOptions {
+  std::vector<std::string> paths;  // plans or folders; empty: test_plans
+  std::optional<std::uint64_t> seed;
+  int jobs = 1;
+  bool gdb = false;
+  bool keep = false;  // a passing run keeps its large logs too
+  bool twice = false;
+  bool json = false;
+  std::string tag;
+  std::string only;  // the plan of this name
+};
+
+}  // namespace whirl::cli

@@ -1,0 +1,78 @@
+// The command line. CLI11 stays in this file: its header is a heavy one.
+#include <CLI/CLI.hpp>
+
+#include "harness/cli/composition.hpp"
+#include "harness/cli/doctor.hpp"
+#include "harness/cli/history_command.hpp"
+#include "harness/cli/run_command.hpp"
+
+#ifndef WHIRL_VERSION
+#define WHIRL_VERSION "unknown"
+#endif
+
+namespace whirl::cli {
+namespace {
+
+constexpr const char* kExamples = R"(Examples:
+  whirl run                                    every plan below test_plans/
+  whirl run test_plans/flight/hover.lua        one file
+  whirl run test_plans/flight --tag quick      the quick ones of a folder
+  whirl run test_plans/flight/hover.lua --seed 7 --twice
+  whirl run test_plans/flight/hover.lua --gdb  then: gdb-multiarch build/firmware/flight.elf
+  whirl list                                   what plans there are
+  whirl history hover                          how the margins went, run by run
+  whirl doctor                                 what is missing on this machine
+
+Exit codes: 0 pass, 1 a plan failed, 2 bad input or usage, 3 inconclusive, 4 internal error;
+of several plans the worst counts: 4, then 2, 1, 3, 0.
+Results: results/runs/latest/index.html, run.json, junit.xml, truth.csv, bus.csv, telemetry.tlog)";
+
+void add_plan_options(CLI::App& command, RunOptions& options) {
+  command.add_option("plans", options.paths, "plan files or folders (default: test_plans)");
+  command.add_option("--tag", options.tag, "only plans with this tag");
+  command.add_option("--only", options.only, "only the plan of this name");
+}
+
+}  // namespace
+
+int run_program(int argc, char** argv, const Composition& composition) {
+  CLI::App app{"Whirlstand: a test stand for rotorcraft firmware", "whirl"};
+  app.footer(kExamples);
+  app.set_version_flag("--version", std::string("whirl ") + WHIRL_VERSION);
+  app.require_subcommand(1);
+
+  RunOptions options;
+  std::uint64_t seed = 0;
+  auto* run = app.add_subcommand("run", "run plans; exit code 0 only if all pass");
+  add_plan_options(*run, options);
+  auto* seed_option = run->add_option("--seed", seed, "instead of the plans' own seeds");
+  run->add_option("--jobs,-j", options.jobs, "so many plans at once")->check(CLI::Range(1, 256));
+  run->add_flag("--gdb", options.gdb, "open a gdb port and hold the world's time while gdb holds");
+  run->add_flag("--keep", options.keep, "keep what went into the board's process as well");
+  run->add_flag("--twice", options.twice, "run twice and expect the same digest");
+  run->add_flag("--json", options.json, "run.json on standard output");
+
+  auto* list = app.add_subcommand("list", "list plans");
+  add_plan_options(*list, options);
+
+  HistoryOptions history;
+  auto* past = app.add_subcommand("history", "how the expectations of a plan went, run by run");
+  past->add_option("plan", history.plan, "plan name (default: all)");
+  past->add_option("--expectation", history.expectation, "only names that contain this");
+  past->add_option("--last", history.last, "so many runs")->check(CLI::Range(1, 1000));
+
+  auto* doctor = app.add_subcommand("doctor", "check tools and versions");
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    return app.exit(e) == 0 ? 0 : 2;
+  }
+  if (seed_option->count() > 0) options.seed = seed;
+  if (*list) return list_command(options, composition);
+  if (*past) return history_command(history, composition.root);
+  if (*doctor) return doctor_command(composition.root);
+  return run_command(options, composition);
+}
+
+}  // namespace whirl::cli

@@ -1,0 +1,124 @@
+#include "harness/cli/run_one.hpp"
+
+#include <filesystem>
+
+#include "results/folder.hpp"
+
+namespace whirl::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+// "flight" -> build/firmware/flight.elf; a path is taken as it is, or beside the plan.
+Result<std::string> find_file(const std::string& written, const plan::Plan& plan,
+                              const std::vector<std::string>& places,
+                              const std::string& extension) {
+  std::vector<std::string> tried;
+  if (written.find('/') != std::string::npos || fs::path(written).has_extension()) {
+    tried = {(fs::path(plan.file).parent_path() / written).string(), written};
+  } else {
+    for (const std::string& place : places) tried.push_back(place + "/" + written + extension);
+  }
+  for (const std::string& path : tried) {
+    if (fs::is_regular_file(path)) return fs::weakly_canonical(path).string();
+  }
+  return Error{ErrorKind::bad_input, plan.place, "'" + written + "' is not there",
+               "looked for " + fs::path(tried.front()).lexically_normal().string()};
+}
+
+Result<RunRecord> run_record(const PlanChoice& choice, const RunOptions& options,
+                             const Composition& composition, const ProgressSink& progress) {
+  // Loaded anew: no run sees what another left in its Lua.
+  auto file = plan::PlanFile::load(choice.file);
+  if (!file) return file.error();
+  const plan::Plan* plan = nullptr;
+  for (const plan::Plan& p : file.value()->plans()) {
+    if (p.name == choice.name) plan = &p;
+  }
+  WHIRL_CHECK(plan != nullptr, choice.name);
+
+  const std::string& root = composition.root;
+  const auto board_path = find_file(plan->board, *plan, {root + "/test_plans/boards"}, ".lua");
+  if (!board_path) return board_path.error();
+  auto board = read_board(board_path.value());
+  if (!board) return board.error();
+  for (const std::string& function : plan->watch) {
+    if (board.value().watch_number(function) < 0) board.value().watch.push_back(function);
+  }
+  const auto image = find_file(plan->image, *plan,
+                               {root + "/build/firmware", root + "/build/firmware/images"}, ".elf");
+  if (!image) return image.error();
+
+  Setup setup{*plan,
+              board.value(),
+              root,
+              image.value(),
+              "",
+              "",
+              options.seed.value_or(plan->seed),
+              options.gdb ? 1234 : 0};
+  if (!plan->vehicle.empty()) {
+    const auto vehicle = find_file(plan->vehicle, *plan, {root + "/test_plans/vehicles"}, ".lua");
+    if (!vehicle) return vehicle.error();
+    setup.vehicle_file = vehicle.value();
+  }
+  setup.board_text = board_json(
+      board.value(),
+      {.image = setup.image, .seed = setup.seed, .gdb = options.gdb, .gdb_port = setup.gdb_port});
+  auto world = composition.world(setup);
+  if (!world) return world.error();
+  auto target = composition.target(setup);
+  if (!target) return target.error();
+  return execute({*file.value(), *plan, board.value(), *world.value(), *target.value(), setup.seed},
+                 progress);
+}
+
+// --twice: the second run must cross the boundary with the very same bytes.
+void compare_digests(const RunRecord& first, results::Report& report) {
+  results::Expectation e;
+  e.name = "two runs give the same digest";
+  e.how = "holds";
+  e.verdict =
+      first.report.digest == report.digest ? results::Verdict::pass : results::Verdict::fail;
+  e.note = first.report.digest + " and " + report.digest;
+  report.expectations.push_back(e);
+  if (e.verdict == results::Verdict::fail && report.verdict == results::Verdict::pass) {
+    report.verdict = results::Verdict::fail;
+    report.reason = "two runs differ: digests " + e.note;
+  }
+}
+
+results::Report refused(const PlanChoice& choice, const RunOptions& options, const Error& error) {
+  results::Report report;
+  report.plan = choice.name;
+  report.file = choice.file;
+  report.tags = choice.tags;
+  report.seed = options.seed.value_or(0);
+  report.verdict =
+      error.kind == ErrorKind::host ? results::Verdict::inconclusive : results::Verdict::error;
+  report.bad_input = error.kind == ErrorKind::bad_input;
+  report.reason = error.message();
+  return report;
+}
+
+}  // namespace
+
+Finished run_one(const PlanChoice& choice, const RunOptions& options,
+                 const Composition& composition, const ProgressSink& progress) {
+  auto record = run_record(choice, options, composition, progress);
+  if (!record) return {refused(choice, options, record.error()), ""};
+  results::Report& report = record.value().report;
+  if (options.twice) {
+    auto again = run_record(choice, options, composition, progress);
+    if (!again) return {refused(choice, options, again.error()), ""};
+    compare_digests(again.value(), report);
+  }
+  const auto folder = results::make_run_folder(composition.root + "/results", choice.name);
+  if (!folder) return {refused(choice, options, folder.error()), ""};
+  const auto written =
+      results::write_run(folder.value(), report, record.value().truth, record.value().events);
+  if (!written) return {refused(choice, options, written.error()), ""};
+  return {std::move(report), folder.value()};
+}
+
+}  // namespace whirl::cli

@@ -1,0 +1,112 @@
+// run.json: everything about a run that a program may want to know.
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "results/folder.hpp"
+
+namespace whirl::results {
+namespace {
+
+using nlohmann::ordered_json;
+
+// JSON has no NaN: what could not be measured is null.
+ordered_json number(double x) {
+  return std::isfinite(x) ? ordered_json(x) : ordered_json(nullptr);
+}
+
+ordered_json limit_of(const Expectation& e) {
+  if (e.low && e.high && *e.low != *e.high) return {number(*e.low), number(*e.high)};
+  if (e.high) return number(*e.high);
+  if (e.low) return number(*e.low);
+  return nullptr;
+}
+
+ordered_json expectation(const Expectation& e) {
+  return {{"name", e.name},
+          {"verdict", name(e.verdict)},
+          {"measured", number(e.measured)},
+          {"how", e.how},
+          {"limit", limit_of(e)},
+          {"unit", e.unit},
+          {"margin", number(e.margin)},
+          {"place", e.place},
+          {"t_s", e.t_s},
+          {"note", e.note}};
+}
+
+ordered_json task(const TaskRow& row) {
+  return {{"name", row.name},
+          {"calls", row.calls},
+          {"period_mean_s", number(row.period_mean_s)},
+          {"period_max_s", number(row.period_max_s)},
+          {"execution_p50_s", number(row.execution_p50_s)},
+          {"execution_p99_s", number(row.execution_p99_s)},
+          {"execution_max_s", number(row.execution_max_s)},
+          {"response_p99_s", number(row.response_p99_s)},
+          {"response_max_s", number(row.response_max_s)}};
+}
+
+ordered_json host_times(const HostTimes& host) {
+  return {{"total_s", host.total_s},
+          {"start_s", host.start_s},
+          {"target_wait_s", host.target_wait_s},
+          {"world_s", host.world_s},
+          {"script_s", host.script_s},
+          {"logging_s", host.logging_s},
+          {"results_s", host.results_s}};
+}
+
+ordered_json notes(const std::vector<Note>& all) {
+  ordered_json out = ordered_json::array();
+  for (const Note& n : all) out.push_back({{"t_s", n.t_s}, {"who", n.who}, {"text", n.text}});
+  return out;
+}
+
+}  // namespace
+
+std::string run_json(const Report& r) {
+  ordered_json out;
+  out["plan"] = r.plan;
+  out["file"] = r.file;
+  out["tags"] = r.tags;
+  out["verdict"] = name(r.verdict);
+  out["reason"] = r.reason;
+  out["exit_code"] = exit_code(r);
+  out["seed"] = r.seed;
+  out["digest"] = r.digest;
+  out["virtual_s"] = r.virtual_s;
+  out["host_s"] = r.host.total_s;
+  out["speed_factor"] = r.speed_factor();
+  out["host"] = host_times(r.host);
+  out["timing_profile"] = r.timing_profile;
+  out["versions"] = ordered_json::object();
+  for (const auto& [what, version] : r.versions) out["versions"][what] = version;
+  out["expectations"] = ordered_json::array();
+  for (const Expectation& e : r.expectations) out["expectations"].push_back(expectation(e));
+  out["tasks"] = ordered_json::array();
+  for (const TaskRow& row : r.tasks) out["tasks"].push_back(task(row));
+  out["faults"] = ordered_json::array();
+  for (const FaultRow& f : r.faults) {
+    out["faults"].push_back(
+        {{"kind", f.kind},
+         {"target", f.target},
+         {"start_s", f.start_s},
+         {"end_s", number(f.end_s)},
+         {"applied_s", f.applied_s < 0 ? ordered_json(nullptr) : ordered_json(f.applied_s)}});
+  }
+  out["cpu_faults"] = ordered_json::array();
+  for (const CpuFaultRow& f : r.cpu_faults) {
+    out["cpu_faults"].push_back({{"name", f.name},
+                                 {"where", f.where},
+                                 {"t_s", f.t_s},
+                                 {"registers", f.registers},
+                                 {"backtrace", f.backtrace}});
+  }
+  out["findings"] = notes(r.findings);
+  out["log"] = notes(r.log);
+  const auto board = ordered_json::parse(r.statistics_json, nullptr, false);
+  out["board"] = board.is_discarded() ? ordered_json(nullptr) : board;
+  return out.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace whirl::results
