@@ -18,6 +18,7 @@ io_bridges/qemu/plugin   harness/base/ io_bridges/
 io_bridges/qemu/board    harness/base/ io_bridges/ plant/
 results                  harness/base/ io_bridges/link/ io_bridges/protocols/ results/
 harness                  harness/ io_bridges/protocols/ io_bridges/link/ io_bridges/devices/faults.hpp plant/ results/ firmware/esc/core/
+harness/target           harness/ io_bridges/
 harness/flight           harness/ io_bridges/ plant/ results/ firmware/esc/core/
 harness/stand            harness/ io_bridges/ plant/ results/ firmware/esc/core/
 firmware                 firmware/
@@ -25,39 +26,40 @@ firmware/esc/core        firmware/esc/core/
 END
 }
 
-allowed_for() {  # the rule of the longest folder that holds FILE
-  rules | awk -v file="$1" '
-    index(file, $1 "/") == 1 && length($1) > best { best = length($1); $1 = ""; line = $0 }
-    END { print line }'
-}
-
-# Emits "file<TAB>included" for every include of this project, in tests or not.
+# Emits "file<TAB>included" for every include of this project outside of tests.
 includes() {
-  cd "$root"
-  find harness plant io_bridges firmware results -type f \( -name '*.hpp' -o -name '*.cpp' -o -name '*.h' -o -name '*.c' \) 2>/dev/null |
+  find $(ls -d harness plant io_bridges firmware results 2>/dev/null) -type f \
+    \( -name '*.hpp' -o -name '*.cpp' -o -name '*.h' -o -name '*.c' \) |
     grep -vE '/(tests|bench)/' | sort |
     xargs -r grep -HoE '^[[:space:]]*#[[:space:]]*include[[:space:]]*"[^"]+"' |
     sed -E 's/^([^:]+):.*"([^"]+)".*/\1\t\2/'
 }
 
-offences=0
-while IFS=$'\t' read -r file included; do
-  allowed=$(allowed_for "$file")
-  if [[ $included != */* ]]; then
-    printf '%s includes "%s": name it by its path from the root\n' "$file" "$included"
-    offences=$((offences + 1))
-    continue
-  fi
-  ok=no
-  for prefix in $allowed; do
-    if [[ $included == "$prefix"* ]]; then ok=yes; fi
-  done
-  if [[ $ok == no ]]; then
-    printf '%s may not include "%s" (allowed:%s)\n' "$file" "$included" "$allowed"
-    offences=$((offences + 1))
-  fi
-done < <(includes)
-if ((offences > 0)); then
-  exit 1
-fi
-echo "layers respected"
+cd "$root"
+includes | awk -F '\t' -v rules="$(rules)" '
+  BEGIN {
+    n = split(rules, lines, "\n")
+    for (i = 1; i <= n; ++i) {
+      folder = lines[i]; sub(/ .*/, "", folder)
+      allowed[folder] = lines[i]; sub(/^[^ ]+ +/, "", allowed[folder])
+    }
+  }
+  {
+    best = ""
+    for (folder in allowed)
+      if (index($1, folder "/") == 1 && length(folder) > length(best)) best = folder
+    ok = 0
+    m = split(allowed[best], prefixes, " ")
+    for (i = 1; i <= m; ++i) if (index($2, prefixes[i]) == 1) ok = 1
+    if (index($2, "/") == 0) {
+      printf "%s includes \"%s\": name it by its path from the root\n", $1, $2; ++offences
+    } else if (!ok) {
+      printf "%s may not include \"%s\" (allowed: %s)\n", $1, $2, allowed[best]; ++offences
+    }
+    ++seen
+  }
+  END {
+    if (seen == 0) { print "no include seen: nothing was checked"; exit 1 }
+    if (offences > 0) exit 1
+    print seen " includes respect the layers"
+  }'
