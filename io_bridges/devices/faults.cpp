@@ -26,7 +26,7 @@ constexpr KindName kNames[] = {
     {FaultKind::uart_silence, "uart_silence"},
     {FaultKind::uart_flip, "uart_flip"},
     {FaultKind::supply_dip, "supply_dip"},
-    {FaultKind::mocap_lost, "mocap_lost"},
+    {FaultKind::capture_lost, "capture_lost"},
     {FaultKind::esc_stopped, "esc_stopped"},
 };
 

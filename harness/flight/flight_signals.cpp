@@ -1,0 +1,90 @@
+// The names of a flight's signals: truth of the vehicle, then what the ground station was told.
+#include <algorithm>
+#include <cmath>
+
+#include "harness/flight/flight_world.hpp"
+
+namespace whirl::flight {
+
+void FlightWorld::add_signal(std::string name, Dimension dimension, std::string about,
+                             std::function<double()> value) {
+  signals_.push_back({std::move(name), dimension, std::move(about)});
+  values_.push_back(std::move(value));
+}
+
+double FlightWorld::offset_from_target_m() const {
+  if (!station_.target()) return 0.0;
+  return (vehicle_.state().p_WB_W_m - station_.target()->p_W_m).head<2>().norm();
+}
+
+void FlightWorld::name_signals() {
+  using D = Dimension;
+  const auto state = [this]() -> const plant::VehicleState& { return vehicle_.state(); };
+  add_signal("height", D::length, "of the centre of mass above the floor",
+             [=] { return -state().p_WB_W_m.z(); });
+  add_signal("north", D::length, "position", [=] { return state().p_WB_W_m.x(); });
+  add_signal("east", D::length, "position", [=] { return state().p_WB_W_m.y(); });
+  add_signal("climb", D::speed, "velocity upwards", [=] { return -state().v_WB_W_mps.z(); });
+  add_signal("velocity_north", D::speed, "", [=] { return state().v_WB_W_mps.x(); });
+  add_signal("velocity_east", D::speed, "", [=] { return state().v_WB_W_mps.y(); });
+  const auto euler = [=] { return roll_pitch_yaw_rad(state().q_WB); };
+  add_signal("roll", D::angle, "", [=] { return euler().x(); });
+  add_signal("pitch", D::angle, "", [=] { return euler().y(); });
+  add_signal("yaw", D::angle, "from north towards east", [=] { return euler().z(); });
+  add_signal("tilt", D::angle, "between the body's z and the vertical", [=] {
+    return std::acos(std::clamp(state().q_WB.toRotationMatrix()(2, 2), -1.0, 1.0));
+  });
+  add_signal("rate_x", D::angular_rate, "", [=] { return state().w_WB_B_radps.x(); });
+  add_signal("rate_y", D::angular_rate, "", [=] { return state().w_WB_B_radps.y(); });
+  add_signal("rate_z", D::angular_rate, "", [=] { return state().w_WB_B_radps.z(); });
+  add_signal("offset", D::length, "horizontal distance from the commanded position",
+             [this] { return offset_from_target_m(); });
+  add_signal("bus_voltage", D::voltage, "at the ESCs", [=] { return state().bus_voltage_V; });
+  add_signal("battery_current", D::current, "", [=] { return state().battery_current_A; });
+  add_signal("charge_used", D::charge, "", [=] { return state().charge_used_C; });
+  add_signal("wind_north", D::speed, "of the air", [=] { return state().wind_W_mps.x(); });
+  add_signal("wind_east", D::speed, "of the air", [=] { return state().wind_W_mps.y(); });
+  add_signal("wind_down", D::speed, "of the air", [=] { return state().wind_W_mps.z(); });
+  add_signal("on_ground", D::none, "1: the gear touches",
+             [=] { return state().on_ground ? 1.0 : 0.0; });
+  name_motor_signals();
+  name_telemetry_signals();
+}
+
+void FlightWorld::name_motor_signals() {
+  using D = Dimension;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const std::string n = "_" + std::to_string(i + 1);
+    const auto motor = [this, i]() -> const plant::MotorState& {
+      return vehicle_.state().motors[i];
+    };
+    add_signal("thrust" + n, D::force, "", [=] { return motor().thrust_N; });
+    add_signal("speed" + n, D::angular_rate, "", [=] { return motor().speed_radps; });
+    add_signal("winding_current" + n, D::current, "largest magnitude in the step",
+               [=] { return motor().winding_peak_A; });
+    add_signal("bus_current" + n, D::current, "mean over the step",
+               [=] { return motor().bus_current_A; });
+    add_signal("esc_armed" + n, D::none, "", [this, i] { return escs_[i].armed() ? 1.0 : 0.0; });
+  }
+}
+
+void FlightWorld::name_telemetry_signals() {
+  using D = Dimension;
+  const auto told = [this] { return station_.telemetry(now_ns_); };
+  add_signal("told_state", D::none, "HEARTBEAT custom_mode", [=] { return told().state; });
+  add_signal("told_armed", D::none, "HEARTBEAT base_mode", [=] { return told().armed; });
+  add_signal("told_height", D::length, "", [=] { return told().height_m; });
+  add_signal("told_north", D::length, "", [=] { return told().north_m; });
+  add_signal("told_east", D::length, "", [=] { return told().east_m; });
+  add_signal("told_tilt", D::angle, "", [=] { return told().tilt_rad; });
+  add_signal("told_voltage", D::voltage, "", [=] { return told().voltage_V; });
+  add_signal("told_current", D::current, "", [=] { return told().current_A; });
+  add_signal("told_load", D::ratio, "processor load", [=] { return told().load; });
+  add_signal("heartbeat_age", D::time, "", [=] { return told().heartbeat_age_s; });
+  add_signal("command_result", D::none, "of the last COMMAND_ACK, -1 before the first",
+             [this] { return static_cast<double>(station_.last_result()); });
+  add_signal("command_pending", D::none, "1: a command waits for its answer",
+             [this] { return station_.command_pending() ? 1.0 : 0.0; });
+}
+
+}  // namespace whirl::flight

@@ -1,0 +1,75 @@
+// A flight: the vehicle in its air, four native ESCs, the capture system and the ground station.
+//
+//   Step     ESCs and station take what the target did; then everything moves 1 ms; then what is
+//            sensed goes out: body_motion, esc_state of each motor, uart_frame to the radio
+//   Command  t:command { arm = true } { takeoff = "1.1 m" } { land = true }
+//            { position = { north = "1 m", east = "0 m", height = "1.1 m" }, yaw = "0 deg" }
+//            Take-off also streams the point above where the vehicle stands as its target; land
+//            and disarm end the stream.
+//   Gust     t:gust { north = "0 m/s", east = "2 m/s", down = "0 m/s", duration = "1 s",
+//            edge = "50 ms", after = "0 s" }: where the air goes to
+//   Faults   capture_lost; supply_dip (value: volts below); esc_stopped (device "esc2")
+#pragma once
+#include <array>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "harness/executive/world.hpp"
+#include "harness/flight/capture.hpp"
+#include "harness/flight/native_esc.hpp"
+#include "harness/flight/station.hpp"
+#include "harness/flight/vehicle_file.hpp"
+#include "plant/vehicle.hpp"
+
+namespace whirl::flight {
+
+inline constexpr std::uint16_t kRadioPort = 2;  // USART2
+
+class FlightWorld : public World {
+ public:
+  FlightWorld(const FlightParams& params, std::uint64_t seed);
+  // The same with rotors of the caller's choice, for tests.
+  FlightWorld(const FlightParams& params, plant::RotorSet rotors, std::uint64_t seed);
+
+  const std::vector<Signal>& signals() const override { return signals_; }
+  void read(std::span<double> values) const override;
+  void step(std::int64_t t_ns, const io::Batch& happened, io::Batch& sensed) override;
+  Result<Done> command(const lua::Table& wish, std::int64_t now_ns) override;
+  Result<Done> gust(const lua::Table& wish, std::int64_t now_ns) override;
+  bool take_fault(const FaultSpec& fault) override;
+  std::vector<std::uint32_t> applied_faults() const override;
+  std::string status() const override;
+
+  const plant::VehicleState& truth() const { return vehicle_.state(); }
+
+ private:
+  struct WorldFault {
+    FaultSpec spec;
+    bool applied = false;
+  };
+
+  void take(const io::Batch& happened);
+  void move(std::int64_t t_ns);
+  void tell(std::int64_t t_ns, io::Batch& sensed);
+  void apply_faults(std::int64_t t_ns);
+  void add_signal(std::string name, Dimension dimension, std::string about,
+                  std::function<double()> value);
+  void name_signals();
+  void name_motor_signals();
+  void name_telemetry_signals();
+  void command_takeoff(double height_m);
+  double offset_from_target_m() const;
+
+  plant::Vehicle vehicle_;
+  std::vector<NativeEsc> escs_;
+  Capture capture_;
+  Station station_;
+  std::vector<WorldFault> faults_;
+  std::vector<Signal> signals_;
+  std::vector<std::function<double()>> values_;
+  std::int64_t now_ns_ = 0;
+};
+
+}  // namespace whirl::flight

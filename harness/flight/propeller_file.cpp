@@ -1,0 +1,52 @@
+#include "harness/flight/propeller_file.hpp"
+
+#include <filesystem>
+#include <numbers>
+
+#include "harness/lua/sandbox.hpp"
+#include "harness/lua/table.hpp"
+#include "plant/rotor/polar.hpp"
+
+namespace whirl::flight {
+namespace {
+
+Result<std::shared_ptr<const plant::PolarFamily>> load_polar(const lua::Table& file,
+                                                             const std::string& name) {
+  std::string path = file.sibling(name);
+  if (!std::filesystem::exists(path)) path = file.sibling("../../plant/data/polars/" + name);
+  const auto text = lua::read_whole_file(path);
+  if (!text) return text.error();
+  auto polar = plant::read_polar(text.value(), path);
+  if (!polar) return polar.error();
+  return std::make_shared<const plant::PolarFamily>(std::move(polar.value()));
+}
+
+}  // namespace
+
+Result<std::shared_ptr<const plant::Blade>> read_propeller(const std::string& path) {
+  const auto file = lua::read_file(path);
+  if (!file) return file.error();
+  const lua::Table& t = file.value();
+  plant::PropellerDescription d;
+  d.place = path;
+  std::ignore = t.choice("kind", {"propeller"});
+  d.name = t.text("name");
+  d.blade_count = static_cast<int>(t.integer("blades", 1, 8));
+  d.diameter_m = t.quantity("diameter", Dimension::length, lua::above(0.0));
+  d.mass_kg = t.quantity("mass", Dimension::mass, lua::above(0.0));
+  for (const lua::Table& s : t.tables("stations")) {
+    d.stations.push_back({s.number("r", lua::between(0.0, 1.0)), s.number("c", lua::above(0.0)),
+                          s.number("beta") * std::numbers::pi / 180.0});
+  }
+  std::vector<std::pair<double, std::string>> polars;
+  for (const lua::Table& p : t.tables("polars")) polars.emplace_back(p.number("r"), p.text("file"));
+  if (const auto good = t.finish(); !good) return good.error();
+  for (const auto& [r, name] : polars) {
+    auto polar = load_polar(t, name);
+    if (!polar) return polar.error();
+    d.sections.push_back({r, polar.value()});
+  }
+  return plant::make_blade(d);
+}
+
+}  // namespace whirl::flight

@@ -1,0 +1,14 @@
+// A propeller as a Lua file (test_plans/propellers): stations, sections, and the polars it names.
+// Polars are looked for beside the file, then in plant/data/polars of the tree the file is in.
+#pragma once
+#include <memory>
+#include <string>
+
+#include "harness/base/result.hpp"
+#include "plant/rotor/blade.hpp"
+
+namespace whirl::flight {
+
+Result<std::shared_ptr<const plant::Blade>> read_propeller(const std::string& path);
+
+}  // namespace whirl::flight

@@ -1,0 +1,81 @@
+// The ground station: what a pilot's computer does on the radio, and what it knows of the vehicle.
+//
+//   Up    captured poses as VICON_POSITION_ESTIMATE; the target at 10 Hz once there is one;
+//         commands, repeated every 300 ms with a rising confirmation until COMMAND_ACK
+//   Down  the vehicle's telemetry, last value of each; nothing is known before it was heard
+//   Ids   we are 255/190, the vehicle is 1/1
+#pragma once
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "harness/flight/capture.hpp"
+#include "io_bridges/protocols/mavlink_messages.hpp"
+
+namespace whirl::flight {
+
+struct Target {  // where the vehicle shall be, frame W
+  Eigen::Vector3d p_W_m = Eigen::Vector3d::Zero();
+  double yaw_rad = 0.0;
+};
+
+// What telemetry has told, NaN until it did.
+struct Telemetry {
+  double state = std::nan("");  // HEARTBEAT custom_mode
+  double armed = std::nan("");
+  double heartbeat_age_s = std::nan("");
+  double height_m = std::nan(""), north_m = std::nan(""), east_m = std::nan("");
+  double tilt_rad = std::nan("");
+  double voltage_V = std::nan(""), current_A = std::nan(""), load = std::nan("");
+  std::uint64_t frames = 0;
+};
+
+class Station {
+ public:
+  using Send = std::function<void(std::int64_t t_ns, std::span<const std::uint8_t> frame)>;
+
+  Station();
+
+  void send_pose(const CapturedPose& pose, const Send& send);
+  void set_target(const std::optional<Target>& target) { target_ = target; }
+  const std::optional<Target>& target() const { return target_; }
+  // COMMAND_LONG; waits its turn behind an earlier one that is not yet acknowledged.
+  void command(std::uint16_t command, const std::array<float, 7>& param);
+  // What is due at t_ns: set-points and commands.
+  void step(std::int64_t t_ns, const Send& send);
+  void receive(std::span<const std::uint8_t> bytes, std::int64_t t_ns);
+
+  Telemetry telemetry(std::int64_t now_ns) const;
+  bool command_pending() const { return !commands_.empty(); }
+  int last_result() const { return last_result_; }  // of COMMAND_ACK; -1 before the first
+  std::uint64_t unanswered() const { return unanswered_; }
+  const std::string& last_text() const { return last_text_; }  // of STATUSTEXT
+
+ private:
+  struct Pending {
+    io::CommandLong message;
+    std::int64_t next_ns = 0;
+    int tries = 0;
+  };
+  void hear(const io::MavlinkFrame& frame);
+  void acknowledged(const io::CommandAck& ack);
+
+  io::MavlinkSender sender_{255, 190, 0};
+  io::MavlinkParser parser_;
+  std::optional<Target> target_;
+  std::int64_t next_target_ns_ = 0;
+  std::deque<Pending> commands_;
+  int last_result_ = -1;
+  std::uint64_t unanswered_ = 0;
+  Telemetry telemetry_;
+  std::string last_text_;
+  std::int64_t heard_ns_ = 0, heartbeat_ns_ = -1;
+};
+
+}  // namespace whirl::flight

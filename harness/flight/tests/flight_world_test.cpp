@@ -1,0 +1,212 @@
+// The whole flight with a pilot of ten lines in the firmware's place: he reads truth and writes
+// set-points at 50 Hz, as the flight image will through its buses.
+#include "harness/flight/flight_world.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "harness/base/near.hpp"
+#include "harness/flight/tests/paths.hpp"
+#include "harness/lua/table.hpp"
+
+namespace whirl::flight {
+namespace {
+
+constexpr std::int64_t kMs = 1'000'000;
+
+FlightParams hp_quad_file() {
+  auto params = read_vehicle(std::string(kSourceFolder) + "/test_plans/vehicles/hp_quad.lua");
+  EXPECT_TRUE(params.ok()) << (params.ok() ? "" : params.error().message());
+  return params.value();
+}
+
+lua::Table wish(const std::string& text) {
+  return lua::read_text("return " + text, "plan.lua").value();
+}
+
+struct Flight {
+  FlightWorld world{hp_quad_file(), 1};
+  io::Batch happened, sensed;
+  std::int64_t t_ns = 0;
+  double height_m = 0.0;  // wanted; 0: motors stopped
+  double height_integral_N = 0.0;
+
+  Flight() { world.step(0, happened, sensed); }
+
+  double value(const std::string& name) const {
+    const auto& signals = world.signals();
+    std::vector<double> values(signals.size());
+    world.read(values);
+    for (std::size_t i = 0; i < signals.size(); ++i) {
+      if (signals[i].name == name) return values[i];
+    }
+    ADD_FAILURE() << "no signal " << name;
+    return std::nan("");
+  }
+  // T from the height, torques from position and attitude; geometry as in the vehicle file.
+  std::array<double, 4> pilot() {
+    const plant::VehicleState& s = world.truth();
+    const Eigen::Vector3d rpy = roll_pitch_yaw_rad(s.q_WB);
+    const double error = height_m + s.p_WB_W_m.z();
+    height_integral_N = std::clamp(height_integral_N + 0.05 * error, -2.0, 2.0);
+    const double T = 0.9 * 9.81 + 6.0 * error + 5.0 * s.v_WB_W_mps.z() + height_integral_N;
+    const auto tilt = [](double x, double v) {
+      return std::clamp(0.08 * x + 0.12 * v, -0.25, 0.25);
+    };
+    const double roll = -tilt(s.p_WB_W_m.y(), s.v_WB_W_mps.y());
+    const double pitch = tilt(s.p_WB_W_m.x(), s.v_WB_W_mps.x());
+    const double tau_x = 0.35 * (roll - rpy.x()) - 0.10 * s.w_WB_B_radps.x();
+    const double tau_y = 0.35 * (pitch - rpy.y()) - 0.10 * s.w_WB_B_radps.y();
+    const double yaw = -0.3 * rpy.z() - 1.0 * s.w_WB_B_radps.z();  // in newtons of each pair
+    const double x = tau_y / 0.25 / 2, y = tau_x / 0.25 / 2;
+    return {T / 4 + x + yaw, T / 4 - y - yaw, T / 4 - x + yaw, T / 4 + y - yaw};
+  }
+  void step() {
+    happened.clear();
+    sensed.clear();
+    if (t_ns / kMs % 20 == 0) {
+      const auto wanted = pilot();
+      for (std::uint16_t m = 1; m <= 4; ++m) {
+        const std::uint16_t v =
+            height_m > 0.0 ? io::setpoint_of_value(io::EscMode::thrust_by_rpm, wanted[m - 1u]) : 0;
+        happened.add(io::Kind::esc_setpoint, m, t_ns, io::EscSetpoint{v, 1, {}, t_ns});
+      }
+    }
+    t_ns += kMs;
+    world.step(t_ns, happened, sensed);
+  }
+  void run(double seconds) {
+    for (int i = 0; i < std::lround(seconds * 1000.0); ++i) step();
+  }
+};
+
+TEST(FlightWorld, StandsStillUntilItIsFlown) {
+  Flight flight;
+  flight.run(1.0);
+  EXPECT_EQ(flight.value("esc_armed_3"), 1.0);  // the pilot's zeros arm
+  EXPECT_TRUE(near(flight.value("height"), 0.11, stated(0.002, "gear settles")));
+  EXPECT_EQ(flight.value("on_ground"), 1.0);
+  EXPECT_GT(flight.value("bus_voltage"), 15.7);
+}
+
+TEST(FlightWorld, HoversWhereItsPilotWants) {
+  Flight flight;
+  flight.run(1.0);
+  flight.height_m = 1.1;
+  flight.run(8.0);
+  double worst_height = 0.0, worst_offset = 0.0, worst_tilt = 0.0;
+  for (int i = 0; i < 3000; ++i) {
+    flight.step();
+    worst_height = std::max(worst_height, std::abs(flight.value("height") - 1.1));
+    worst_offset = std::max(worst_offset, std::hypot(flight.value("north"), flight.value("east")));
+    worst_tilt = std::max(worst_tilt, flight.value("tilt"));
+  }
+  EXPECT_LT(worst_height, 0.05);
+  EXPECT_LT(worst_offset, 0.10);
+  EXPECT_LT(worst_tilt, 0.05);
+  // Four thrusts carry 900 g; hover is 3950 RPM by the thesis's static fit.
+  double thrust_N = 0.0;
+  for (const char* name : {"thrust_1", "thrust_2", "thrust_3", "thrust_4"}) {
+    thrust_N += flight.value(name);
+  }
+  EXPECT_TRUE(near(thrust_N, 0.9 * 9.80665, stated(0.3, "small motions")));
+  EXPECT_TRUE(near(flight.value("speed_1"), 3950 * 0.10472, stated(20.0, "5 %, static fit")));
+}
+
+TEST(FlightWorld, AGustPushesItDownwind) {
+  Flight flight;
+  flight.run(1.0);
+  flight.height_m = 1.1;
+  flight.run(8.0);
+  const double before_m = flight.value("east");
+  ASSERT_TRUE(flight.world.gust(wish("{ east = '2 m/s', duration = '1 s' }"), flight.t_ns).ok());
+  flight.run(0.5);
+  EXPECT_TRUE(near(flight.value("wind_east"), 2.0, round_off(4, 2)));
+  flight.run(0.5);
+  EXPECT_GT(flight.value("east"), before_m + 0.01);
+}
+
+TEST(FlightWorld, TellsTheBoardWhatItFeels) {
+  Flight flight;
+  flight.run(1.0);
+  io::Reader reader(flight.sensed.bytes());
+  int states = 0;
+  bool motion_seen = false;
+  while (reader.next()) {
+    if (reader.header().kind == io::Kind::esc_state) ++states;
+    if (reader.header().kind != io::Kind::body_motion) continue;
+    motion_seen = true;
+    const auto motion = reader.as<io::BodyMotion>();
+    EXPECT_TRUE(
+        near(motion.specific_force_B_mps2[2], -9.80665, stated(0.2, "settled on its gear")));
+    EXPECT_GT(motion.magnetic_field_B_T[0], 0.0);  // nose north
+  }
+  EXPECT_TRUE(motion_seen);
+  EXPECT_EQ(states, 4);
+}
+
+TEST(FlightWorld, SendsPosesAndCommandsOverTheRadio) {
+  Flight flight;
+  ASSERT_TRUE(flight.world.command(wish("{ arm = true }"), 0).ok());
+  ASSERT_TRUE(flight.world.command(wish("{ takeoff = '1.1 m' }"), 0).ok());
+  int poses = 0, commands = 0, targets = 0;
+  io::MavlinkParser parser([&](const io::MavlinkFrame& frame, std::span<const std::uint8_t>) {
+    poses += frame.msgid == 104 ? 1 : 0;
+    commands += frame.msgid == 76 ? 1 : 0;
+    targets += frame.msgid == 84 ? 1 : 0;
+  });
+  for (int i = 0; i < 1000; ++i) {
+    flight.step();
+    io::Reader reader(flight.sensed.bytes());
+    while (reader.next()) {
+      if (reader.header().kind != io::Kind::uart_frame) continue;
+      for (const std::uint8_t byte : reader.payload()) parser.add(byte);
+    }
+  }
+  EXPECT_EQ(poses, 40);
+  EXPECT_EQ(targets, 10);
+  EXPECT_EQ(commands, 4);
+}
+
+TEST(FlightWorld, RefusesWishesItDoesNotUnderstand) {
+  Flight flight;
+  for (const char* text : {"{ fly = true }", "{ takeoff = '1.1 kg' }", "{ takeoff = '-1 m' }"}) {
+    EXPECT_FALSE(flight.world.command(wish(text), 0).ok()) << text;
+  }
+  EXPECT_FALSE(flight.world.gust(wish("{ duration = '1 s' }"), 0).ok());
+}
+
+TEST(FlightWorld, ItsFaultsActAndAreReportedOnlyThen) {
+  Flight flight;
+  const auto fault = [&](std::uint32_t number, const char* kind, const char* device, double value) {
+    FaultSpec spec;
+    spec.number = number;
+    spec.kind = kind;
+    spec.device = device;
+    spec.start_ns = 2000 * kMs;
+    spec.end_ns = 2500 * kMs;
+    spec.value = value;
+    return flight.world.take_fault(spec);
+  };
+  EXPECT_TRUE(fault(1, "capture_lost", "", 0));
+  EXPECT_TRUE(fault(2, "supply_dip", "", 3.0));
+  EXPECT_TRUE(fault(3, "esc_stopped", "esc2", 0));
+  EXPECT_FALSE(fault(4, "i2c_nack", "esc2", 0));
+  flight.run(1.0);
+  flight.height_m = 0.02;
+  flight.run(0.9);
+  EXPECT_TRUE(flight.world.applied_faults().empty());
+  EXPECT_EQ(flight.value("esc_armed_2"), 1.0);
+  const double before_V = flight.value("bus_voltage");
+  flight.run(0.3);
+  auto applied = flight.world.applied_faults();
+  std::sort(applied.begin(), applied.end());
+  EXPECT_EQ(applied, (std::vector<std::uint32_t>{1, 2, 3}));
+  EXPECT_EQ(flight.value("esc_armed_2"), 0.0);
+  EXPECT_TRUE(near(flight.value("bus_voltage"), before_V - 3.0, stated(0.5, "load changes")));
+}
+
+}  // namespace
+}  // namespace whirl::flight

@@ -1,0 +1,164 @@
+#include "harness/flight/station.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "harness/base/near.hpp"
+
+namespace whirl::flight {
+namespace {
+
+constexpr std::int64_t kMs = 1'000'000;
+
+struct Air {
+  Station station;
+  std::vector<io::MavlinkFrame> sent;
+  std::vector<std::int64_t> times;
+  io::MavlinkSender vehicle{1, 1, 0};
+  io::MavlinkParser parser{
+      [this](const io::MavlinkFrame& f, std::span<const std::uint8_t>) { sent.push_back(f); }};
+  Station::Send send = [this](std::int64_t t_ns, std::span<const std::uint8_t> frame) {
+    times.push_back(t_ns);
+    for (const std::uint8_t byte : frame) parser.add(byte);
+  };
+
+  void run(std::int64_t from_ms, std::int64_t to_ms) {
+    for (std::int64_t ms = from_ms; ms < to_ms; ++ms) station.step(ms * kMs, send);
+  }
+  template <typename Message>
+  void vehicle_says(const Message& message, std::int64_t t_ns) {
+    station.receive(io::encode(io::pack(message, vehicle)), t_ns);
+  }
+};
+
+TEST(Station, RepeatsACommandWithRisingConfirmationUntilItIsAcknowledged) {
+  Air air;
+  air.station.command(400, {1.0f});
+  air.run(0, 1000);
+  ASSERT_EQ(air.sent.size(), 4u);  // 0, 300, 600, 900 ms
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_EQ(io::unpack<io::CommandLong>(air.sent[i])->confirmation, i);
+    EXPECT_EQ(air.times[i], static_cast<std::int64_t>(i) * 300 * kMs);
+  }
+  io::CommandAck ack;
+  ack.command = 400;
+  air.vehicle_says(ack, 1000 * kMs);
+  air.run(1000, 3000);
+  EXPECT_EQ(air.sent.size(), 4u);
+  EXPECT_EQ(air.station.last_result(), 0);
+  EXPECT_FALSE(air.station.command_pending());
+}
+
+TEST(Station, AnAnswerToAnotherCommandDoesNotCount) {
+  Air air;
+  air.station.command(400, {1.0f});
+  air.run(0, 1);
+  io::CommandAck ack;
+  ack.command = 22;
+  air.vehicle_says(ack, kMs);
+  EXPECT_TRUE(air.station.command_pending());
+}
+
+TEST(Station, CommandsGoOneAfterTheOther) {
+  Air air;
+  air.station.command(400, {1.0f});
+  air.station.command(22, {0, 0, 0, 0, 0, 0, 1.1f});
+  air.run(0, 10);
+  ASSERT_EQ(air.sent.size(), 1u);
+  io::CommandAck ack;
+  ack.command = 400;
+  air.vehicle_says(ack, 10 * kMs);
+  air.run(10, 20);
+  ASSERT_EQ(air.sent.size(), 2u);
+  EXPECT_EQ(io::unpack<io::CommandLong>(air.sent[1])->param[6], 1.1f);
+}
+
+TEST(Station, StreamsItsTargetTenTimesASecond) {
+  Air air;
+  air.run(0, 1000);
+  EXPECT_TRUE(air.sent.empty());
+  air.station.set_target(Target{{1.0, 2.0, -1.5}, 0.5});
+  air.run(1000, 2000);
+  ASSERT_EQ(air.sent.size(), 10u);
+  const auto target = io::unpack<io::SetPositionTargetLocalNed>(air.sent[0]);
+  ASSERT_TRUE(target);
+  EXPECT_EQ(target->z, -1.5f);
+  EXPECT_EQ(target->yaw, 0.5f);
+  EXPECT_EQ(target->type_mask, 0x09F8);
+  EXPECT_EQ(target->coordinate_frame, 1);
+}
+
+TEST(Station, KnowsNothingBeforeItHears) {
+  Air air;
+  EXPECT_TRUE(std::isnan(air.station.telemetry(0).height_m));
+  io::LocalPositionNed position;
+  position.z = -1.25f;
+  air.vehicle_says(position, 5 * kMs);
+  EXPECT_EQ(air.station.telemetry(0).height_m, 1.25);
+  io::Heartbeat beat;
+  beat.base_mode = 0x81;
+  beat.custom_mode = 2;
+  air.vehicle_says(beat, 10 * kMs);
+  const Telemetry told = air.station.telemetry(510 * kMs);
+  EXPECT_EQ(told.state, 2.0);
+  EXPECT_EQ(told.armed, 1.0);
+  EXPECT_TRUE(near(told.heartbeat_age_s, 0.5, round_off(4, 0.5)));
+}
+
+TEST(Station, TiltIsTheAngleBetweenTheVerticals) {
+  Air air;
+  io::AttitudeQuaternion attitude;  // 30 degrees about x, then 90 about z: tilt stays 30
+  const float a = std::numbers::pi_v<float> / 12.0f, b = std::numbers::pi_v<float> / 4.0f;
+  attitude.q1 = std::cos(b) * std::cos(a);
+  attitude.q2 = std::cos(b) * std::sin(a);
+  attitude.q3 = std::sin(b) * std::sin(a);
+  attitude.q4 = std::sin(b) * std::cos(a);
+  air.vehicle_says(attitude, 0);
+  EXPECT_TRUE(near(air.station.telemetry(0).tilt_rad, std::numbers::pi / 6,
+                   stated(1e-5, "single precision")));
+}
+
+TEST(Capture, LooksFortyTimesASecondAndSendsLate) {
+  Capture capture({}, 1);
+  std::vector<CapturedPose> poses;
+  for (int ms = 0; ms < 1000; ++ms) {
+    const auto pose = capture.look(ms * kMs, {1, 2, -3}, Eigen::Quaterniond::Identity());
+    if (pose) poses.push_back(*pose);
+  }
+  ASSERT_EQ(poses.size(), 40u);
+  EXPECT_EQ(poses[1].exposed_ns, 25 * kMs);
+  EXPECT_EQ(poses[1].sent_ns, 33 * kMs);
+  EXPECT_TRUE(near(poses[1].p_WB_W_m.z(), -3.0, stated(0.006, "6 sigma")));
+  EXPECT_NE(poses[1].p_WB_W_m.z(), -3.0);
+}
+
+TEST(Capture, AnOcclusionHidesItsWindowOnly) {
+  Capture capture({}, 1), open({}, 1);
+  capture.occlude({7, 200 * kMs, 400 * kMs});
+  for (int ms = 0; ms < 1000; ++ms) {
+    const auto seen = capture.look(ms * kMs, {0, 0, 0}, Eigen::Quaterniond::Identity());
+    const auto there = open.look(ms * kMs, {0, 0, 0}, Eigen::Quaterniond::Identity());
+    const bool hidden = ms >= 200 && ms < 400;
+    EXPECT_EQ(seen.has_value(), there.has_value() && !hidden) << ms;
+    if (!seen) continue;
+    EXPECT_EQ(seen->p_WB_W_m, there->p_WB_W_m);  // the noise keeps its place
+  }
+  EXPECT_TRUE(capture.occlusions()[0].acted);
+}
+
+TEST(Capture, AnglesFollowTheAerospaceOrder) {
+  using Eigen::AngleAxisd;
+  const Eigen::Quaterniond q = AngleAxisd(0.3, Eigen::Vector3d::UnitZ()) *
+                               AngleAxisd(-0.2, Eigen::Vector3d::UnitY()) *
+                               AngleAxisd(0.1, Eigen::Vector3d::UnitX());
+  const Eigen::Vector3d rpy = roll_pitch_yaw_rad(q);
+  EXPECT_TRUE(near(rpy.x(), 0.1, round_off(10, 1)));
+  EXPECT_TRUE(near(rpy.y(), -0.2, round_off(10, 1)));
+  EXPECT_TRUE(near(rpy.z(), 0.3, round_off(10, 1)));
+}
+
+}  // namespace
+}  // namespace whirl::flight

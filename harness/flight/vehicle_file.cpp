@@ -1,0 +1,128 @@
+#include "harness/flight/vehicle_file.hpp"
+
+#include <numbers>
+
+#include "harness/flight/propeller_file.hpp"
+#include "harness/lua/table.hpp"
+
+namespace whirl::flight {
+namespace {
+
+using lua::above;
+using lua::at_least;
+using lua::between;
+using lua::Table;
+
+void read_airframe(const Table& t, plant::AirframeParams& a) {
+  a.mass_kg = t.quantity("mass", Dimension::mass, above(0.0));
+  const auto inertia = t.quantities("inertia", Dimension::inertia, above(0.0));
+  if (inertia.size() != 3) {
+    t.refuse("inertia", "needs three values, about x, y and z");
+  } else {
+    a.inertia_kgm2 = {inertia[0], inertia[1], inertia[2]};
+  }
+  const double arm = t.quantity("arm", Dimension::length, above(0.0));
+  const double above_m = t.quantity_or("rotor_height", Dimension::length, 0.03);
+  // Motor 1 front, 2 right, 3 rear, 4 left; 1 and 3 counter-clockwise seen from above.
+  const Eigen::Vector3d at[] = {
+      {arm, 0, -above_m}, {0, arm, -above_m}, {-arm, 0, -above_m}, {0, -arm, -above_m}};
+  for (std::size_t i = 0; i < 4; ++i) {
+    a.rotors[i].p_BP_B_m = at[i];
+    a.rotors[i].spin = i % 2 == 0 ? +1 : -1;
+  }
+  a.parasitic_area_m2 = t.number_or("parasitic_area_m2", 0.0, at_least(0.0));
+  a.rotor_drag_spm = t.number_or("rotor_drag_s_per_m", 0.0, at_least(0.0));
+}
+
+void read_gear(const Table& t, plant::ContactParams& c) {
+  const double half = t.quantity("half_span", Dimension::length, above(0.0));
+  const double below = t.quantity("below", Dimension::length, above(0.0));
+  c.gear_B_m.clear();
+  for (const double x : {-half, half}) {
+    for (const double y : {-half, half}) c.gear_B_m.emplace_back(x, y, below);
+  }
+  c.foot_radius_m = t.quantity_or("foot_radius", Dimension::length, c.foot_radius_m, above(0.0));
+  c.restitution = t.number_or("restitution", c.restitution, between(0.0, 1.0));
+  c.friction = t.number_or("friction", c.friction, at_least(0.0));
+}
+
+void read_motor(const Table& t, plant::MotorParams& m) {
+  const double kv = t.number("kv_rpm_per_V", above(0.0));
+  if (kv > 0.0) m.torque_constant_NmpA = 30.0 / (std::numbers::pi * kv);
+  m.resistance_ohm = t.quantity("resistance", Dimension::resistance, above(0.0));
+  m.winding_resistance_ohm = t.quantity_or("winding_resistance", Dimension::resistance,
+                                           m.winding_resistance_ohm, above(0.0));
+  m.inductance_H = t.quantity("inductance", Dimension::inductance, above(0.0));
+  m.no_load_current_A = t.quantity("no_load_current", Dimension::current, at_least(0.0));
+  m.inertia_kgm2 = t.quantity("inertia", Dimension::inertia, above(0.0));
+  m.pole_pairs = static_cast<int>(t.integer_or("pole_pairs", m.pole_pairs, 1, 100));
+}
+
+void read_battery(const Table& t, plant::BatteryParams& b) {
+  if (t.choice("kind", {"lipo_4s_2200", "lab_supply"}) == "lab_supply") {
+    b = plant::lab_supply(t.quantity("voltage", Dimension::voltage, above(0.0)),
+                          t.quantity("resistance", Dimension::resistance, at_least(0.0)));
+    return;
+  }
+  b = plant::lipo_4s_2200();
+  b.capacity_C = t.quantity_or("capacity", Dimension::charge, b.capacity_C, above(0.0));
+  b.series_resistance_ohm =
+      t.quantity_or("resistance", Dimension::resistance, b.series_resistance_ohm, at_least(0.0));
+  b.initial_depth_of_discharge = t.quantity_or("depth_of_discharge", Dimension::ratio,
+                                               b.initial_depth_of_discharge, between(0.0, 1.0));
+}
+
+void read_esc(const Table& t, EscParams& e) {
+  const std::string mode = t.choice("mode", {"duty", "rpm", "thrust_by_rpm"});
+  e.mode = mode == "duty"  ? io::EscMode::duty
+           : mode == "rpm" ? io::EscMode::rpm
+                           : io::EscMode::thrust_by_rpm;
+  e.max_current_A = t.quantity_or("max_current", Dimension::current, e.max_current_A, above(0.0));
+  e.brake_current_A =
+      t.quantity_or("brake_current", Dimension::current, e.brake_current_A, at_least(0.0));
+  e.arming_voltage_V =
+      t.quantity_or("arming_voltage", Dimension::voltage, e.arming_voltage_V, at_least(0.0));
+  e.kp_Vspradps = t.number_or("kp_V_s_per_rad", e.kp_Vspradps, at_least(0.0));
+  e.ki_Vprad = t.number_or("ki_V_per_rad", e.ki_Vprad, at_least(0.0));
+}
+
+void read_capture(const Table& t, CaptureParams& c) {
+  c.rate_Hz = t.quantity_or("rate", Dimension::frequency, c.rate_Hz, above(0.0));
+  c.latency_ns = t.duration_ns_or("latency", c.latency_ns);
+  c.position_noise_m =
+      t.quantity_or("position_noise", Dimension::length, c.position_noise_m, at_least(0.0));
+  c.angle_noise_rad =
+      t.quantity_or("angle_noise", Dimension::angle, c.angle_noise_rad, at_least(0.0));
+}
+
+}  // namespace
+
+Result<FlightParams> read_vehicle(const std::string& path) {
+  const auto file = lua::read_file(path);
+  if (!file) return file.error();
+  const Table& t = file.value();
+  FlightParams p;
+  std::ignore = t.choice("kind", {"vehicle"});
+  p.name = t.text("name");
+  read_airframe(t, p.vehicle.airframe);
+  read_gear(t.table("gear"), p.vehicle.airframe.contact);
+  p.vehicle.avionics_current_A = t.quantity_or("avionics_current", Dimension::current,
+                                               p.vehicle.avionics_current_A, at_least(0.0));
+  read_motor(t.table("motor"), p.vehicle.motor);
+  read_battery(t.table("battery"), p.vehicle.battery);
+  read_esc(t.table("esc"), p.esc);
+  if (t.has("capture")) read_capture(t.table("capture"), p.capture);
+  const std::string propeller = t.text("propeller");
+  if (const auto good = t.finish(); !good) return good.error();
+
+  auto blade = read_propeller(t.sibling(propeller));
+  if (!blade) return blade.error();
+  p.blade = blade.value();
+  for (plant::RotorMount& mount : p.vehicle.airframe.rotors) {
+    mount.radius_m = plant::radius_m(*p.blade);
+  }
+  if (const auto good = plant::validate(p.vehicle, path); !good) return good.error();
+  return p;
+}
+
+}  // namespace whirl::flight

@@ -1,0 +1,25 @@
+// A vehicle as a Lua file (test_plans/vehicles): airframe, propeller, motor, pack, ESC, capture
+// system. What is physics goes to the plant's params, what is belief or protocol to the ESC's.
+#pragma once
+#include <memory>
+#include <string>
+
+#include "harness/base/result.hpp"
+#include "harness/flight/capture.hpp"
+#include "harness/flight/native_esc.hpp"
+#include "plant/rotor/blade.hpp"
+#include "plant/vehicle.hpp"
+
+namespace whirl::flight {
+
+struct FlightParams {
+  std::string name;
+  plant::VehicleParams vehicle;
+  std::shared_ptr<const plant::Blade> blade;
+  EscParams esc;
+  CaptureParams capture;
+};
+
+Result<FlightParams> read_vehicle(const std::string& path);
+
+}  // namespace whirl::flight

@@ -1,0 +1,27 @@
+-- The "HP quad" of M. Bangura's thesis (ANU, 2017), plus layout: motor 1 front, 2 right, 3 rear,
+-- 4 left; 1 and 3 turn counter-clockwise seen from above. Inertia, gear and rotor height are not in
+-- the thesis: inertia from the parts list, the rest measured on such frames.
+return {
+  kind = "vehicle",
+  name = "HP quad",
+  mass = "900 g",
+  inertia = { "0.0125 kg m2", "0.0125 kg m2", "0.0235 kg m2" },
+  arm = "25 cm",
+  rotor_height = "3 cm", -- of the rotor plane above the centre of mass
+  propeller = "../propellers/hk_10x4.5.lua",
+  gear = { half_span = "12 cm", below = "10 cm", foot_radius = "1 cm", restitution = 0.3, friction = 0.8 },
+  parasitic_area_m2 = 0.01, -- drag coefficient x frontal area
+  avionics_current = "250 mA",
+  motor = { -- Turnigy D2836/9 with ESC32v2 and leads, line to line
+    kv_rpm_per_V = 950,
+    resistance = "160 mohm",
+    winding_resistance = "70 mohm",
+    inductance = "100 uH",
+    no_load_current = "1 A",
+    inertia = "3.752e-5 kg m2", -- with propeller
+    pole_pairs = 7,
+  },
+  battery = { kind = "lipo_4s_2200" },
+  esc = { mode = "thrust_by_rpm", max_current = "20 A", arming_voltage = "15.7 V" },
+  capture = { rate = "40 Hz", latency = "8 ms", position_noise = "1 mm", angle_noise = "0.002 rad" },
+}
