@@ -99,6 +99,11 @@ Result<Done> Machine::build(const std::string& versions) {
   map_memories();
   load_image();
   board_.power_on(versions);
+  if (board_.config().gdb_port == 0) {
+    parking_ = api_.qemu_bh_new_full(
+        [](void* self) { static_cast<Machine*>(self)->park_main_loop(); }, this, "whirl", nullptr);
+    api_.qemu_bh_schedule(parking_);
+  }
   // QEMU resets the machine once more before it starts; the first thing that runs is this work.
   api_.async_run_on_cpu(
       cpu_,
@@ -234,6 +239,12 @@ std::uint32_t Machine::accessing_pc() const {
 
 void Machine::end() {
   _exit(0);
+}
+
+void Machine::park_main_loop() {
+  if (!api_.runstate_is_running()) return api_.qemu_bh_schedule(parking_);  // still setting up
+  api_.qemu_mutex_unlock_iothread();
+  for (;;) pause();  // the process ends by end(), or by the harness
 }
 
 // Exact sleep. With -icount QEMU's main loop may move the clock on as soon as the CPU has halted,

@@ -7,6 +7,8 @@
 //             only the core sees (CCM, SCS, debug blocks)
 //   Time      one QEMU timer for the earliest event of the board's queue
 //   Sleep     WFI is exact and needs no thread switch: see sleep()
+//   Threads   the CPU's thread does everything; QEMU's main loop is parked, as its waking at every
+//             event would cost more than the event (not under gdb, which lives in the main loop)
 //   Reset     is done by the CPU's own thread between two instructions, not by QEMU's main loop,
 //             whose moment would depend on the host
 #pragma once
@@ -56,6 +58,7 @@ class Machine final : public board::Emulator {
   void map_memories();
   void load_image();
   void sleep();
+  void park_main_loop();
 
   const Api& api_;
   board::Board board_;
@@ -66,6 +69,7 @@ class Machine final : public board::Emulator {
   std::vector<std::unique_ptr<MemoryRegion>> regions_;
   std::unique_ptr<SystemControl> system_control_;
   GByteArray* register_text_ = nullptr;
+  void* parking_ = nullptr;  // bottom half of the main loop
   Timer timer_;
 };
 

@@ -111,6 +111,9 @@ constexpr unsigned kWord = 2;     // MO_32, little endian
   F(async_run_on_cpu, void, (Cpu*, void (*)(Cpu*, WorkData), WorkData))                            \
   F(cpu_thread_is_idle, bool, (Cpu*))                                                              \
   F(icount_start_warp_timer, void, (void))                                                         \
+  F(runstate_is_running, bool, (void))                                                             \
+  F(qemu_bh_new_full, void*, (void (*)(void*), void*, const char*, void* no_guard))                \
+  F(qemu_bh_schedule, void, (void*))                                                               \
   F(qemu_devices_reset, void, (int))                                                               \
   F(qemu_mutex_lock_iothread_impl, void, (const char*, int))                                       \
   F(qemu_mutex_unlock_iothread, void, (void))                                                      \

@@ -1,0 +1,4 @@
+/* Sleeps for ever: nothing wakes it. */
+int main(void) {
+  for (;;) __asm volatile("wfi");
+}
