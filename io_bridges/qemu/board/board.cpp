@@ -43,6 +43,8 @@ Board::Board(Setup setup, io::Channel channel, Emulator& emulator)
       chip_(make_chip(*setup_.part,
                       {events_, *this, *this, *this, [this](const io::Finding& f) { find(f); },
                        setup_.config.hse_Hz, setup_.config.lse_Hz})),
+      devices_({events_, *chip_, happened_, [this](const io::Finding& f) { find(f); },
+                setup_.config.seed}),
       systick_(events_, chip_->clocks(), [this] { emulator_.pend_systick(); }),
       cycle_counter_(events_, chip_->clocks()),
       unanswered_(
@@ -109,12 +111,10 @@ void Board::synchronise() {
   const Nanoseconds now = events_.now();
   // What else happens at this very instant belongs to the step that ends here.
   if (events_.next_deadline() <= now) return boundary_.at(now);
+  report_clocks();
   if (!reported_) {
     const auto posted = channel_.post(now, happened_.bytes());
-    if (!posted) {
-      channel_.fail(posted.error());
-      emulator_.end();
-    }
+    if (!posted) refuse(posted.error());
     happened_.clear();
   }
   reported_ = false;
@@ -132,10 +132,27 @@ void Board::await_orders() {
 }
 
 void Board::obey(const io::Reader& message) {
+  if (devices_.take(message)) return;
   if (message.header().kind == io::Kind::end_of_run) {
     add_statistics();
     finish(io::BoardState::ended);
   }
+}
+
+// The firmware may set up its clocks at any time; the harness learns at the next boundary.
+void Board::report_clocks() {
+  const stm32::Clocks& clocks = chip_->clocks();
+  const io::ClockSetup now{chip_->sysclk_Hz(), clocks.hclk_Hz(), clocks.pclk1_Hz(),
+                           clocks.pclk2_Hz()};
+  if (std::memcmp(&now, &clocks_told_, sizeof now) == 0) return;
+  clocks_told_ = now;
+  happened_.add(io::Kind::clock_setup, 0, events_.now(), now);
+}
+
+void Board::refuse(const Error& error) {
+  channel_.fail(error);
+  emulator_.end();
+  std::abort();  // as in finish()
 }
 
 void Board::add_statistics() {

@@ -15,6 +15,7 @@
 #include "io_bridges/link/messages.hpp"
 #include "io_bridges/qemu/board/config.hpp"
 #include "io_bridges/qemu/board/cortex_m.hpp"
+#include "io_bridges/qemu/board/device_rack.hpp"
 #include "io_bridges/qemu/board/emulator.hpp"
 #include "io_bridges/qemu/board/image.hpp"
 #include "io_bridges/qemu/board/parts.hpp"
@@ -36,6 +37,7 @@ class Board final : stm32::InterruptLines, stm32::SystemBus, stm32::FlashArray {
  public:
   Board(Setup setup, io::Channel channel, Emulator& emulator);
   ~Board() override;
+  Result<Done> build_devices() { return devices_.build(setup_.config); }
 
   const Part& part() const { return *setup_.part; }
   const Image& image() const { return setup_.image; }
@@ -57,6 +59,7 @@ class Board final : stm32::InterruptLines, stm32::SystemBus, stm32::FlashArray {
   void power_on(const std::string& versions);  // memories are mapped and loaded
   void on_timer();                             // the armed deadline is here
   void core_was_reset(stm32::ResetCause cause);
+  [[noreturn]] void refuse(const Error& error);  // tells the harness why, and ends
   [[noreturn]] void core_locked_up(const std::string& why);
 
   // Messages to the harness, in order of time.
@@ -74,6 +77,7 @@ class Board final : stm32::InterruptLines, stm32::SystemBus, stm32::FlashArray {
   void synchronise();
   void await_orders();
   void obey(const io::Reader& message);
+  void report_clocks();
   void add_statistics();
   [[noreturn]] void finish(io::BoardState state);
 
@@ -83,11 +87,13 @@ class Board final : stm32::InterruptLines, stm32::SystemBus, stm32::FlashArray {
   io::EventQueue events_;
   io::Batch happened_;
   std::unique_ptr<stm32::ChipModel> chip_;
+  DeviceRack devices_;
   SysTick systick_;
   CycleCounter cycle_counter_;
   Unanswered unanswered_;
   StoredWords itm_, flash_patch_, tpiu_, etm_, debug_mcu_;
   io::Event boundary_;
+  io::ClockSetup clocks_told_;
   bool reported_ = false;  // the batch of this boundary has been posted
 };
 

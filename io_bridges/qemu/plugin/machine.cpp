@@ -85,6 +85,8 @@ Result<Done> Machine::build(const std::string& versions) {
   if (core_memory_ == nullptr || registers == nullptr) {
     return whirl::Error{ErrorKind::internal, "QEMU", "the core has no NVIC where 7.2 has it", ""};
   }
+  const auto devices = board_.build_devices();
+  if (!devices) return devices.error();
   cpu_ = api_.qemu_get_cpu(0);
   for (int irq = 0; irq < kInterrupts; ++irq) {
     interrupts_.push_back(api_.qdev_get_gpio_in(core, irq));

@@ -122,10 +122,7 @@ int install(qemu_plugin_id_t id, const Options& options) {
       std::make_unique<Machine>(plugin->api, std::move(setup.value()), std::move(channel));
   plugin->board_exists.notify = [](Notifier*, void*) {
     const auto built = plugin->machine->build(plugin->versions);
-    if (!built) {
-      std::fprintf(stderr, "whirl_board: %s\n", built.error().message().c_str());
-      _exit(1);
-    }
+    if (!built) plugin->machine->board().refuse(built.error());
     std::signal(SIGABRT, on_abort);
   };
   plugin->api.qemu_add_machine_init_done_notifier(&plugin->board_exists);

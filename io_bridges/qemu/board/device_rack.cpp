@@ -1,0 +1,279 @@
+#include "io_bridges/qemu/board/device_rack.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <cstdlib>
+#include <map>
+
+#include "io_bridges/devices/esc_i2c.hpp"
+#include "io_bridges/devices/mavlink_link.hpp"
+#include "io_bridges/devices/mpu6000.hpp"
+#include "io_bridges/devices/wire_faults.hpp"
+#include "io_bridges/qemu/board/inertial_sensor.hpp"
+
+namespace whirl::board {
+namespace {
+
+using io::Kind;
+
+constexpr std::size_t kSpi_pairs = 16;
+
+std::uint16_t port(int number) {
+  return static_cast<std::uint16_t>(number);
+}
+
+// "i2c3" is (i2c, 3).
+struct BusName {
+  std::string kind;
+  int number = 0;
+};
+
+BusName split(const std::string& bus) {
+  const auto digit =
+      std::find_if(bus.begin(), bus.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
+  return {{bus.begin(), digit}, std::atoi(std::string(digit, bus.end()).c_str())};
+}
+
+// Puts the bytes of one chip select together and logs the transaction when it ends.
+class SpiLog {
+ public:
+  SpiLog(io::Batch& happened, int bus, int device, io::Wire& chip_select)
+      : happened_(happened), bus_(bus), device_(device), selected_(!chip_select.level()) {
+    chip_select.watch([this](bool level, Nanoseconds now) { level ? end(now) : begin(now); });
+  }
+  void byte(std::uint8_t mosi, std::uint8_t miso) {
+    if (length_++ >= kSpi_pairs) return;
+    pairs_.push_back(mosi);
+    pairs_.push_back(miso);
+  }
+
+ private:
+  using Nanoseconds = io::Nanoseconds;
+  void begin(Nanoseconds now) {
+    selected_ = true;
+    start_ns_ = now;
+    length_ = 0;
+    pairs_.clear();
+  }
+  void end(Nanoseconds now) {
+    if (!selected_ || length_ == 0) return;
+    selected_ = false;
+    io::BusTransaction head;
+    head.start_ns = start_ns_;
+    head.address = port(device_);
+    head.length = static_cast<std::uint32_t>(length_);
+    happened_.add(Kind::spi_transaction, port(bus_), now, head, pairs_.data(),
+                  static_cast<std::uint32_t>(pairs_.size()));
+  }
+
+  io::Batch& happened_;
+  int bus_, device_;
+  bool selected_;
+  Nanoseconds start_ns_ = 0;
+  std::size_t length_ = 0;
+  std::vector<std::uint8_t> pairs_;
+};
+
+}  // namespace
+
+struct DeviceRack::Parts {
+  explicit Parts(Site given) : site(std::move(given)) {}
+
+  Result<Done> add(const DeviceConfig& device, int number);
+  Result<Done> add_mpu6000(const DeviceConfig& device, int number);
+  Result<Done> add_esc(const DeviceConfig& device);
+  Result<Done> add_radio(const DeviceConfig& device);
+  io::I2cBus* i2c(int number);
+  io::SpiBus* spi(int number);
+  io::Wire* pin(const std::string& name) { return name.empty() ? nullptr : site.chip.pin(name); }
+  Error wrong(const DeviceConfig& device, const std::string& what) const {
+    return {ErrorKind::bad_input, board + ": " + device.name, what, ""};
+  }
+
+  Site site;
+  std::string board;
+  io::FaultBook faults;
+  std::map<int, std::unique_ptr<io::I2cWireFaults>> i2c_buses;
+  std::map<int, io::SpiBus*> spi_buses;
+  std::map<const io::Wire*, std::unique_ptr<SpiLog>> spi_logs;
+  std::vector<std::unique_ptr<io::SpiWireFaults>> spi_faults;
+  std::vector<std::unique_ptr<io::UartWireFaults>> uart_faults;
+  std::vector<std::unique_ptr<InertialSensor>> inertial;
+  std::vector<std::unique_ptr<io::Mpu6000>> mpus;
+  std::map<int, std::unique_ptr<io::EscI2c>> escs;         // by motor
+  std::map<int, std::unique_ptr<io::MavlinkLink>> radios;  // by UART
+};
+
+DeviceRack::DeviceRack(Site site) : parts_(std::make_unique<Parts>(std::move(site))) {
+  io::Batch& happened = parts_->site.happened;
+  parts_->faults.on_applied([&happened](std::uint32_t number, io::Nanoseconds now) {
+    happened.add(Kind::fault_applied, port(static_cast<int>(number)), now, nullptr, 0);
+  });
+}
+
+DeviceRack::~DeviceRack() = default;
+
+Result<Done> DeviceRack::build(const BoardConfig& config) {
+  parts_->board = config.board;
+  int number = 0;
+  for (const DeviceConfig& device : config.devices) {
+    const auto added = parts_->add(device, number++);
+    if (!added) return added.error();
+  }
+  return Done{};
+}
+
+Result<Done> DeviceRack::Parts::add(const DeviceConfig& device, int number) {
+  if (device.type == "mpu6000") return add_mpu6000(device, number);
+  if (device.type == "esc_i2c") return add_esc(device);
+  if (device.type == "mavlink_link") return add_radio(device);
+  return wrong(device, "unknown type '" + device.type + "'; use mpu6000, esc_i2c or mavlink_link");
+}
+
+io::I2cBus* DeviceRack::Parts::i2c(int number) {
+  io::I2cBus* bus = site.chip.i2c(number);
+  if (bus == nullptr || i2c_buses.count(number) != 0) return bus;
+  i2c_buses[number] = std::make_unique<io::I2cWireFaults>(site.events, faults, *bus, number);
+  bus->on_transaction([this, number](const io::I2cTransaction& t) {
+    io::BusTransaction head;
+    head.start_ns = t.start_ns;
+    head.address = t.address;
+    head.read = t.read ? 1 : 0;
+    head.acked = t.address_acked && t.all_acked ? 1 : 0;
+    head.length = static_cast<std::uint32_t>(t.bytes.size());
+    site.happened.add(Kind::i2c_transaction, port(number), t.stop_ns, head, t.bytes.data(),
+                      head.length);
+  });
+  return bus;
+}
+
+io::SpiBus* DeviceRack::Parts::spi(int number) {
+  io::SpiBus* bus = site.chip.spi(number);
+  if (bus == nullptr || spi_buses.count(number) != 0) return bus;
+  spi_buses[number] = bus;
+  bus->on_byte(
+      [this](const io::Wire* chip_select, std::uint8_t mosi, std::uint8_t miso, io::Nanoseconds) {
+        const auto log = spi_logs.find(chip_select);
+        if (log != spi_logs.end()) log->second->byte(mosi, miso);
+      });
+  return bus;
+}
+
+Result<Done> DeviceRack::Parts::add_mpu6000(const DeviceConfig& device, int number) {
+  const BusName name = split(device.bus);
+  io::SpiBus* bus = name.kind == "spi" ? spi(name.number) : nullptr;
+  if (bus == nullptr) return wrong(device, "the part has no bus '" + device.bus + "' for it");
+  io::Wire* select = pin(device.cs);
+  if (select == nullptr) return wrong(device, "the part has no pin '" + device.cs + "' for cs");
+  io::Wire* interrupt = pin(device.interrupt);
+  if (interrupt == nullptr && !device.interrupt.empty()) {
+    return wrong(device, "the part has no pin '" + device.interrupt + "' for int");
+  }
+  auto physics = imu_params(device.params, board + ": " + device.name);
+  if (!physics) return physics.error();
+  inertial.push_back(std::make_unique<InertialSensor>(physics.value(), site.seed, device.name));
+  InertialSensor& felt = *inertial.back();
+  io::Mpu6000::Params params;
+  params.name = device.name;
+  params.bus = name.number;
+  params.device = number;
+  mpus.push_back(std::make_unique<io::Mpu6000>(
+      site.events, params, [&felt](io::Nanoseconds now) { return felt.feel(now); }, interrupt,
+      &faults, site.finding));
+  spi_faults.push_back(
+      std::make_unique<io::SpiWireFaults>(faults, *mpus.back(), name.number, number));
+  bus->add(*spi_faults.back(), *select);
+  spi_logs[select] = std::make_unique<SpiLog>(site.happened, name.number, number, *select);
+  if (interrupt != nullptr) {
+    interrupt->watch([this, number](bool level, io::Nanoseconds now) {
+      if (level) site.happened.add(Kind::data_ready, port(number), now, nullptr, 0);
+    });
+  }
+  return Done{};
+}
+
+Result<Done> DeviceRack::Parts::add_esc(const DeviceConfig& device) {
+  const BusName name = split(device.bus);
+  io::I2cBus* bus = name.kind == "i2c" ? i2c(name.number) : nullptr;
+  if (bus == nullptr) return wrong(device, "the part has no bus '" + device.bus + "' for it");
+  if (device.address < 0x08 || device.address > 0x77) return wrong(device, "needs an I2C address");
+  if (device.motor < 1 || escs.count(device.motor) != 0) {
+    return wrong(device, "needs a motor number of its own");
+  }
+  auto esc = std::make_unique<io::EscI2c>(static_cast<std::uint8_t>(device.address));
+  esc->on_setpoint([this, motor = device.motor](const io::EscI2c::Write& write) {
+    io::EscSetpoint setpoint;
+    setpoint.value = write.v;
+    setpoint.valid = write.valid ? 1 : 0;
+    setpoint.start_ns = write.start_ns;
+    site.happened.add(Kind::esc_setpoint, port(motor), write.stop_ns, setpoint);
+  });
+  bus->add(*esc);
+  escs[device.motor] = std::move(esc);
+  return Done{};
+}
+
+Result<Done> DeviceRack::Parts::add_radio(const DeviceConfig& device) {
+  const BusName name = split(device.bus);
+  io::MavlinkLink::Params params;
+  params.seed = site.seed;
+  if (device.baud > 0.0) params.baud = device.baud;
+  for (const auto& [key, value] : device.params) {
+    if (key == "uplink_loss")
+      params.uplink_loss = value;
+    else if (key == "downlink_loss")
+      params.downlink_loss = value;
+    else if (key == "air_bytes_per_s")
+      params.air_bytes_per_s = value;
+    else if (key == "buffer")
+      params.buffer_ns = static_cast<io::Nanoseconds>(value * 1e9);
+    else
+      return wrong(device, "unknown parameter '" + key + "'");
+  }
+  auto radio = std::make_unique<io::MavlinkLink>(site.events, params, site.finding);
+  radio->on_frame([this, name](std::span<const std::uint8_t> frame, io::Nanoseconds t_ns) {
+    site.happened.add(Kind::uart_received, port(name.number), t_ns, frame.data(),
+                      static_cast<std::uint32_t>(frame.size()));
+  });
+  uart_faults.push_back(
+      std::make_unique<io::UartWireFaults>(site.events, faults, *radio, name.number, site.seed));
+  if ((name.kind != "usart" && name.kind != "uart") || radios.count(name.number) != 0 ||
+      !site.chip.join_uart(name.number, *uart_faults.back())) {
+    return wrong(device, "the part has no bus '" + device.bus + "' for it");
+  }
+  radios[name.number] = std::move(radio);
+  return Done{};
+}
+
+bool DeviceRack::take(const io::Reader& message) {
+  const io::Header& head = message.header();
+  switch (head.kind) {
+    case Kind::body_motion:
+      for (auto& sensor : parts_->inertial) {
+        sensor->set_motion(message.as<io::BodyMotion>(), head.t_ns);
+      }
+      return true;
+    case Kind::esc_state: {
+      const auto esc = parts_->escs.find(head.port);
+      if (esc == parts_->escs.end()) return true;
+      const auto state = message.as<io::EscState>();
+      esc->second->set_status({state.bus_current_A, state.speed_rpm, state.flags});
+      return true;
+    }
+    case Kind::uart_frame: {
+      const auto radio = parts_->radios.find(head.port);
+      if (radio != parts_->radios.end()) radio->second->send_frame(message.payload(), head.t_ns);
+      return true;
+    }
+    case Kind::fault: {
+      const auto f = message.as<io::FaultCommand>();
+      parts_->faults.add({f.number, static_cast<io::FaultKind>(f.kind), f.start_ns, f.end_ns, f.bus,
+                          f.address, f.axis, f.value});
+      return true;
+    }
+    default:
+      return false;
+  }
+}
+
+}  // namespace whirl::board

@@ -1,0 +1,44 @@
+// The devices of a board: built from its description, hung on the chip's pins and buses, joined to
+// the messages of the link.
+//
+//   Numbers   a device's number is its place in the description's list; motors and UARTs have theirs
+//   Types     mpu6000 (bus spiN, cs, int), esc_i2c (bus i2cN, address, motor), mavlink_link
+//             (bus usartN or uartN, baud)
+//   Logs      every I2C transaction; every SPI transaction with its first 16 pairs of bytes (MOSI,
+//             MISO); data-ready edges; set-points; frames down the radio
+//   Errors    bad_input: unknown type, a bus or pin that the part does not have, a missing key
+#pragma once
+#include <memory>
+#include <vector>
+
+#include "harness/base/result.hpp"
+#include "io_bridges/devices/faults.hpp"
+#include "io_bridges/link/messages.hpp"
+#include "io_bridges/qemu/board/config.hpp"
+#include "io_bridges/qemu/stm32/chip_model.hpp"
+
+namespace whirl::board {
+
+class DeviceRack {
+ public:
+  struct Site {
+    io::EventQueue& events;
+    stm32::ChipModel& chip;
+    io::Batch& happened;
+    io::FindingSink finding;
+    std::uint64_t seed = 1;
+  };
+
+  explicit DeviceRack(Site site);
+  ~DeviceRack();
+
+  Result<Done> build(const BoardConfig& config);
+  // A message from the harness; false: of a kind that is not for devices.
+  bool take(const io::Reader& message);
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace whirl::board
