@@ -55,15 +55,24 @@ bool I2cBus::write(std::uint8_t byte, Nanoseconds now) {
   return ack;
 }
 
-std::uint8_t I2cBus::read(bool ack, Nanoseconds now) {
+std::uint8_t I2cBus::fetch(Nanoseconds now) {
   std::uint8_t byte = 0xFF;  // nobody pulls SDA low
   for (I2cTarget* target : addressed_) byte &= target->read(now);
   if (!addressed_.empty() && faults_ != nullptr) {
     byte = faults_->byte(current_.address, index(), byte, now);
   }
   if (!sda_.level()) byte = 0x00;
-  for (I2cTarget* target : addressed_) target->acked(ack, now);
   current_.bytes.push_back(byte);
+  return byte;
+}
+
+void I2cBus::answer(bool ack, Nanoseconds now) {
+  for (I2cTarget* target : addressed_) target->acked(ack, now);
+}
+
+std::uint8_t I2cBus::read(bool ack, Nanoseconds now) {
+  const std::uint8_t byte = fetch(now);
+  answer(ack, now);
   return byte;
 }
 
@@ -73,6 +82,7 @@ void I2cBus::stop(Nanoseconds now) {
   finish(false, now);
   addressed_.clear();
   busy_ = false;
+  for (const auto& free : on_free_) free(now);
 }
 
 }  // namespace whirl::io

@@ -6,6 +6,8 @@
 //   holds SDA after a lost clock lets go when SCL has been pulsed by GPIO as often as the fault
 //   says (nine is usual). While SDA is held low, every bit reads 0: bytes are 0x00 and every
 //   acknowledge slot looks like an ACK.
+//   Stretching: a target that needs time (an MCU) drives scl() low itself; the controller begins no
+//   byte and ends none while SCL is low.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -61,8 +63,13 @@ class I2cBus {
   void start(Nanoseconds now);
   bool address(std::uint8_t address_7bit, bool read, Nanoseconds now);  // returns ACK
   bool write(std::uint8_t byte, Nanoseconds now);                       // returns ACK
-  std::uint8_t read(bool ack, Nanoseconds now);  // one byte and the master's answer to it
+  // One byte towards the controller: fetch() as its first bit is due, answer() at the ninth clock.
+  std::uint8_t fetch(Nanoseconds now);
+  void answer(bool ack, Nanoseconds now);
+  std::uint8_t read(bool ack, Nanoseconds now);  // both at once
   void stop(Nanoseconds now);
+  // Told at each STOP: a controller that waits for a free bus may try again.
+  void on_free(std::function<void(Nanoseconds)> free) { on_free_.push_back(std::move(free)); }
 
  private:
   void finish(bool repeated, Nanoseconds now);
@@ -74,6 +81,7 @@ class I2cBus {
   std::vector<I2cTarget*> addressed_;
   I2cFaults* faults_ = nullptr;
   std::function<void(const I2cTransaction&)> log_;
+  std::vector<std::function<void(Nanoseconds)>> on_free_;
   I2cTransaction current_;
   Nanoseconds released_ns_ = 0;
   bool busy_ = false;
