@@ -55,7 +55,7 @@ class DmaRequest {
   }
   bool level() const { return level_; }
   void on_change(std::function<void(bool)> changed) { changed_ = std::move(changed); }
-  // The DMA tells the peripheral that the programmed count ran out (I2C LAST, ADC DDS).
+  // The DMA tells the peripheral that the programmed count ran out (ADC DDS).
   void transfer_complete() {
     if (complete_) complete_();
   }
@@ -66,12 +66,20 @@ class DmaRequest {
     if (served_) served_();
   }
   void on_served(std::function<void()> served) { served_ = std::move(served); }
+  // The last but one item has been moved (I2C LAST: the next byte is answered with NACK).
+  void last_but_one() {
+    if (last_but_one_) last_but_one_();
+  }
+  void on_last_but_one(std::function<void()> last_but_one) {
+    last_but_one_ = std::move(last_but_one);
+  }
 
  private:
   bool level_ = false;
   std::function<void(bool)> changed_;
   std::function<void()> complete_;
   std::function<void()> served_;
+  std::function<void()> last_but_one_;
 };
 
 // Clock frequencies as RCC has them now, and whether a block's clock is on. A register block whose

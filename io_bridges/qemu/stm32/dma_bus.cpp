@@ -1,0 +1,35 @@
+#include "io_bridges/qemu/stm32/dma_bus.hpp"
+
+namespace whirl::stm32 {
+
+void DmaBus::map(const std::vector<Region>& regions) {
+  for (const Region& region : regions) {
+    for (std::uint32_t at = region.base; at < region.base + region.size; at += 1024) {
+      const std::uint32_t page = (at - kBase) >> 10;
+      if (page < kPages) pages_[page] = region;
+    }
+  }
+}
+
+Region* DmaBus::find(std::uint32_t address) {
+  const std::uint32_t page = (address - kBase) >> 10;
+  return page < kPages && pages_[page].block != nullptr ? &pages_[page] : nullptr;
+}
+
+bool DmaBus::read(std::uint32_t address, unsigned size, std::uint32_t& value) {
+  if (Region* region = find(address)) {
+    value = region->block->read(address - region->base, size);
+    return true;
+  }
+  return reachable(address) && memory_.read(address, size, value);
+}
+
+bool DmaBus::write(std::uint32_t address, unsigned size, std::uint32_t value) {
+  if (Region* region = find(address)) {
+    region->block->write(address - region->base, value, size);
+    return true;
+  }
+  return reachable(address) && memory_.write(address, size, value);
+}
+
+}  // namespace whirl::stm32
