@@ -33,6 +33,9 @@ std::optional<Error> fault_of(const PropellerDescription& d) {
   if (!(std::abs(d.tip_twist_correction_rad) <= 10.0 * kDeg)) {
     return bad("tip_twist_correction beyond 10 deg", "measure the blade's angles again");
   }
+  if (!(d.induced_factor >= 1.0 && d.induced_factor <= 1.5)) {
+    return bad("induced_factor is outside 1..1.5", "leave it out for the default");
+  }
   if (d.stations.size() < 3) return bad("stations: at least 3 are needed", "give r, c, beta rows");
   if (d.sections.empty()) return bad("polars: none given", "name at least one section");
   return {};
@@ -131,6 +134,20 @@ double delayed_lift(const StallDelay& d, double alpha, double cl) {
   return cl + d.share * fade * (attached - cl);
 }
 
+// Angle of the first maximum of lift, without rotation's help; for the validity flag only.
+double stall_alpha_rad(const Mix& mix) {
+  constexpr double kReynolds_of_slow_flyers = 60e3;
+  double best = -1.0;
+  double angle = 2.0 * kDeg;
+  for (double deg = 2.0; deg <= 30.0 && deg * kDeg < angle + 6.0 * kDeg; deg += 0.5) {
+    const double cl = mixed(mix, deg * kDeg, kReynolds_of_slow_flyers).cl;
+    if (cl <= best) continue;
+    best = cl;
+    angle = deg * kDeg;
+  }
+  return angle;
+}
+
 SectionTable make_table(const Mix& mix, double chord_over_r, bool delay) {
   SectionTable table;
   table.cells.reserve(static_cast<std::size_t>(kAngles) * kReynolds);
@@ -150,6 +167,7 @@ SectionTable make_table(const Mix& mix, double chord_over_r, bool delay) {
 void fill_rings(const PropellerDescription& d, Blade& blade) {
   const double first = std::min(d.stations.front().r_over_R, 0.15);
   blade.root_m = std::max(first, 0.05) * blade.radius_m;
+  blade.hub_m = 0.5 * blade.root_m;
   const double width = (blade.radius_m - blade.root_m) / kRing_count;
   for (int i = 0; i < kRing_count; ++i) {
     Ring& ring = blade.rings[static_cast<std::size_t>(i)];
@@ -161,7 +179,7 @@ void fill_rings(const PropellerDescription& d, Blade& blade) {
         interpolate(d.stations, x, &PropellerStation::angle_rad) + d.tip_twist_correction_rad * x;
     const Mix mix = mix_at(d.sections, x);
     ring.table = make_table(mix, ring.chord_m / ring.r_m, d.stall_delay);
-    ring.stall_alpha_rad = mix.inner->stall_alpha_rad(60e3);
+    ring.stall_alpha_rad = stall_alpha_rad(mix);
   }
 }
 
@@ -188,6 +206,7 @@ Result<std::shared_ptr<const Blade>> make_blade(const PropellerDescription& desc
   blade->name = description.name;
   blade->count = description.blade_count;
   blade->radius_m = 0.5 * description.diameter_m;
+  blade->induced_factor = description.induced_factor;
   fill_rings(description, *blade);
   fill_inertia(description, *blade);
   return std::shared_ptr<const Blade>(std::move(blade));

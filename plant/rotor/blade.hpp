@@ -39,6 +39,7 @@ struct PropellerDescription {
   double mass_kg = 0.0;                     // whole propeller
   double tip_twist_correction_rad = 0.0;    // added in proportion to r/R; stated in the file
   double flap_stiffness_Nm_per_rad = 60.0;  // root spring of one blade; stiff plastic by default
+  double induced_factor = 1.15;             // over the ideal ring with Prandtl's losses [Leishman]
   bool stall_delay = true;                  // rotational augmentation of the inboard sections
 };
 

@@ -43,6 +43,8 @@ class Blade {
   int count = 2;
   double radius_m = 0.0;
   double root_m = 0.0;  // inner edge of the first ring
+  double hub_m = 0.0;   // where the root loss starts
+  double induced_factor = 1.0;
   double polar_inertia_kgm2 = 0.0;
   double flap_inertia_kgm2 = 0.0;  // one blade about the hub's centre
   double flap_stiffness_Nm_per_rad = 0.0;

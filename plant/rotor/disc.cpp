@@ -78,6 +78,7 @@ DiscLoads disc_loads(const Blade& blade, const DiscFlow& flow,
                      const std::array<double, kRing_count>& v) {
   DiscLoads d;
   double weight = 0.0;
+  double speed2 = 0.0;
   for (std::size_t i = 0; i < kRing_count; ++i) {
     const Ring& ring = blade.rings[i];
     d.rings[i] = ring_loads(ring, flow, u[i], v[i]);
@@ -89,12 +90,13 @@ DiscLoads disc_loads(const Blade& blade, const DiscFlow& flow,
     d.moment_c_Nm += l.lift_N.c * ring.r_m;
     d.moment_s_Nm += l.lift_N.s * ring.r_m;
     d.moment_mean_Nm += l.lift_N.mean * ring.r_m;
-    d.stalled += l.stalled * ring.r_m;
+    d.stalled += l.stalled * ring.r_m * ring.r_m;
+    speed2 += ring.r_m * ring.r_m;
     d.induced_mps += u[i] * ring.r_m * ring.dr_m;
     weight += ring.r_m * ring.dr_m;
   }
   d.induced_mps /= weight;
-  d.stalled *= blade.rings[0].dr_m / weight;
+  d.stalled /= speed2;
   return d;
 }
 
@@ -120,21 +122,18 @@ RotorLoads airframe_loads(const Blade& blade, const DiscFlow& f, const DiscLoads
   return out;
 }
 
-RingMomentum ring_momentum(const Blade& blade, const Ring& ring, const DiscFlow& f,
-                           const RingLoads& loads, double u) {
-  const double in_plane = std::hypot(f.vx_mps, f.vy_mps);
-  const double F = std::max(
-      prandtl_loss(ring.r_m, blade.radius_m, 0.5 * blade.root_m, blade.count, loads.sin_phi), 0.02);
-  const double k = 4.0 * kPi * f.density_kgpm3 * ring.r_m * ring.dr_m * F;
-  const double m = mass_flow_mps(u, f.climb_mps, in_plane);
-  RingMomentum out;
-  out.thrust_N = k * u * m;
-  out.slope_N_per_mps = k * (m + std::abs(u));
-  // Swirl leaves with the same mass flow; where hardly any flows, none can be carried away.
-  const double most = 0.3 * std::abs(f.omega_radps) * ring.r_m;
-  const double swirl = loads.drive_N / std::max(k * m, 1e-9);
-  out.swirl_mps = std::clamp(swirl, -most, most);
-  return out;
+RingWake ring_wake(const Blade& blade, const Ring& ring, const DiscFlow& f) {
+  return {.r_m = ring.r_m,
+          .dr_m = ring.dr_m,
+          .density_kgpm3 = f.density_kgpm3,
+          .climb_mps = f.climb_mps,
+          .in_plane_mps = std::hypot(f.vx_mps, f.vy_mps),
+          .blade_speed_mps = f.omega_radps * ring.r_m,
+          .blade_count = blade.count,
+          .tip_m = blade.radius_m,
+          .root_m = blade.hub_m,
+          .swirl = true,
+          .induced_factor = blade.induced_factor};
 }
 
 Harmonic wanted_tilt(const Blade& blade, const DiscFlow& f, const DiscLoads& d) {

@@ -31,13 +31,15 @@ inline double mass_flow_mps(double u, double V, double Vxy) {
   return std::sqrt(Vxy * Vxy + axial * axial);
 }
 
-// Prandtl's factor for the tip and the root of B blades; phi is the local inflow angle.
-inline double prandtl_loss(double r, double R_tip, double R_hub, int B, double sin_phi) {
+// Prandtl's factor for the tip and the root of B blades; phi is the local inflow angle. A radius of
+// zero switches that end's loss off. Bounded below: at the very tip no air at all would be moved.
+inline double prandtl_loss(double r, double tip, double root, int blades, double sin_phi) {
   constexpr double kTwo_over_pi = 0.63661977236758134;
   const double s = std::max(std::abs(sin_phi), 1e-6);
-  const double tip = 0.5 * B * (R_tip / r - 1.0) / s;
-  const double root = R_hub > 0.0 ? 0.5 * B * (r / R_hub - 1.0) / s : 1e9;
-  return kTwo_over_pi * std::acos(std::exp(-tip)) * kTwo_over_pi * std::acos(std::exp(-root));
+  double F = 1.0;
+  if (tip > 0.0) F *= kTwo_over_pi * std::acos(std::exp(-0.5 * blades * (tip / r - 1.0) / s));
+  if (root > 0.0) F *= kTwo_over_pi * std::acos(std::exp(-0.5 * blades * (r / root - 1.0) / s));
+  return std::max(F, 1e-3);
 }
 
 }  // namespace whirl::plant

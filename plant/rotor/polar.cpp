@@ -12,21 +12,26 @@ constexpr double kPi = 3.14159265358979323846;
 constexpr double kDeg = kPi / 180.0;
 constexpr double kDrag_at_90 = 1.11 + 0.018 * 8.0;  // slow-fly blades: aspect ratio near 8
 constexpr double kSkin_friction = 0.02;
-constexpr double kBlend_rad = 10.0 * kDeg;  // e-folding of the run into the plate
 
-SectionCoefficients plate(double alpha_rad) {
-  const double s = std::sin(alpha_rad);
-  const double c = std::cos(alpha_rad);
-  return {kDrag_at_90 * s * c, kDrag_at_90 * s * s + kSkin_friction};
+// A separated plate; Viterna's continuation turns into it at 90 deg.
+SectionCoefficients plate(double alpha) {
+  const double s = std::sin(alpha);
+  return {kDrag_at_90 * s * std::cos(alpha), kDrag_at_90 * s * s + kSkin_friction};
 }
 
-// Beyond the last row: the plate plus what is left of the difference at the last row.
-SectionCoefficients beyond(const PolarRow& last, double alpha_rad) {
+// From the last row to 90 deg, continuous there. Beyond 90 deg (flow from behind): the plate.
+SectionCoefficients beyond(const PolarRow& last, double alpha) {
+  const double s0 = std::sin(last.alpha_rad);
+  const double c0 = std::cos(last.alpha_rad);
+  const double c = std::cos(alpha);
+  SectionCoefficients k = plate(alpha);
+  if (c <= 0.0 || c0 <= 0.0 || s0 == 0.0) return k;
   const SectionCoefficients there = plate(last.alpha_rad);
-  const SectionCoefficients here = plate(alpha_rad);
-  const double left = std::exp(-std::abs(alpha_rad - last.alpha_rad) / kBlend_rad);
-  return {here.cl + left * (last.cl - there.cl),
-          std::max(here.cd + left * (last.cd - there.cd), 0.5 * kSkin_friction)};
+  const double s = std::sin(alpha);
+  k.cl += (last.cl - there.cl) * (s0 / s) * (c * c) / (c0 * c0);
+  k.cd += (last.cd - there.cd) * c / c0;
+  k.cd = std::max(k.cd, 0.5 * kSkin_friction);
+  return k;
 }
 
 SectionCoefficients on_curve(const PolarCurve& curve, double alpha_rad) {
@@ -58,10 +63,10 @@ SectionCoefficients PolarFamily::at(double alpha_rad, double reynolds) const {
   if (above == curves_.begin() || above == curves_.end()) {
     const PolarCurve& edge = above == curves_.begin() ? curves_.front() : curves_.back();
     SectionCoefficients c = on_curve(edge, alpha);
-    // Only the friction share grows; separated drag does not ask for the Reynolds number.
-    const double power = above == curves_.begin() ? -0.5 : -0.2;
-    const double friction = std::min(c.cd, 0.05);
-    c.cd += friction * (std::pow(re / edge.reynolds, power) - 1.0);
+    if (above == curves_.end()) {
+      // Only the friction share falls on; separated drag does not ask for the Reynolds number.
+      c.cd += std::min(c.cd, 0.05) * (std::pow(re / edge.reynolds, -0.2) - 1.0);
+    }
     return c;
   }
   const PolarCurve& hi = *above;
@@ -81,17 +86,6 @@ PolarFamily::Attached PolarFamily::attached(double reynolds) const {
   }
   const double slope = (n * sxy - sx * sy) / (n * sxx - sx * sx);
   return {-(sy - slope * sx) / n / slope, slope};
-}
-
-double PolarFamily::stall_alpha_rad(double reynolds) const {
-  double best = at(4.0 * kDeg, reynolds).cl;
-  double angle = 4.0 * kDeg;
-  for (double deg = 4.5; deg <= 30.0; deg += 0.5) {
-    const double cl = at(deg * kDeg, reynolds).cl;
-    if (cl > best) best = cl, angle = deg * kDeg;
-    if (deg * kDeg > angle + 4.0 * kDeg) break;
-  }
-  return angle;
 }
 
 }  // namespace whirl::plant

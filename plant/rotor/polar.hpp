@@ -4,8 +4,8 @@
 //   Out      section_coefficients(alpha, Re) for any alpha on the full circle, any Re > 0
 //   Valid    inside the given curves: linear between rows, linear in log Re between curves. Beyond
 //            stall the curve runs into a flat plate of the blade's aspect ratio within about 10 deg;
-//            below the lowest Re lift is held and drag grows as Re^-1/2, above the highest as
-//            Re^-1/5.
+//            the lowest Re is held, above the highest friction falls as Re^-1/5. Tunnel curves at
+//            the lowest Re are the pessimistic end: a blade's flow is rotating and rarely so quiet.
 //   Source   plate: [Hoerner]; drag at 90 deg 1.11 + 0.018 AR [Viterna]
 //   Left out pitching moment (blades are stiff in torsion), hysteresis at stall, compressibility.
 #pragma once
@@ -46,7 +46,6 @@ class PolarFamily {
     double slope_per_rad = 0.0;
   };
   Attached attached(double reynolds) const;
-  double stall_alpha_rad(double reynolds) const;  // first maximum of lift
 
   const std::string& name() const { return name_; }
   const std::vector<PolarCurve>& curves() const { return curves_; }

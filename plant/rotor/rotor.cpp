@@ -36,12 +36,14 @@ RotorLoads Rotor::step(const RotorConditions& conditions, double dt_s) {
 
   for (std::size_t i = 0; i < kRing_count; ++i) {
     const Ring& ring = blade_->rings[i];
-    const RingMomentum m = ring_momentum(*blade_, ring, flow, disc.rings[i], s.u_mps[i]);
+    const RingLoads& loads = disc.rings[i];
+    const RingMomentum m = ring_momentum(
+        ring_wake(*blade_, ring, flow), {loads.thrust_N, loads.drive_N, loads.sin_phi}, s.u_mps[i]);
     const double mass =
         kApparent_mass * flow.density_kgpm3 * blade_->radius_m * 2.0 * kPi * ring.r_m * ring.dr_m;
     // Linearly implicit Euler: stable for any step, and its rest point is the balance itself.
-    const double stiffness = m.slope_N_per_mps + disc.rings[i].lift_slope_N_per_mps;
-    s.u_mps[i] += dt_s * (disc.rings[i].thrust_N - m.thrust_N) / (mass + dt_s * stiffness);
+    const double stiffness = m.slope_N_per_mps + loads.lift_slope_N_per_mps;
+    s.u_mps[i] += dt_s * (loads.thrust_N - m.thrust_N) / (mass + dt_s * stiffness);
     const double tau = mass / std::max(stiffness, 1e-9);
     s.v_mps[i] += dt_s / (dt_s + tau) * (m.swirl_mps - s.v_mps[i]);
   }

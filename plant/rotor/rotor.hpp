@@ -27,9 +27,9 @@ struct RotorConditions {
 struct RotorValidity {
   bool vortex_ring = false;           // the empirical closure carries the answer
   bool beyond_advance_ratio = false;  // |mu| > 0.3
-  bool stalled = false;               // more than a third of the thrusting blade is past its stall
-  bool not_converged = false;         // steady() gave up within its limit of iterations
-  bool out_of_range = false;          // conditions were clamped to a physical range first
+  bool stalled = false;        // more than a third of the disc (by dynamic pressure) is past stall
+  bool not_converged = false;  // steady() gave up within its limit of iterations
+  bool out_of_range = false;   // conditions were clamped to a physical range first
   bool ok() const {
     return !(vortex_ring || beyond_advance_ratio || stalled || not_converged || out_of_range);
   }

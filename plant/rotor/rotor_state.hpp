@@ -2,6 +2,7 @@
 #pragma once
 #include <array>
 
+#include "plant/rotor/ring_balance.hpp"
 #include "plant/rotor/ring_loads.hpp"
 #include "plant/rotor/rotor.hpp"
 
@@ -24,7 +25,7 @@ struct DiscLoads {
   double moment_c_Nm = 0.0;  // integral of r dT cos(theta), sin(theta)
   double moment_s_Nm = 0.0;
   double moment_mean_Nm = 0.0;
-  double stalled = 0.0;  // thrust-weighted share
+  double stalled = 0.0;  // share of the disc, weighted by dynamic pressure
   double induced_mps = 0.0;
 };
 
@@ -36,14 +37,7 @@ DiscLoads disc_loads(const Blade& blade, const DiscFlow& flow,
 RotorLoads airframe_loads(const Blade& blade, const DiscFlow& flow, const DiscLoads& disc,
                           RotorValidity validity);
 
-// Momentum side of one ring under the flow's climb and in-plane wind.
-struct RingMomentum {
-  double thrust_N = 0.0;
-  double slope_N_per_mps = 0.0;  // d(thrust)/du, positive
-  double swirl_mps = 0.0;        // that the ring's tangential force asks for
-};
-RingMomentum ring_momentum(const Blade& blade, const Ring& ring, const DiscFlow& flow,
-                           const RingLoads& loads, double u_mps);
+RingWake ring_wake(const Blade& blade, const Ring& ring, const DiscFlow& flow);
 
 // Gradient of the inflow and flapping that the disc's loads ask for.
 Harmonic wanted_tilt(const Blade& blade, const DiscFlow& flow, const DiscLoads& disc);
