@@ -30,6 +30,7 @@ BusDraw step_bus(std::span<AveragedMotor> motors, std::span<Drive> drives,
     const double charge = drawn_C(motors, drives, loads, bus_V, dt_s) + avionics_A * dt_s;
     return std::max(0.0, source - ohm * charge / dt_s) - bus_V;
   };
+  for (AveragedMotor& motor : motors) motor.prepare(dt_s);
   double before = source, miss_before = miss(before);
   double bus = std::max(0.0, before + miss_before), miss_now = 0.0;
   for (int round = 0; round < kMostRounds; ++round) {

@@ -8,14 +8,14 @@
 
 namespace whirl::plant {
 
-// Full at 4.2 V per cell, the knee near empty, and 16.4-16.8 V sagging to 14.5-15 V over ten
-// minutes of hover [Bangura2017, fig. 2.11].
+// Four cells: 4.2 V each when full, the plateau, the knee near empty. Ten minutes of hover take 42 %
+// of the charge; resistances such that they end at 14.5 to 15 V [Bangura2017, fig. 2.11].
 BatteryParams lipo_4s_2200() {
   BatteryParams p;
-  p.open_circuit = {{0.0, 16.80}, {0.05, 16.55}, {0.2, 16.20}, {0.4, 15.72}, {0.6, 15.36},
-                    {0.8, 15.12}, {0.9, 14.90},  {0.95, 14.4}, {1.0, 13.0}};
+  p.open_circuit = {{0.0, 16.80}, {0.1, 16.40}, {0.2, 16.05}, {0.3, 15.70}, {0.42, 15.30},
+                    {0.6, 15.00}, {0.8, 14.75}, {0.9, 14.50}, {0.95, 14.2}, {1.0, 13.0}};
   p.series_resistance_ohm = 0.030;
-  p.relaxation_resistance_ohm = 0.020;
+  p.relaxation_resistance_ohm = 0.040;
   p.relaxation_time_s = 30.0;
   return p;
 }

@@ -24,6 +24,8 @@ struct AveragedMotor::Outcome {
 
 namespace {
 
+constexpr double kPi = 3.14159265358979323846;
+
 // Mean of the pulses when every PWM period starts from zero current [Erickson2001, ch. 5].
 struct Pulses {
   bool discontinuous = false;
@@ -75,6 +77,7 @@ AveragedMotor::AveragedMotor(const MotorParams& params)
 
 MotorBooks AveragedMotor::step(const Drive& drive, const ShaftLoad& load, double dt_s) {
   WHIRL_CHECK(drive.duty >= 0.0 && drive.duty <= 1.0 && dt_s > 0.0, drive.duty, dt_s);
+  prepare(dt_s);
   const Outcome outcome = solve(drive, load, dt_s);
   speed_ = outcome.speed;
   current_ = outcome.current;
@@ -85,14 +88,35 @@ double AveragedMotor::bus_charge_C(const Drive& drive, const ShaftLoad& load, do
   return solve(drive, load, dt_s).books.bus_charge_C;
 }
 
+void AveragedMotor::prepare(double dt_s) {
+  if (params_.six_step_overlap) find_overlap();
+  overlap_.tau_s = params_.inductance_H / (resistance_ + overlap_.drop_ohm);
+  overlap_.blend = -std::expm1(-dt_s / overlap_.tau_s);
+}
+
+// Between commutations the pair's current recovers from I/2 to I, as an exponential towards
+// `towards`; all figures per I. With x the sector's time over L/R.
+void AveragedMotor::find_overlap() {
+  const double electrical_radps = params_.pole_pairs * speed_;
+  const double x = kPi / 3.0 / std::max(electrical_radps, 1.0) * resistance_ / params_.inductance_H;
+  const double fade = std::exp(-x), left = 1.0 - fade;
+  const double towards = (1.0 - 0.5 * fade) / left, gap = towards - 0.5;
+  const double mean = towards - gap * left / x;
+  const double square =
+      towards * (towards - 2.0 * gap * left / x) + gap * gap * left * (1.0 + fade) / (2.0 * x);
+  overlap_.drop_ohm = 3.0 / kPi * electrical_radps * 0.5 * params_.inductance_H / mean;
+  overlap_.square_share = square / (mean * mean);
+  overlap_.ripple_share = 1.0;
+}
+
 AveragedMotor::Winding AveragedMotor::conduct(double voltage_V, double dt_s) const {
   Winding w;
-  w.tau_s = params_.inductance_H / resistance_;
-  w.blend = -std::expm1(-dt_s / w.tau_s);
+  w.tau_s = overlap_.tau_s;
+  w.blend = overlap_.blend;
   w.voltage_V = voltage_V;
-  const double settled_s = dt_s - w.tau_s * w.blend;
-  w.a_C = voltage_V / resistance_ * settled_s + current_ * w.tau_s * w.blend;
-  w.b_Cs = params_.torque_constant_NmpA / resistance_ * settled_s;
+  const double settled_s = dt_s - w.tau_s * w.blend, ohm = resistance_ + overlap_.drop_ohm;
+  w.a_C = voltage_V / ohm * settled_s + current_ * w.tau_s * w.blend;
+  w.b_Cs = params_.torque_constant_NmpA / ohm * settled_s;
   return w;
 }
 
@@ -147,17 +171,24 @@ AveragedMotor::Outcome AveragedMotor::solve(const Drive& drive, const ShaftLoad&
   Outcome out;
   out.speed = blocked_ ? 0.0 : 2.0 * mean - speed_;
   MotorBooks& books = out.books;
+  double given_back_J = 0.0;  // the overlap's voltage drop returns to the bus what it does not burn
   books.winding_charge_C = w.a_C - w.b_Cs * mean;
   if (w.held) {
     out.current = w.held_A;
     books.copper_J = resistance_ * w.square_A2s;
     books.diode_J = params_.diode_drop_V * w.fall_charge_C;
   } else {
-    const double ends = (w.voltage_V - kt * mean) / resistance_, gap = current_ - ends;
+    const double ends = (w.voltage_V - kt * mean) / (resistance_ + overlap_.drop_ohm);
+    const double gap = current_ - ends;
     out.current = ends + gap * (1.0 - w.blend);
-    books.copper_J = resistance_ * (ends * ends * dt_s + 2.0 * ends * gap * w.tau_s * w.blend +
-                                    gap * gap * 0.5 * w.tau_s * w.blend * (2.0 - w.blend));
+    const double square = ends * ends * dt_s + 2.0 * ends * gap * w.tau_s * w.blend +
+                          gap * gap * 0.5 * w.tau_s * w.blend * (2.0 - w.blend);
+    const double ripple_A = drive.bus_V * drive.duty * (1.0 - drive.duty) /
+                            (params_.inductance_H * params_.pwm_Hz);  // peak to peak
+    books.copper_J = resistance_ * (overlap_.square_share * square +
+                                    overlap_.ripple_share * ripple_A * ripple_A / 12.0 * dt_s);
     books.diode_J = diode_V * books.winding_charge_C;
+    given_back_J = (resistance_ + overlap_.drop_ohm) * square - books.copper_J;
   }
   books.magnetic_J = 0.5 * params_.inductance_H * (out.current * out.current - current_ * current_);
   const double converted_J = kt * mean * books.winding_charge_C;
@@ -165,8 +196,9 @@ AveragedMotor::Outcome AveragedMotor::solve(const Drive& drive, const ShaftLoad&
     books.electrical_in_J = books.copper_J + books.diode_J + books.magnetic_J + converted_J;
     books.bus_charge_C = drive.bus_V > 0.0 ? books.electrical_in_J / drive.bus_V : 0.0;
   } else {
-    books.bus_charge_C = drive.duty * books.winding_charge_C;
-    books.electrical_in_J = drive.bus_V * books.bus_charge_C;
+    const double taken_J = drive.bus_V * drive.duty * books.winding_charge_C;
+    books.electrical_in_J = params_.six_step_overlap ? taken_J - given_back_J : taken_J;
+    books.bus_charge_C = drive.bus_V > 0.0 ? books.electrical_in_J / drive.bus_V : 0.0;
   }
   books.air_torque_Nm = load.quadratic_Nm_s2 * mean * mean + load.constant_Nm;
   books.air_J = books.air_torque_Nm * mean * dt_s;

@@ -1,15 +1,20 @@
 // The motor as a duty sees it: mean voltages and currents of a PWM period, torque, speed.
 //
 //   Units   SI; line-to-line, as MotorParams
+//   Overlap (only if asked for) Six-step commutation moves the current between phases against their
+//           inductance. The pair's current dips to half at every commutation and recovers with L/R:
+//           on the mean this is a voltage drop (3/pi) w_e (L/2) I that takes no power, some more
+//           copper loss, and a bus current below duty x winding current. PWM ripple heats too.
 //   Method  Winding current by the exact exponential at the mean speed of the sub-step, speed by the
 //           implicit midpoint rule: the energy books close to round-off and no step is unstable.
 //   Valid   speed >= 0 (a bridge that only pushes one way); sub-steps up to 0.5 ms; ripple small
 //           against the mean except under diode freewheeling, which has its discontinuous branch
 //   Source  [Bangura2017, 3.4] with the current read as bus current; [Erickson2001, ch. 5] for
 //           discontinuous conduction
-//   Error   power balance to round-off, closed forms to 1e-6 (tests/averaged_motor_test.cpp);
-//           against the switched face within 1 % (tests/motor_faces_test.cpp)
-//   Left out commutation ripple, magnetic saturation, current fed back through diodes at overspeed
+//   Error   power balance to round-off, closed forms to 1e-6 (tests/averaged_motor_test.cpp); speed
+//           within 1 % of the switched face up to duty 0.4 (tests/switched_motor_test.cpp)
+//   Left out magnetic saturation, current fed back through diodes at overspeed, timing other than
+//           neutral
 #pragma once
 #include "plant/motor/motor_params.hpp"
 
@@ -47,7 +52,9 @@ class AveragedMotor {
   MotorBooks step(const Drive& drive, const ShaftLoad& load, double dt_s);
 
   // What step() would take from the bus, without taking it: charge at this bus voltage.
+  // Pre: prepare(dt_s) since the last step.
   double bus_charge_C(const Drive& drive, const ShaftLoad& load, double dt_s) const;
+  void prepare(double dt_s);  // what depends on the state and the step, but not on the voltage
 
   void block();  // the shaft is held and stands still from now on
   void set_speed(double speed_radps);
@@ -63,7 +70,14 @@ class AveragedMotor {
  private:
   struct Winding;
   struct Outcome;
+  struct Overlap {                    // neutral values: none
+    double drop_ohm = 0.0;            // mean voltage per mean current
+    double square_share = 1.0;        // mean square of the current over the square of its mean
+    double ripple_share = 0.0;        // of the PWM ripple's heat
+    double tau_s = 0.0, blend = 0.0;  // of the mean current, drop included
+  };
   Outcome solve(const Drive& drive, const ShaftLoad& load, double dt_s) const;
+  void find_overlap();
   Winding conduct(double voltage_V, double dt_s) const;
   double mean_speed(const Winding& winding, const ShaftLoad& load, double dt_s) const;
   void diode_limit(const Drive& drive, double dt_s, Winding& winding) const;
@@ -73,6 +87,7 @@ class AveragedMotor {
   double current_ = 0.0;
   double temperature_K_;
   double resistance_;
+  Overlap overlap_;
   bool blocked_ = false;
 };
 

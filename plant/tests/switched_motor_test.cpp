@@ -1,0 +1,220 @@
+#include "plant/motor/switched_motor.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "harness/base/near.hpp"
+#include "harness/base/random.hpp"
+
+namespace whirl::plant {
+namespace {
+
+constexpr double kDeg = M_PI / 180.0, kPeriod_s = 5e-5;
+
+// Bridge commutated at the right angle, PWM at 20 kHz, in slices of 2 us.
+MotorBooks run_period(SwitchedMotor& motor, double duty, bool synchronous) {
+  MotorBooks sum;
+  const double on_s = duty * kPeriod_s;
+  for (double t = 0.0; t < kPeriod_s - 1e-12;) {
+    const bool on = t < on_s - 1e-12;
+    const double h = std::min(2e-6, (on ? on_s : kPeriod_s) - t);
+    motor.set_bridge(six_step(sector_of(motor.electrical_angle_rad()), on, synchronous));
+    sum += motor.run(h);
+    t += h;
+  }
+  return sum;
+}
+
+double imbalance_J(const MotorBooks& b) {
+  return b.electrical_in_J - b.copper_J - b.diode_J - b.no_load_J - b.magnetic_J - b.kinetic_J -
+         b.air_J;
+}
+
+// Two windings conducting with the shaft held are one R-L circuit of the line-to-line values.
+TEST(SwitchedMotor, HeldShaftIsTheLineToLineCircuit) {
+  SwitchedMotor motor{MotorParams{}};
+  motor.block();
+  motor.set_angle(60 * kDeg);
+  motor.set_bus(1.6);
+  motor.set_bridge(six_step(0, true, true));
+  motor.run(4e-4);
+  const double want = 10.0 * (1.0 - std::exp(-4e-4 * 0.16 / 1e-4));
+  EXPECT_TRUE(near(motor.phase_currents_A()[0], want, round_off(200, 10.0)));
+  EXPECT_TRUE(near(motor.phase_currents_A()[1], -want, round_off(200, 10.0)));
+  EXPECT_EQ(motor.phase_currents_A()[2], 0.0);
+  EXPECT_TRUE(near(motor.bus_current_A(), want, round_off(200, 10.0)));
+}
+
+// The open phase sits at half the bus plus its back-EMF: what a zero-crossing detector looks for.
+TEST(SwitchedMotor, FloatingPhaseCrossesHalfTheBusWhenItsBackEmfCrossesZero) {
+  SwitchedMotor motor{MotorParams{}};
+  motor.set_bus(10.0);
+  motor.set_speed(400.0);
+  motor.set_bridge(six_step(0, true, true));  // a high, b low, c open: c crosses zero at 60 degrees
+  for (double degrees : {50.0, 60.0, 70.0}) {
+    motor.set_angle(degrees * kDeg);
+    const double emf = 0.01005 / 2.0 * 400.0 * (60.0 - degrees) / 30.0;
+    const auto v = motor.phase_voltages();
+    EXPECT_EQ(v[0], 10.0);
+    EXPECT_EQ(v[1], 0.0);
+    EXPECT_TRUE(near(v[2], 5.0 + emf, round_off(64, 5.0))) << degrees;
+  }
+}
+
+TEST(SwitchedMotor, SwitchedOffPhaseFreewheelsThroughADiodeUntilItsCurrentIsGone) {
+  SwitchedMotor motor{MotorParams{}};
+  motor.block();
+  motor.set_bus(16.0);
+  motor.set_bridge({.leg = {Leg::high, Leg::low, Leg::off}});
+  motor.run(1e-4);
+  const double peak = motor.phase_currents_A()[0];
+  motor.set_bridge({});  // everything off: current flows back into the bus against V + 2 Vd
+  EXPECT_TRUE(near(motor.phase_voltages()[0], -0.7, round_off(4, 1.0)));
+  EXPECT_TRUE(near(motor.phase_voltages()[1], 16.7, round_off(4, 16.0)));
+  EXPECT_LT(motor.bus_current_A(), 0.0);
+  const double tau = 1e-4 / 0.16, dead = tau * std::log1p(peak * 0.16 / 17.4);
+  motor.run(0.98 * dead);
+  EXPECT_GT(motor.phase_currents_A()[0], 0.0);
+  motor.run(0.03 * dead);
+  EXPECT_EQ(motor.phase_currents_A()[0], 0.0);
+  EXPECT_EQ(motor.bus_current_A(), 0.0);
+}
+
+TEST(SwitchedMotor, CoastsWithoutCurrentAndBrakesWhenShorted) {
+  SwitchedMotor coasting{MotorParams{}}, shorted{MotorParams{}};
+  for (SwitchedMotor* motor : {&coasting, &shorted}) {
+    motor->set_bus(16.0);
+    motor->set_speed(400.0);
+  }
+  shorted.set_bridge({.leg = {Leg::low, Leg::low, Leg::low}});
+  coasting.run(0.01);
+  shorted.run(0.01);
+  EXPECT_EQ(coasting.peak_current_A(), 0.0);
+  EXPECT_TRUE(near(coasting.speed_radps(), 400.0 - 2.679, stated(0.01, "no-load torque")));
+  EXPECT_LT(shorted.speed_radps(), 380.0);
+}
+
+// Driven faster than the bus can push, the diodes rectify: current into the pack.
+TEST(SwitchedMotor, OverspeedFeedsTheBusThroughTheDiodes) {
+  SwitchedMotor motor{MotorParams{}};
+  motor.set_bus(3.0);
+  motor.set_speed(600.0);  // 6.03 V line to line against 3 + 2 x 0.7
+  const MotorBooks books = motor.run(1e-3);
+  EXPECT_LT(books.bus_charge_C, 0.0);
+  EXPECT_LT(motor.bus_current_A(), 0.0);
+}
+
+TEST(SwitchedMotor, LateCommutationCostsTorque) {
+  auto torque = [](double late_deg) {
+    MotorParams heavy;
+    heavy.inertia_kgm2 = 1.0;
+    SwitchedMotor motor{heavy};
+    motor.set_bus(5.5);
+    motor.set_speed(400.0);
+    MotorBooks sum;
+    for (int k = 0; k < 10000; ++k) {
+      const double seen = motor.electrical_angle_rad() - late_deg * kDeg;
+      motor.set_bridge(six_step(sector_of(seen), true, true));
+      sum += motor.run(2e-6);
+    }
+    return (sum.kinetic_J + sum.no_load_J) / (400.0 * 0.02) / (sum.copper_J / 0.02);
+  };
+  EXPECT_GT(torque(0.0), 1.1 * torque(20.0));  // per watt of heat
+  EXPECT_GT(torque(20.0), 1.1 * torque(40.0));
+}
+
+TEST(SwitchedMotor, EnergyBooksCloseForAnyPattern) {
+  for (BackEmf shape : {BackEmf::trapezoidal, BackEmf::sinusoidal}) {
+    MotorParams params;
+    params.back_emf = shape;
+    SwitchedMotor motor{params};
+    motor.set_load({2e-7, 0.0});
+    motor.set_speed(300.0);
+    RandomStream random(9, "bridge");
+    MotorBooks sum;
+    double throughput = 0.0;
+    for (int k = 0; k < 50000; ++k) {
+      motor.set_bus(10.0 + 6.0 * random.uniform());
+      Bridge bridge;
+      for (Leg& leg : bridge.leg) leg = static_cast<Leg>(random.bits() % 4);
+      bridge.pwm_on = random.bits() % 2 == 0;
+      motor.set_bridge(bridge);
+      const MotorBooks books = motor.run(40e-6 * random.uniform());
+      sum += books;
+      throughput += std::abs(books.electrical_in_J) + books.copper_J;
+      const auto& i = motor.phase_currents_A();
+      ASSERT_TRUE(near(i[0] + i[1] + i[2], 0.0, stated(1e-9, "star")));
+      ASSERT_TRUE(std::isfinite(motor.speed_radps()));
+    }
+    EXPECT_TRUE(near(imbalance_J(sum) / throughput, 0.0, stated(1e-4, "speed held within a step")));
+  }
+}
+
+struct Face {
+  double speed_radps, bus_A;
+};
+
+Face averaged(const MotorParams& params, const ShaftLoad& load, double duty, bool synchronous) {
+  AveragedMotor motor(params);
+  motor.set_speed(300.0);
+  const Drive drive{.bus_V = 16.4, .duty = duty, .diode = !synchronous};
+  for (int k = 0; k < 20000; ++k) motor.step(drive, load, 1.25e-4);
+  return {motor.speed_radps(), motor.step(drive, load, 1.25e-4).bus_charge_C / 1.25e-4};
+}
+
+Face switched(const MotorParams& params, const ShaftLoad& load, double duty, bool synchronous,
+              double start_radps) {
+  SwitchedMotor motor(params);
+  motor.set_bus(16.4);
+  motor.set_load(load);
+  motor.set_speed(start_radps);
+  for (int k = 0; k < 10000; ++k) run_period(motor, duty, synchronous);
+  double charge = 0.0, speed = 0.0;
+  for (int k = 0; k < 4000; ++k) {
+    charge += run_period(motor, duty, synchronous).bus_charge_C;
+    speed += motor.speed_radps() / 4000.0;
+  }
+  return {speed, charge / (4000.0 * kPeriod_s)};
+}
+
+// From idle to 5000 RPM, with what hovers and twice it. Speed is what thrust is made of.
+TEST(MotorFaces, AveragedAndSwitchedAgreeInSteadyState) {
+  for (BackEmf shape : {BackEmf::trapezoidal, BackEmf::sinusoidal}) {
+    for (bool synchronous : {true, false}) {
+      for (double duty : {0.1, 0.2, 0.3, 0.4}) {
+        MotorParams params;
+        params.six_step_overlap = true;
+        params.back_emf = shape;
+        const ShaftLoad load{1.9e-7, 0.0};
+        const Face a = averaged(params, load, duty, synchronous);
+        const Face s = switched(params, load, duty, synchronous, a.speed_radps);
+        EXPECT_TRUE(near(s.speed_radps / a.speed_radps, 1.0, stated(0.0105, "issue: 1 %")))
+            << duty << synchronous;
+        EXPECT_TRUE(near(s.bus_A / a.bus_A, 1.0, stated(0.035, "one pole for the recovery")))
+            << duty << synchronous;
+      }
+    }
+  }
+}
+
+// Without overlap (an inductance too small to matter) both are the plain DC motor.
+TEST(MotorFaces, WithoutInductanceBothAreTheDcMotor) {
+  MotorParams params;
+  params.inductance_H = 1e-6;
+  const ShaftLoad load{1.9e-7, 0.0};
+  const Face a = averaged(params, load, 1.0, true);
+  const Face s = switched(params, load, 1.0, true, a.speed_radps);
+  EXPECT_TRUE(near(s.speed_radps / a.speed_radps, 1.0, stated(0.01, "issue: 1 %")));
+  EXPECT_TRUE(near(s.bus_A / a.bus_A, 1.0, stated(0.02, "overlap that is left")));
+}
+
+TEST(MotorFaces, SwitchedWithOverlapRunsSlowerThanAnApparentResistanceSays) {
+  const ShaftLoad load{1.9e-7, 0.0};
+  const Face a = averaged(MotorParams{}, load, 0.3, true);
+  const Face s = switched(MotorParams{}, load, 0.3, true, a.speed_radps);
+  EXPECT_LT(s.speed_radps, 0.92 * a.speed_radps);
+}
+
+}  // namespace
+}  // namespace whirl::plant
