@@ -82,7 +82,9 @@ TEST(Vehicle, EachMotorTurnsTheBodyAsItsPlaceSays) {
 // In flight the air gives all the torque there is: the momentum of body and rotors about z changes
 // by the rotors' aerodynamic torque, however the motors push and brake.
 TEST(Vehicle, MotorTorqueIsInternal) {
-  Vehicle v = hovering();
+  VehicleParams params = hp_quad();
+  params.airframe.rotor_drag_spm = 0.0;
+  Vehicle v = hovering(params);
   const double Ir = hp_quad().motor.inertia_kgm2, Izz = 0.0235;
   auto momentum = [&] {
     double sum = Izz * v.state().w_WB_B_radps.z();
