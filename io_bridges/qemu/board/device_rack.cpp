@@ -29,9 +29,8 @@ struct BusName {
 };
 
 BusName split(const std::string& bus) {
-  const auto digit =
-      std::find_if(bus.begin(), bus.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
-  return {{bus.begin(), digit}, std::atoi(std::string(digit, bus.end()).c_str())};
+  const auto digit = bus.find_last_not_of("0123456789") + 1;  // "i2c3": the last number counts
+  return {bus.substr(0, digit), std::atoi(bus.substr(digit).c_str())};
 }
 
 // Puts the bytes of one chip select together and logs the transaction when it ends.
