@@ -20,10 +20,10 @@ inline constexpr float kDrag_spm = 0.04f;  // rotor drag: force = -kDrag T v, si
 inline constexpr float kThrustMin_N = 0.8f, kThrustMax_N = 8.0f;
 inline constexpr float kThrustUsable_N = 6.0f;  // per rotor, with the battery sagging
 
-// Attitude: torque = -Kw (rate + Kq angle). Crossover 12 rad/s: the ESC (25 ms), half a set-point
-// period (10 ms), the IMU's filter (2 ms) and the averaging (3 ms) leave 45 degrees there.
-inline constexpr float kRateGain_Nms[3] = {0.150f, 0.150f, 0.080f};
-inline constexpr float kAngleOverRate_radps[3] = {4.2f, 4.2f, 1.2f};
+// Attitude: torque = -Kw (rate + Kq angle). Crossover 14 rad/s: the ESC (25 ms), half a set-point
+// period (10 ms), the IMU's filter (2 ms) and the averaging (3 ms) leave 40 degrees there.
+inline constexpr float kRateGain_Nms[3] = {0.170f, 0.170f, 0.080f};
+inline constexpr float kAngleOverRate_radps[3] = {5.0f, 5.0f, 1.2f};
 // Angle trim: what the rotors' and the centre of mass's scatter needs in the mean.
 inline constexpr float kAngleIntegral_Nmps[3] = {0.25f, 0.25f, 0.03f};
 inline constexpr float kAngleIntegralLimit_Nm[3] = {0.15f, 0.15f, 0.03f};
@@ -31,14 +31,14 @@ inline constexpr float kAngleIntegralLimit_Nm[3] = {0.15f, 0.15f, 0.03f};
 // Position: acceleration = -Kp error - Kd velocity error - Ki integral; 40 Hz.
 inline constexpr float kPositionGain_ps2[3] = {3.0f, 3.0f, 6.0f};
 inline constexpr float kVelocityGain_ps[3] = {2.8f, 2.8f, 4.5f};
-inline constexpr float kPositionIntegral_ps3[3] = {1.0f, 1.0f, 3.0f};
+inline constexpr float kPositionIntegral_ps3[3] = {0.6f, 0.6f, 3.0f};
 inline constexpr float kIntegralLimit_mps2[3] = {1.5f, 1.5f, 3.0f};
 inline constexpr float kTiltLimit_tan = 0.40f;  // 22 degrees
 
 // Reference: speed and acceleration that a set-point may ask for.
-inline constexpr float kReferenceGain_ps = 1.6f;  // critically damped with four times this inside
+inline constexpr float kReferenceGain_ps = 1.2f;  // critically damped with four times this inside
 inline constexpr float kSpeedLimit_mps = 1.2f, kClimbLimit_mps = 0.5f;
-inline constexpr float kAccelerationLimit_mps2 = 2.0f, kClimbAccelerationLimit_mps2 = 0.8f;
+inline constexpr float kAccelerationLimit_mps2 = 1.2f, kClimbAccelerationLimit_mps2 = 0.8f;
 
 inline constexpr float kDescent_mps = 0.35f, kTouchdown_mps = 0.25f, kTouchdownHeight_m = 0.35f;
 

@@ -1,0 +1,174 @@
+// The whole flight logic around a rigid body of other hands (vehicle_model.hpp).
+#include <gtest/gtest.h>
+
+#include "firmware/tests/vehicle_model.hpp"
+
+namespace fw::test {
+namespace {
+
+struct Errors {
+  double height_rms_m = 0, sideways_rms_m = 0, tilt_rms_rad = 0;
+};
+
+Errors hover_errors(VehicleModel& vehicle, Flight& flight, double seconds) {
+  Errors sum;
+  const int steps = static_cast<int>(seconds * 1000);
+  for (int i = 0; i < steps; ++i) {
+    vehicle.step(flight);
+    sum.height_rms_m += std::pow(vehicle.p_W_.z() + 1.1, 2) / steps;
+    sum.sideways_rms_m += vehicle.p_W_.head<2>().squaredNorm() / steps;
+    sum.tilt_rms_rad += std::pow(vehicle.tilt_rad(), 2) / steps;
+  }
+  return {std::sqrt(sum.height_rms_m), std::sqrt(sum.sideways_rms_m), std::sqrt(sum.tilt_rms_rad)};
+}
+
+// Flies itself into a hover at 1.1 m.
+struct Hovering {
+  explicit Hovering(const Scenario& scenario) : vehicle(scenario) {
+    vehicle.run(flight, 3.0);
+    EXPECT_EQ(flight.arm(), Reason::none) << text_of(flight.ready_to_arm());
+    vehicle.run(flight, 1.0);
+    EXPECT_EQ(flight.take_off(1.1f), Reason::none);
+    for (int i = 0; i < 8000; ++i) {
+      vehicle.step(flight);
+      highest_m = std::max(highest_m, -vehicle.p_W_.z());
+    }
+  }
+  Flight flight;
+  VehicleModel vehicle;
+  double highest_m = 0.0;
+};
+
+double bounce_after_touchdown(VehicleModel& vehicle, Flight& flight) {
+  double bounce = 0.0;
+  bool touched = false;
+  for (int i = 0; i < 12'000 && flight.state() != FlightState::disarmed; ++i) {
+    vehicle.step(flight);
+    const double clearance = -vehicle.p_W_.z() - VehicleModel::kFoot_m;
+    touched = touched || clearance < 0.0;
+    if (touched) bounce = std::max(bounce, clearance);
+  }
+  return bounce;
+}
+
+class ThrustError : public ::testing::TestWithParam<double> {};
+INSTANTIATE_TEST_SUITE_P(RotorsWeakAndStrong, ThrustError, ::testing::Values(0.88, 1.0, 1.12));
+
+TEST_P(ThrustError, HoversThroughAGustAndLandsWithoutABounce) {
+  Hovering hover({.thrust_gain = GetParam(), .seed = 7});
+  EXPECT_LT(hover.highest_m, 1.1 + 0.06);  // reached without much overshoot
+  hover.vehicle.wind_W_ = {0, 2.0, 0};
+  hover.vehicle.run(hover.flight, 1.0);
+  hover.vehicle.wind_W_.setZero();
+  hover.vehicle.run(hover.flight, 3.0);
+  EXPECT_LT(hover.vehicle.p_W_.head<2>().norm(), 0.10);
+  hover.vehicle.run(hover.flight, 2.0);
+  const Errors errors = hover_errors(hover.vehicle, hover.flight, 10.0);
+  EXPECT_LT(errors.height_rms_m, 0.05);
+  EXPECT_LT(errors.sideways_rms_m, 0.10);
+  EXPECT_LT(errors.tilt_rms_rad, 3.0 * M_PI / 180.0);
+  ASSERT_EQ(hover.flight.land(), Reason::none);
+  EXPECT_LT(bounce_after_touchdown(hover.vehicle, hover.flight), 0.05);
+  EXPECT_EQ(hover.flight.last_reason(), Reason::landed);
+  EXPECT_EQ(hover.flight.setpoints(), (std::array<std::uint16_t, 4>{}));
+}
+
+TEST(Flight, FollowsATargetASideWithoutOvershoot) {
+  Hovering hover({});
+  double furthest = 0.0;
+  for (int i = 0; i < 6000; ++i) {
+    if (i % 100 == 0) hover.flight.on_target({1.0f, 0.0f, -1.1f}, 0.5f);
+    hover.vehicle.step(hover.flight);
+    furthest = std::max(furthest, hover.vehicle.p_W_.x());
+  }
+  EXPECT_NEAR(hover.vehicle.p_W_.x(), 1.0, 0.05);
+  EXPECT_LT(furthest, 1.1);
+  EXPECT_NEAR(yaw_of(hover.vehicle.q_WB_.cast<float>()), 0.5, 0.03);
+}
+
+TEST(Flight, LosesTheCaptureAndLandsBlind) {
+  Hovering hover({});
+  hover.vehicle.capture_on_ = false;
+  hover.vehicle.run(hover.flight, 0.6);
+  EXPECT_EQ(hover.flight.state(), FlightState::failsafe);
+  EXPECT_EQ(hover.flight.last_reason(), Reason::no_capture);
+  double fastest = 0.0;
+  for (int i = 0; i < 12'000 && hover.flight.state() == FlightState::failsafe; ++i) {
+    hover.vehicle.step(hover.flight);
+    fastest = std::max(fastest, hover.vehicle.v_W_.z());
+  }
+  EXPECT_EQ(hover.flight.state(), FlightState::disarmed);
+  EXPECT_GT(hover.vehicle.p_W_.z(), -VehicleModel::kFoot_m - 0.02);  // on the ground, not above it
+  EXPECT_LT(fastest, 1.0);
+  EXPECT_LT(hover.vehicle.tilt_rad(), 0.1);
+}
+
+TEST(Flight, CutsTheMotorsWhenTheImuDies) {
+  Hovering hover({});
+  hover.vehicle.imu_on_ = false;
+  hover.vehicle.run(hover.flight, 0.04);
+  EXPECT_EQ(hover.flight.state(), FlightState::disarmed);
+  EXPECT_EQ(hover.flight.last_reason(), Reason::imu_not_running);
+  EXPECT_TRUE(hover.flight.emergency());
+  EXPECT_EQ(hover.flight.setpoints(), (std::array<std::uint16_t, 4>{}));
+}
+
+TEST(Flight, GivesUpWhenAnEscFallsSilent) {
+  Hovering hover({});
+  hover.vehicle.esc_on_[1] = false;
+  hover.vehicle.run(hover.flight, 1.5);
+  EXPECT_TRUE(hover.flight.last_reason() == Reason::esc_silent ||
+              hover.flight.last_reason() == Reason::tipped_over);
+  hover.vehicle.run(hover.flight, 12.0);
+  EXPECT_EQ(hover.flight.state(), FlightState::disarmed);
+}
+
+TEST(Flight, LandsWhenTargetsStop) {
+  Hovering hover({});
+  hover.flight.on_target({0, 0, -1.1f}, 0);
+  hover.vehicle.run(hover.flight, 3.1);
+  EXPECT_EQ(hover.flight.state(), FlightState::landing);
+  EXPECT_EQ(hover.flight.last_reason(), Reason::no_setpoints);
+}
+
+TEST(Flight, TakesOffForATargetInTheAirAndLandsForOneOnTheGround) {
+  Flight flight;
+  VehicleModel vehicle({});
+  vehicle.run(flight, 3.0);
+  ASSERT_EQ(flight.arm(), Reason::none);
+  const auto fly_to = [&](float z, double seconds) {
+    for (int i = 0; i < static_cast<int>(10 * seconds); ++i) {
+      flight.on_target({0, 0, z}, 0);
+      vehicle.run(flight, 0.1);
+    }
+  };
+  fly_to(-1.1f, 9.0);
+  EXPECT_NEAR(vehicle.p_W_.z(), -1.1, 0.05);
+  fly_to(0.0f, 8.0);
+  EXPECT_EQ(flight.state(), FlightState::disarmed);
+  EXPECT_EQ(flight.last_reason(), Reason::landed);
+}
+
+TEST(Flight, RefusesToArmAndSaysWhy) {
+  Flight flight;
+  EXPECT_EQ(flight.arm(), Reason::imu_not_running);
+  VehicleModel vehicle({});
+  vehicle.capture_on_ = false;
+  vehicle.run(flight, 3.0);
+  EXPECT_EQ(flight.arm(), Reason::no_capture);
+  vehicle.capture_on_ = true;
+  vehicle.run(flight, 0.3);
+  EXPECT_EQ(flight.arm(), Reason::imu_not_calibrated);
+  vehicle.run(flight, 2.0);
+  flight.on_esc_status(2, {0, 0, esc_wire::kArmed | esc_wire::kUnderVoltage});
+  EXPECT_EQ(flight.arm(), Reason::esc_fault);
+  flight.on_esc_status(2, {0, 0, 0});
+  EXPECT_EQ(flight.arm(), Reason::esc_not_armed);
+  EXPECT_EQ(flight.take_off(1.1f), Reason::wrong_state);
+  vehicle.esc_on_[3] = false;
+  vehicle.run(flight, 0.6);
+  EXPECT_EQ(flight.arm(), Reason::esc_silent);
+}
+
+}  // namespace
+}  // namespace fw::test

@@ -1,0 +1,80 @@
+// Oracle: the forward geometry, torque as r x F and the reaction of each rotor's drag.
+#include "firmware/control/mixer.hpp"
+
+#include <gtest/gtest.h>
+
+#include "harness/base/near.hpp"
+
+namespace fw {
+namespace {
+
+using whirl::near, whirl::stated;
+
+// What four thrusts do to the airframe: rotors at +x, +y, -x, -y (0.25 m), thrust along -z; 1 and 3
+// turn counter-clockwise seen from above, so their reaction is clockwise: +z (down) in FRD.
+Eigen::Vector3d torque_of(const RotorThrusts& thrusts) {
+  const Eigen::Vector3d arms[4] = {{0.25, 0, 0}, {0, 0.25, 0}, {-0.25, 0, 0}, {0, -0.25, 0}};
+  const double reaction[4] = {1, -1, 1, -1};
+  Eigen::Vector3d sum(0, 0, 0);
+  for (unsigned i = 0; i < 4; ++i) {
+    sum += arms[i].cross(Eigen::Vector3d(0, 0, -thrusts[i]));
+    sum.z() += reaction[i] * 0.0165 * thrusts[i];
+  }
+  return sum;
+}
+
+double total_of(const RotorThrusts& t) {
+  return double{t[0]} + t[1] + t[2] + t[3];
+}
+
+TEST(Mixer, ThrustsProduceTheTorqueAskedFor) {
+  const Vector3 asked(0.12f, -0.2f, 0.01f);
+  const RotorThrusts thrusts = mix(8.8f, asked);
+  const whirl::Tolerance tolerance = stated(1e-5, "float round-off of a few newtons");
+  EXPECT_TRUE(near(total_of(thrusts), 8.8, tolerance));
+  for (int i = 0; i < 3; ++i) EXPECT_TRUE(near(torque_of(thrusts)[i], asked[i], tolerance)) << i;
+}
+
+TEST(Mixer, RollingRightSpeedsUpTheLeftRotor) {
+  const RotorThrusts thrusts = mix(8.8f, {0.1f, 0.0f, 0.0f});
+  EXPECT_GT(thrusts[3], thrusts[1]);
+  EXPECT_EQ(thrusts[0], thrusts[2]);
+}
+
+TEST(Mixer, NosingUpSpeedsUpTheFrontRotor) {
+  const RotorThrusts thrusts = mix(8.8f, {0.0f, 0.1f, 0.0f});
+  EXPECT_GT(thrusts[0], thrusts[2]);
+}
+
+TEST(Mixer, YawGivesWayToRollAndPitch) {
+  const Vector3 asked(0.6f, 0.6f, 0.2f);
+  const RotorThrusts thrusts = mix(8.8f, asked);
+  const Eigen::Vector3d got = torque_of(thrusts);
+  EXPECT_TRUE(near(got.x(), 0.6, stated(1e-5, "float round-off")));
+  EXPECT_TRUE(near(got.y(), 0.6, stated(1e-5, "float round-off")));
+  EXPECT_LT(got.z(), 0.1);
+}
+
+TEST(Mixer, BeyondTheLimitsTheTorqueKeepsItsAxisAndTheThrustItsSize) {
+  const RotorThrusts thrusts = mix(8.8f, {3.0f, 1.5f, 0.0f});
+  const Eigen::Vector3d got = torque_of(thrusts);
+  EXPECT_TRUE(near(got.x() / got.y(), 2.0, stated(1e-4, "float round-off")));
+  EXPECT_TRUE(near(total_of(thrusts), 8.8, stated(1e-5, "float round-off")));
+  for (const float thrust : thrusts) {
+    EXPECT_GE(thrust, 0.8f - 1e-6f);
+    EXPECT_LE(thrust, 8.0f);
+  }
+}
+
+// Ends of the range on the wire: v = 1 asks for 0.8 N, v = 2047 for 8 N; steps of 3.5 mN.
+TEST(Mixer, SetpointsSpanTheRangeOfTheEsc) {
+  EXPECT_EQ(setpoint_for(0.0f), 1);
+  EXPECT_EQ(setpoint_for(0.8f), 1);
+  EXPECT_EQ(setpoint_for(8.0f), 2047);
+  EXPECT_EQ(setpoint_for(99.0f), 2047);
+  const double asked = 0.8 + (setpoint_for(2.207f) - 1) / 2046.0 * 7.2;
+  EXPECT_TRUE(near(asked, 2.207, whirl::counts(0.5, 7.2 / 2046.0)));
+}
+
+}  // namespace
+}  // namespace fw
