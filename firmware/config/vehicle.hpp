@@ -23,7 +23,7 @@ inline constexpr float kThrustUsable_N = 6.0f;  // per rotor, with the battery s
 // Attitude: torque = -Kw (rate + Kq angle). Crossover 14 rad/s: the ESC (25 ms), half a set-point
 // period (10 ms), the IMU's filter (2 ms) and the averaging (3 ms) leave 40 degrees there.
 inline constexpr float kRateGain_Nms[3] = {0.170f, 0.170f, 0.080f};
-inline constexpr float kAngleOverRate_radps[3] = {5.0f, 5.0f, 1.2f};
+inline constexpr float kAngleOverRate_radps[3] = {5.0f, 5.0f, 1.5f};
 // Angle trim: what the rotors' and the centre of mass's scatter needs in the mean.
 inline constexpr float kAngleIntegral_Nmps[3] = {0.25f, 0.25f, 0.03f};
 inline constexpr float kAngleIntegralLimit_Nm[3] = {0.15f, 0.15f, 0.03f};
