@@ -34,6 +34,10 @@ Result<std::shared_ptr<const plant::Blade>> read_propeller(const std::string& pa
   d.blade_count = static_cast<int>(t.integer("blades", 1, 8));
   d.diameter_m = t.quantity("diameter", Dimension::length, lua::above(0.0));
   d.mass_kg = t.quantity("mass", Dimension::mass, lua::above(0.0));
+  d.induced_factor = t.number_or("induced_factor", d.induced_factor, lua::at_least(1.0));
+  d.stall_delay = t.flag_or("stall_delay", d.stall_delay);
+  d.tip_twist_correction_rad =
+      t.quantity_or("tip_twist_correction", Dimension::angle, d.tip_twist_correction_rad);
   for (const lua::Table& s : t.tables("stations")) {
     d.stations.push_back({s.number("r", lua::between(0.0, 1.0)), s.number("c", lua::above(0.0)),
                           s.number("beta") * std::numbers::pi / 180.0});
