@@ -188,9 +188,14 @@ void I2c::write_dr(std::uint8_t value) {
 
 std::uint8_t I2c::read_dr() {
   const std::uint8_t value = dr_;
+  if (transmitter_) {  // reading DR clears BTF in either direction
+    sr1_ &= ~(sr1_seen_ & BTF);
+    update();
+    return value;
+  }
   if ((sr1_ & RXNE) == 0) return value;
   sr1_ &= ~(RXNE | BTF);
-  if (shift_full_ && !transmitter_) {
+  if (shift_full_) {
     dr_ = shift_;
     shift_full_ = false;
     sr1_ |= RXNE;

@@ -89,7 +89,8 @@ void I2c::update_stretch() {
   bool hold = slave_ != Slave::none && (cr1_ & NOSTRETCH) == 0;
   hold = hold && ((sr1_ & ADDR) != 0 ||
                   (slave_ == Slave::transmitter ? !shift_full_ && !nacked_ : (sr1_ & BTF) != 0));
-  pins_.scl.drive(hold ? Drive::low : Drive::none, chip_.events.now());
+  const Drive drive = hold ? Drive::low : Drive::none;
+  if (drive != pins_.scl.driven()) pins_.scl.drive(drive, chip_.events.now());
 }
 
 }  // namespace whirl::stm32

@@ -4,3 +4,4 @@ whirl_library(whirl_stm32 SOURCES rcc.cpp pwr.cpp flash_f4.cpp pins.cpp gpio.cpp
               f405_tables.cpp stm32f405.cpp
               LINK whirl_devices whirl_stm32_b)
 whirl_test(stm32f405_test SOURCES tests/stm32f405_test.cpp LINK whirl_stm32)
+whirl_test(stm32_i2c_test SOURCES tests/i2c_master_test.cpp tests/i2c_slave_test.cpp LINK whirl_stm32)

@@ -64,8 +64,6 @@ void Usart::reset() {
   tdr_ = rdr_ = tx_shift_ = 0;
   sending_ = Sending::nothing;
   idle_frame_wanted_ = false;
-  pins_.tx.drive(Drive::none, chip_.events.now());
-  pins_.rts.drive(Drive::none, chip_.events.now());
   settings_changed();
   update();
 }
@@ -285,10 +283,16 @@ void Usart::update() {
   const bool enabled = (cr1_ & UE) != 0;
   tx_request_.set(enabled && (cr1_ & TE) != 0 && (cr3_ & DMAT) != 0 && (sr_ & TXE) != 0);
   rx_request_.set(enabled && (cr3_ & DMAR) != 0 && (sr_ & RXNE) != 0);
+  drive_pins();
+}
+
+void Usart::drive_pins() {
   const bool transmits = (cr1_ & (UE | TE)) == (UE | TE);
-  const Nanoseconds now = chip_.events.now();
-  pins_.tx.drive(transmits ? Drive::high : Drive::none, now);
-  if ((cr3_ & RTSE) != 0) pins_.rts.drive((sr_ & RXNE) != 0 ? Drive::high : Drive::low, now);
+  const Drive tx = transmits ? Drive::high : Drive::none;  // idle; characters pass as a whole
+  const Drive full = (sr_ & RXNE) != 0 ? Drive::high : Drive::low;
+  const Drive rts = (cr3_ & RTSE) != 0 ? full : Drive::none;
+  if (tx != pins_.tx.driven()) pins_.tx.drive(tx, chip_.events.now());
+  if (rts != pins_.rts.driven()) pins_.rts.drive(rts, chip_.events.now());
 }
 
 void Usart::report_once(std::uint32_t bit, const char* what) {

@@ -48,6 +48,7 @@ class Usart final : public WordBlock {
   void line_idle();
   void idle_passed();
   void update();
+  void drive_pins();
   void settings_changed();
   int word_bits() const;  // data and parity
   Nanoseconds frame_ns() const;
