@@ -217,9 +217,10 @@ double reynolds_of_level(int level) {
 }
 
 ReynoldsSlot reynolds_slot(double reynolds) {
+  static const double kLevels_per_log =
+      (kReynolds - 1.0) / std::log(kReynolds_high / kReynolds_low);
   const double clamped = std::clamp(reynolds, kReynolds_low, kReynolds_high);
-  const double at = (kReynolds - 1.0) * std::log(clamped / kReynolds_low) /
-                    std::log(kReynolds_high / kReynolds_low);
+  const double at = kLevels_per_log * std::log(clamped / kReynolds_low);
   const int level = std::min(static_cast<int>(at), kReynolds - 2);
   return {level, at - level};
 }

@@ -31,14 +31,20 @@ inline double mass_flow_mps(double u, double V, double Vxy) {
   return std::sqrt(Vxy * Vxy + axial * axial);
 }
 
+// One end's share of Prandtl's loss for f = blades/2 x relative distance / sin(phi). Beyond f = 16 it
+// differs from 1 by less than 1e-7.
+inline double prandtl_share(double f) {
+  constexpr double kTwo_over_pi = 0.63661977236758134;
+  return f > 16.0 ? 1.0 : kTwo_over_pi * std::acos(std::exp(-f));
+}
+
 // Prandtl's factor for the tip and the root of B blades; phi is the local inflow angle. A radius of
 // zero switches that end's loss off. Bounded below: at the very tip no air at all would be moved.
 inline double prandtl_loss(double r, double tip, double root, int blades, double sin_phi) {
-  constexpr double kTwo_over_pi = 0.63661977236758134;
   const double s = std::max(std::abs(sin_phi), 1e-6);
   double F = 1.0;
-  if (tip > 0.0) F *= kTwo_over_pi * std::acos(std::exp(-0.5 * blades * (tip / r - 1.0) / s));
-  if (root > 0.0) F *= kTwo_over_pi * std::acos(std::exp(-0.5 * blades * (r / root - 1.0) / s));
+  if (tip > 0.0) F *= prandtl_share(0.5 * blades * (tip / r - 1.0) / s);
+  if (root > 0.0) F *= prandtl_share(0.5 * blades * (r / root - 1.0) / s);
   return std::max(F, 1e-3);
 }
 

@@ -1,93 +1,186 @@
+// Speed: twelve azimuths in three vectors of four. The compiler's vector types keep one order of
+// operations whatever the machine (wider registers, no contraction), so the bits do not depend on
+// which clone of the function runs.
 #include "plant/rotor/ring_loads.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && \
+    !defined(__SANITIZE_ADDRESS__)
+#define WHIRL_VECTOR_CLONES __attribute__((target_clones("avx2", "default")))
+#else
+#define WHIRL_VECTOR_CLONES
+#endif
+#define WHIRL_INLINE inline __attribute__((always_inline))
 
 namespace whirl::plant {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-using Around = std::array<double, kAzimuths>;
+constexpr int kLanes = 4;
+constexpr int kGroups = kAzimuths / kLanes;
+using Vec = double __attribute__((vector_size(sizeof(double) * kLanes)));
+using Int4 = int __attribute__((vector_size(sizeof(int) * kLanes)));
 
 struct Azimuths {
-  Around c{};
-  Around s{};
+  Vec c[kGroups];
+  Vec s[kGroups];
   Azimuths() {
-    for (std::size_t k = 0; k < kAzimuths; ++k) {
-      const double theta = 2.0 * kPi * static_cast<double>(k) / kAzimuths;
-      c[k] = std::cos(theta);
-      s[k] = std::sin(theta);
+    for (int k = 0; k < kAzimuths; ++k) {
+      const double theta = 2.0 * kPi * k / kAzimuths;
+      c[k / kLanes][k % kLanes] = std::cos(theta);
+      s[k / kLanes][k % kLanes] = std::sin(theta);
     }
   }
 };
 const Azimuths kAz;
 
-struct Winds {
-  Around tangential;
-  Around axial;
+WHIRL_INLINE void square_root(Vec& x) {
+  for (int i = 0; i < kLanes; ++i) x[i] = std::sqrt(x[i]);
+}
+
+WHIRL_INLINE double sum(const Vec& x) {
+  return (x[0] + x[1]) + (x[2] + x[3]);
+}
+
+// atan2(y, x) to 2e-9 rad, without branches: arctangent of the smaller over the larger by a
+// polynomial (Chebyshev interpolation over 0..1, odd, ten terms), then unfolded by octants.
+WHIRL_INLINE void angle_of(const Vec& y, const Vec& x, Vec& out) {
+  const Vec zero = Vec{};
+  const Vec ay = y < zero ? -y : y;
+  const Vec ax = x < zero ? -x : x;
+  const Vec big = ax > ay ? ax : ay;
+  const Vec small = ax > ay ? ay : ax;
+  const Vec t = small / (big + 1e-300);
+  const Vec z = t * t;
+  Vec p = z * -1.701170068078e-03 + 1.048764927387e-02;
+  p = p * z - 3.035186482312e-02;
+  p = p * z + 5.708955597024e-02;
+  p = p * z - 8.349724970809e-02;
+  p = p * z + 1.093234150224e-01;
+  p = p * z - 1.426001608302e-01;
+  p = p * z + 1.999807528117e-01;
+  p = p * z - 3.333327629198e-01;
+  p = p * z + 9.999999971605e-01;
+  Vec a = p * t;
+  a = ay > ax ? 0.5 * kPi - a : a;
+  a = x < zero ? kPi - a : a;
+  out = y < zero ? -a : a;
+}
+
+struct Coefficients {
+  Vec cl;
+  Vec cd;
 };
 
-Winds winds(const Ring& ring, const DiscFlow& f, double u, double v) {
-  Winds w;
+WHIRL_INLINE void look_up_four(const SectionTable& table, const ReynoldsSlot& slot,
+                               const Vec& alpha, Coefficients& out) {
+  const Vec at = alpha * (360.0 / kPi) + 360.0;
+  const Int4 index = __builtin_convertvector(at, Int4);
+  const auto* level = table.cells.data() + static_cast<std::ptrdiff_t>(slot.level) * kAngles;
+  Vec c[8];  // lift and drag at the four corners; float in the table, double from here on
+  Vec w;
+  for (int i = 0; i < kLanes; ++i) {
+    const int cell = std::clamp(index[i], 0, kAngles - 2);
+    const auto* lo = level + cell;
+    const auto* hi = lo + kAngles;
+    w[i] = at[i] - cell;
+    c[0][i] = lo[0].cl, c[1][i] = lo[0].cd, c[2][i] = lo[1].cl, c[3][i] = lo[1].cd;
+    c[4][i] = hi[0].cl, c[5][i] = hi[0].cd, c[6][i] = hi[1].cl, c[7][i] = hi[1].cd;
+  }
+  const Vec cl0 = c[0] + w * (c[2] - c[0]);
+  const Vec cd0 = c[1] + w * (c[3] - c[1]);
+  const Vec cl1 = c[4] + w * (c[6] - c[4]);
+  const Vec cd1 = c[5] + w * (c[7] - c[5]);
+  out.cl = cl0 + slot.weight * (cl1 - cl0);
+  out.cd = cd0 + slot.weight * (cd1 - cd0);
+}
+
+struct Winds {
+  Vec tangential[kGroups];
+  Vec axial[kGroups];
+  Vec flap[kGroups];
+  double mean_speed_mps = 0.0;
+};
+
+WHIRL_INLINE void find_winds(const Ring& ring, const DiscFlow& f, double u, double v, Winds& w) {
   const double r = ring.r_m;
-  const double spin_speed = f.omega_radps * r - v;
   const double tilt = r / f.tip_radius_m;
+  const double spin_speed = f.omega_radps * r - v;
   const double through = f.climb_mps + f.ground_factor * u;
   const double flap_speed = f.spin * f.omega_radps * r;
-  for (std::size_t k = 0; k < kAzimuths; ++k) {
-    const double c = kAz.c[k];
-    const double s = kAz.s[k];
-    const double beta = f.flap_rad.mean + f.flap_rad.c * c + f.flap_rad.s * s;
-    w.tangential[k] = spin_speed + f.spin * (f.vx_mps * s - f.vy_mps * c);
-    w.axial[k] = through + tilt * (f.tilt_inflow_mps.c * c + f.tilt_inflow_mps.s * s) -
-                 r * (f.p_radps * s - f.q_radps * c) - beta * (f.vx_mps * c + f.vy_mps * s) +
-                 flap_speed * (f.flap_rad.c * s - f.flap_rad.s * c);
+  // Everything that goes with cos and sin of the azimuth, gathered.
+  const double axial_c = tilt * f.tilt_inflow_mps.c + r * f.q_radps - flap_speed * f.flap_rad.s;
+  const double axial_s = tilt * f.tilt_inflow_mps.s - r * f.p_radps + flap_speed * f.flap_rad.c;
+  Vec speed2 = Vec{};
+  for (int g = 0; g < kGroups; ++g) {
+    const Vec& c = kAz.c[g];
+    const Vec& s = kAz.s[g];
+    w.flap[g] = f.flap_rad.mean + f.flap_rad.c * c + f.flap_rad.s * s;
+    w.tangential[g] = spin_speed + f.spin * (f.vx_mps * s - f.vy_mps * c);
+    w.axial[g] = through + axial_c * c + axial_s * s - w.flap[g] * (f.vx_mps * c + f.vy_mps * s);
+    speed2 += w.tangential[g] * w.tangential[g] + w.axial[g] * w.axial[g];
   }
-  return w;
+  w.mean_speed_mps = std::sqrt(sum(speed2) / kAzimuths);
+}
+
+struct Sums {
+  Vec up{}, up_c{}, up_s{}, back{}, back_c{}, back_s{}, tilt_c{}, tilt_s{};
+  Vec stalled{};
+};
+
+WHIRL_INLINE void add_forces(const Ring& ring, const ReynoldsSlot& slot, const Winds& w, int g,
+                             Sums& sums) {
+  const Vec& ut = w.tangential[g];
+  const Vec& up = w.axial[g];
+  Vec phi;
+  angle_of(up, ut, phi);
+  Vec alpha = ring.angle_rad - phi;
+  alpha = alpha > kPi ? alpha - 2.0 * kPi : alpha;
+  alpha = alpha < -kPi ? alpha + 2.0 * kPi : alpha;
+  Coefficients k;
+  look_up_four(ring.table, slot, alpha, k);
+  Vec speed = ut * ut + up * up;
+  square_root(speed);
+  const Vec lift = speed * (k.cl * ut - k.cd * up);
+  const Vec back = speed * (k.cl * up + k.cd * ut);
+  const Vec tilted = w.flap[g] * lift;
+  sums.up += lift;
+  sums.up_c += lift * kAz.c[g];
+  sums.up_s += lift * kAz.s[g];
+  sums.back += back;
+  sums.back_c += back * kAz.c[g];
+  sums.back_s += back * kAz.s[g];
+  sums.tilt_c += tilted * kAz.c[g];
+  sums.tilt_s += tilted * kAz.s[g];
+  const Vec zero = Vec{};
+  const Vec size = alpha < zero ? -alpha : alpha;
+  sums.stalled += size > ring.stall_alpha_rad ? zero + 1.0 : zero;
 }
 
 }  // namespace
 
+WHIRL_VECTOR_CLONES
 RingLoads ring_loads(const Ring& ring, const DiscFlow& f, double u, double v) {
-  const Winds w = winds(ring, f, u, v);
-  double speed2 = 0.0;
-  for (std::size_t k = 0; k < kAzimuths; ++k) {
-    speed2 += w.tangential[k] * w.tangential[k] + w.axial[k] * w.axial[k];
-  }
-  const double mean_speed = std::sqrt(speed2 / kAzimuths);
+  Winds w;
+  find_winds(ring, f, u, v, w);
   const ReynoldsSlot slot =
-      reynolds_slot(f.density_kgpm3 * mean_speed * ring.chord_m / f.viscosity_Pas);
-  const double q_area =
-      0.5 * f.density_kgpm3 * ring.chord_m * ring.dr_m * f.blade_count / kAzimuths;
+      reynolds_slot(f.density_kgpm3 * w.mean_speed_mps * ring.chord_m / f.viscosity_Pas);
+  Sums sums;
+  for (int g = 0; g < kGroups; ++g) add_forces(ring, slot, w, g, sums);
 
-  RingLoads sum;
-  for (std::size_t k = 0; k < kAzimuths; ++k) {
-    const double ut = w.tangential[k];
-    const double up = w.axial[k];
-    const double speed = std::sqrt(ut * ut + up * up);
-    double alpha = ring.angle_rad - std::atan2(up, ut);
-    if (alpha > kPi) alpha -= 2.0 * kPi;
-    if (alpha < -kPi) alpha += 2.0 * kPi;
-    const SectionCoefficients k2 = look_up(ring.table, slot, alpha);
-    const double up_force = q_area * speed * (k2.cl * ut - k2.cd * up);
-    const double back = q_area * speed * (k2.cl * up + k2.cd * ut);
-    const double c = kAz.c[k];
-    const double s = kAz.s[k];
-    const double beta = f.flap_rad.mean + f.flap_rad.c * c + f.flap_rad.s * s;
-    sum.thrust_N += up_force;
-    sum.drive_N += back;
-    sum.fx_N += -back * f.spin * s - beta * up_force * c;
-    sum.fy_N += back * f.spin * c - beta * up_force * s;
-    sum.lift_N.c += up_force * c;
-    sum.lift_N.s += up_force * s;
-    sum.stalled += (std::abs(alpha) > ring.stall_alpha_rad ? 1.0 : 0.0) / kAzimuths;
-  }
-  sum.lift_N.mean = sum.thrust_N;
-  const double through = f.climb_mps + f.ground_factor * u;
-  sum.sin_phi = through / std::max(mean_speed, 1e-6);
-  sum.lift_slope_N_per_mps = q_area * kAzimuths * mean_speed * 2.0 * kPi;
-  return sum;
+  const double k = 0.5 * f.density_kgpm3 * ring.chord_m * ring.dr_m * f.blade_count / kAzimuths;
+  RingLoads out;
+  out.thrust_N = k * sum(sums.up);
+  out.drive_N = k * sum(sums.back);
+  out.fx_N = k * (-f.spin * sum(sums.back_s) - sum(sums.tilt_c));
+  out.fy_N = k * (f.spin * sum(sums.back_c) - sum(sums.tilt_s));
+  out.lift_N = {out.thrust_N, k * sum(sums.up_c), k * sum(sums.up_s)};
+  out.stalled = sum(sums.stalled) / kAzimuths;
+  out.sin_phi = (f.climb_mps + f.ground_factor * u) / std::max(w.mean_speed_mps, 1e-6);
+  out.lift_slope_N_per_mps = k * kAzimuths * w.mean_speed_mps * 2.0 * kPi;
+  return out;
 }
 
 }  // namespace whirl::plant
