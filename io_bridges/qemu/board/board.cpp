@@ -8,12 +8,16 @@
 #include <tuple>
 
 #include "io_bridges/qemu/board/chip_factory.hpp"
+#include "io_bridges/qemu/board/post_mortem.hpp"
 
 namespace whirl::board {
 namespace {
 
 constexpr std::uint32_t kPeripherals = 0x40000000, kPeripherals_size = 0x20000000;
 constexpr std::uint32_t kPage = 0x1000;
+constexpr std::uint32_t kSysTickException = 15, kFirstInterrupt = 16;
+constexpr std::uint32_t kHardFault = 3, kUsageFault = 6, kLockUp = 255;
+constexpr std::uint32_t kCfsr = 0xD28, kHfsr = 0xD2C, kMmfar = 0xD34, kBfar = 0xD38;  // in SCS
 
 std::string hex(std::uint32_t value) {
   char text[16];
@@ -40,12 +44,17 @@ Board::Board(Setup setup, io::Channel channel, Emulator& emulator)
     : setup_(std::move(setup)),
       channel_(std::move(channel)),
       emulator_(emulator),
+      watch_(happened_),
       chip_(make_chip(*setup_.part,
                       {events_, *this, *this, *this, [this](const io::Finding& f) { find(f); },
                        setup_.config.hse_Hz, setup_.config.lse_Hz})),
       devices_({events_, *chip_, happened_, [this](const io::Finding& f) { find(f); },
                 setup_.config.seed}),
-      systick_(events_, chip_->clocks(), [this] { emulator_.pend_systick(); }),
+      systick_(events_, chip_->clocks(),
+               [this] {
+                 watch_.line_changed(kSysTickException, true, events_.now());
+                 emulator_.pend_systick();
+               }),
       cycle_counter_(events_, chip_->clocks()),
       unanswered_(
           kPeripherals, [this] { return emulator_.accessing_pc(); },
@@ -112,6 +121,7 @@ void Board::synchronise() {
   // What else happens at this very instant belongs to the step that ends here.
   if (events_.next_deadline() <= now) return boundary_.at(now);
   report_clocks();
+  report_busy();
   if (!reported_) {
     const auto posted = channel_.post(now, happened_.bytes());
     if (!posted) refuse(posted.error());
@@ -149,6 +159,15 @@ void Board::report_clocks() {
   happened_.add(io::Kind::clock_setup, 0, events_.now(), now);
 }
 
+void Board::report_busy() {
+  const Nanoseconds now = events_.now(), slept_ns = emulator_.slept_ns();
+  if (now == busy_told_ns_) return;
+  const io::BusyTime busy{busy_told_ns_, now - busy_told_ns_ - (slept_ns - slept_told_ns_)};
+  happened_.add(io::Kind::busy_time, 0, now, busy);
+  busy_told_ns_ = now;
+  slept_told_ns_ = slept_ns;
+}
+
 void Board::refuse(const Error& error) {
   channel_.fail(error);
   emulator_.end();
@@ -165,7 +184,14 @@ void Board::add_statistics() {
                     {"written", touch.written},
                     {"times", touch.times}});
   }
-  const std::string text = nlohmann::json{{"unanswered", list}}.dump();
+  const Peek peek = [this](std::uint32_t address, void* to, std::size_t size) {
+    return emulator_.peek(address, to, size);
+  };
+  const std::string text = nlohmann::json{{"unanswered", list},
+                                          {"stack_used_bytes", stack_used(*setup_.part, peek)},
+                                          {"slept_ns", emulator_.slept_ns()},
+                                          {"ns_per_instruction", setup_.config.ns_per_instruction}}
+                               .dump();
   happened_.add(io::Kind::statistics, 0, events_.now(), text.data(),
                 static_cast<std::uint32_t>(text.size()));
 }
@@ -180,17 +206,56 @@ void Board::finish(io::BoardState state) {
 void Board::core_was_reset(stm32::ResetCause cause) {
   happened_.add(io::Kind::board_reset, static_cast<std::uint16_t>(cause), events_.now(), nullptr,
                 0);
+  watch_.core_was_reset();
   chip_->reset(cause);
   systick_.reset();
   cycle_counter_.reset();
 }
 
-void Board::core_locked_up(const std::string& why) {
+io::CpuFault Board::fault_registers(const Registers& registers) {
   io::CpuFault fault;
-  fault.exception = 255;
-  happened_.add(io::Kind::cpu_fault, 0, events_.now(), fault, why.data(),
-                static_cast<std::uint32_t>(why.size()));
-  finish(io::BoardState::cpu_locked);
+  for (int i = 0; i < 13; ++i) fault.r[i] = registers(i);
+  const auto word = [this](std::uint32_t offset) { return emulator_.system_control_word(offset); };
+  fault.cfsr = word(kCfsr);
+  fault.hfsr = word(kHfsr);
+  fault.mmfar = word(kMmfar);
+  fault.bfar = word(kBfar);
+  return fault;
+}
+
+void Board::exception_entered(std::uint32_t preempted, std::uint32_t frame, const CoreState& core,
+                              const Registers& registers) {
+  watch_.enter_exception(preempted, core);
+  if (core.exception < kHardFault || core.exception > kUsageFault) return;
+  const Peek peek = [this](std::uint32_t address, void* to, std::size_t size) {
+    return emulator_.peek(address, to, size);
+  };
+  const ExceptionFrame stacked = read_frame(peek, frame, core.lr);
+  io::CpuFault fault = fault_registers(registers);
+  fault.exception = core.exception;
+  fault.pc = stacked.pc;
+  fault.lr = stacked.lr;
+  fault.sp = stacked.sp_before;
+  fault.xpsr = stacked.xpsr;
+  const std::string text = backtrace(setup_.image, peek, stacked.pc, stacked.lr, stacked.sp_before);
+  happened_.add(io::Kind::cpu_fault, 0, core.now, fault, text.data(),
+                static_cast<std::uint32_t>(text.size()));
+}
+
+void Board::core_locked_up(Nanoseconds now, const Registers& registers) {
+  io::CpuFault fault = fault_registers(registers);
+  fault.exception = kLockUp;
+  fault.sp = registers(13);
+  fault.lr = registers(14);
+  fault.pc = registers(15);
+  fault.xpsr = registers(25);
+  const std::string text = setup_.image.describe(fault.pc);
+  happened_.add(io::Kind::cpu_fault, 0, now, fault, text.data(),
+                static_cast<std::uint32_t>(text.size()));
+  channel_.set_state(io::BoardState::cpu_locked);
+  std::ignore = channel_.post(now, happened_.bytes());
+  emulator_.end();
+  std::abort();  // as in finish()
 }
 
 void Board::find(const io::Finding& finding) {

@@ -20,6 +20,7 @@
 #include "io_bridges/qemu/board/image.hpp"
 #include "io_bridges/qemu/board/parts.hpp"
 #include "io_bridges/qemu/board/unanswered.hpp"
+#include "io_bridges/qemu/board/watch.hpp"
 #include "io_bridges/qemu/stm32/chip_model.hpp"
 
 namespace whirl::board {
@@ -60,7 +61,13 @@ class Board final : stm32::InterruptLines, stm32::SystemBus, stm32::FlashArray {
   void on_timer();                             // the armed deadline is here
   void core_was_reset(stm32::ResetCause cause);
   [[noreturn]] void refuse(const Error& error);  // tells the harness why, and ends
-  [[noreturn]] void core_locked_up(const std::string& why);
+  // Core registers by number: 0..15, 25 XPSR; as of the first instruction of the handler.
+  using Registers = std::function<std::uint32_t(int number)>;
+  [[noreturn]] void core_locked_up(Nanoseconds now, const Registers& registers);
+  // First instruction of a handler; `frame` is where the core stacked the interrupted context.
+  void exception_entered(std::uint32_t preempted, std::uint32_t frame, const CoreState& core,
+                         const Registers& registers);
+  Watch& watch() { return watch_; }
 
   // Messages to the harness, in order of time.
   io::Batch& happened() { return happened_; }
@@ -78,6 +85,8 @@ class Board final : stm32::InterruptLines, stm32::SystemBus, stm32::FlashArray {
   void await_orders();
   void obey(const io::Reader& message);
   void report_clocks();
+  void report_busy();
+  io::CpuFault fault_registers(const Registers& registers);
   void add_statistics();
   [[noreturn]] void finish(io::BoardState state);
 
@@ -86,6 +95,7 @@ class Board final : stm32::InterruptLines, stm32::SystemBus, stm32::FlashArray {
   Emulator& emulator_;
   io::EventQueue events_;
   io::Batch happened_;
+  Watch watch_;
   std::unique_ptr<stm32::ChipModel> chip_;
   DeviceRack devices_;
   SysTick systick_;
@@ -94,6 +104,7 @@ class Board final : stm32::InterruptLines, stm32::SystemBus, stm32::FlashArray {
   StoredWords itm_, flash_patch_, tpiu_, etm_, debug_mcu_;
   io::Event boundary_;
   io::ClockSetup clocks_told_;
+  Nanoseconds busy_told_ns_ = 0, slept_told_ns_ = 0;
   bool reported_ = false;  // the batch of this boundary has been posted
 };
 

@@ -31,11 +31,15 @@ class Emulator {
   virtual bool write_bus(std::uint32_t address, const void* from, std::size_t size) = 0;
   // The core's view, for fault reports and statistics; memories only.
   virtual bool peek(std::uint32_t address, void* to, std::size_t size) = 0;
+  // A word of the System Control Space, offset from 0xE000E000, without side effects.
+  virtual std::uint32_t system_control_word(std::uint32_t offset) = 0;
   // Changes cells of flash or system ROM; translated code is thrown away.
   virtual void write_cells(std::uint32_t address, const void* from, std::size_t size) = 0;
 
   // The instruction whose register access is being served; exact to its basic block's last access.
   virtual std::uint32_t accessing_pc() const = 0;
+  // How long the core has slept so far.
+  virtual Nanoseconds slept_ns() const = 0;
   // Ends the process, in order, at once.
   [[noreturn]] virtual void end() = 0;
 };

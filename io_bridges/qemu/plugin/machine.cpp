@@ -3,8 +3,12 @@
 
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <cstring>
+
+#include "io_bridges/qemu/board/post_mortem.hpp"
 
 namespace whirl::qemu {
 namespace {
@@ -13,10 +17,10 @@ namespace {
 constexpr int kGaps = 5, kBlocks = 10, kMemories = 10;
 constexpr int kInterrupts = 82;  // of the F405; the machine wires 96
 constexpr int kSysTickException = 15;
-constexpr int kXpsr = 25;    // number in arm_cpu_gdb_read_register
-constexpr int kRounds = 64;  // of a sleep before other work of the CPU's thread gets a turn
+constexpr int kCoreRegisters = 16;
+constexpr int kRounds = 64;        // of a sleep before other work of the CPU's thread gets a turn
 constexpr std::size_t kHostPage = 4096;
-constexpr std::uint8_t kUntouched = 0xA5;  // RAM is not 0 at power-up; the stack watch counts on it
+using board::kUntouched;  // RAM is not 0 at power-up; the stack watch counts on it
 
 bool nobody_answers(void*, hwaddr, unsigned, bool, Attributes) {
   return false;
@@ -62,7 +66,21 @@ const RegionOps kFlashOps = {read_flash,       nullptr,       nullptr,
 }  // namespace
 
 Machine::Machine(const Api& api, board::Setup setup, io::Channel channel)
-    : api_(api), board_(std::move(setup), std::move(channel), *this) {}
+    : api_(api), board_(std::move(setup), std::move(channel), *this) {
+  timeline_.ns_per_instruction = board_.config().ns_per_instruction;
+}
+
+std::uint64_t Machine::read_window(void* window, hwaddr offset, unsigned size) {
+  auto& [machine, block] = *static_cast<Window*>(window);
+  machine->anchor();
+  return block->read(static_cast<std::uint32_t>(offset), size);
+}
+
+void Machine::write_window(void* window, hwaddr offset, std::uint64_t value, unsigned size) {
+  auto& [machine, block] = *static_cast<Window*>(window);
+  machine->anchor();
+  block->write(static_cast<std::uint32_t>(offset), static_cast<std::uint32_t>(value), size);
+}
 
 Machine::~Machine() = default;
 
@@ -92,12 +110,16 @@ Result<Done> Machine::build(const std::string& versions) {
     interrupts_.push_back(api_.qdev_get_gpio_in(core, irq));
   }
   register_text_ = api_.g_byte_array_new();
-  system_control_ =
-      std::make_unique<SystemControl>(api_, board_, reinterpret_cast<MemoryRegion*>(registers),
-                                      [this] { reset_core(stm32::ResetCause::software); });
+  if (!find_registers()) {
+    return whirl::Error{ErrorKind::internal, "QEMU", "the core's registers are not side by side",
+                        ""};
+  }
+  system_control_ = std::make_unique<SystemControl>(
+      api_, board_, reinterpret_cast<MemoryRegion*>(registers),
+      [this] { reset_core(stm32::ResetCause::software); }, [this] { anchor(); });
   api_.timer_init_full(
       &timer_, nullptr, kVirtualClock, 1, 0,
-      [](void* self) { static_cast<Machine*>(self)->board_.on_timer(); }, this);
+      [](void* self) { static_cast<Machine*>(self)->on_timer(); }, this);
   map_memories();
   load_image();
   board_.power_on(versions);
@@ -117,8 +139,12 @@ Result<Done> Machine::build(const std::string& versions) {
 }
 
 void Machine::map_block(MemoryRegion* parent, const stm32::Region& block, int priority) {
+  // Aligned accesses of 1, 2 and 4 bytes reach the block as they are.
+  static const RegionOps kOps = {read_window,   write_window,           nullptr,      nullptr,
+                                 kLittleEndian, {1, 4, false, nullptr}, {1, 4, false}};
   MemoryRegion& region = new_region();
-  api_.memory_region_init_io(&region, nullptr, &kBlockOps, block.block, block.block->name(),
+  windows_.push_back(std::make_unique<Window>(Window{this, block.block}));
+  api_.memory_region_init_io(&region, nullptr, &kOps, windows_.back().get(), block.block->name(),
                              block.size);
   api_.memory_region_add_subregion_overlap(parent, block.base, &region, priority);
 }
@@ -223,16 +249,70 @@ bool Machine::peek(std::uint32_t address, void* to, std::size_t size) {
   return api_.address_space_rw(space, address, kPrivileged, to, size, false) == kOk;
 }
 
+std::uint32_t Machine::system_control_word(std::uint32_t offset) {
+  return system_control_->word(offset);
+}
+
 void Machine::write_cells(std::uint32_t address, const void* from, std::size_t size) {
   api_.address_space_write_rom(api_.address_space_memory, address, kPrivileged, from, size);
 }
 
 std::uint32_t Machine::core_register(int number) const {
+  if (number < kCoreRegisters) return core_registers_[number];
   api_.g_byte_array_set_size(register_text_, 0);
   if (api_.arm_cpu_gdb_read_register(cpu_, register_text_, number) != 4) return 0;
   std::uint32_t value = 0;
   std::memcpy(&value, register_text_->data, sizeof value);
   return value;
+}
+
+// QEMU's CPU keeps R0 to R15 side by side. Where, is found by writing a pattern the official way.
+bool Machine::find_registers() {
+  constexpr int kMarked = 13;
+  std::array<std::uint32_t, kMarked> pattern{};
+  for (int i = 0; i < kMarked; ++i) {
+    pattern[i] = 0x5A17C0DEu + static_cast<std::uint32_t>(i) * 0x01010101u;
+    api_.arm_cpu_gdb_write_register(cpu_, reinterpret_cast<std::uint8_t*>(&pattern[i]), i);
+  }
+  const std::size_t size = api_.object_type_get_instance_size(api_.object_get_typename(cpu_));
+  const auto* first = reinterpret_cast<const std::uint32_t*>(cpu_);
+  const auto* last = first + size / sizeof *first;
+  const auto* found = std::search(first, last, pattern.begin(), pattern.end());
+  std::uint32_t zero = 0;
+  for (int i = 0; i < kMarked; ++i) {
+    api_.arm_cpu_gdb_write_register(cpu_, reinterpret_cast<std::uint8_t*>(&zero), i);
+  }
+  core_registers_ = found == last ? nullptr : found;
+  core_end_ = last;
+  return core_registers_ != nullptr;
+}
+
+// Where QEMU keeps the stack pointer that is not in use is learned the first time that it matters:
+// it is the word that points at a frame which holds what R0-R3 and R12 still hold.
+std::uint32_t Machine::process_stack_pointer() {
+  if (other_sp_ != nullptr) return *other_sp_;
+  const std::uint32_t* r = core_registers_;
+  const std::array<std::uint32_t, 5> stacked = {r[0], r[1], r[2], r[3], r[12]};
+  for (const std::uint32_t* word = r + kCoreRegisters; word < core_end_; ++word) {
+    std::array<std::uint32_t, 8> frame{};
+    if ((*word & 3u) != 0 || *word < board_.part().ccm.base || *word >= 0x40000000u) continue;
+    if (!peek(*word, frame.data(), sizeof frame)) continue;
+    const bool thumb = (frame[7] & (1u << 24)) != 0 && (frame[7] & 0x1FFu) == 0;
+    if (!thumb || !std::equal(stacked.begin(), stacked.end(), frame.begin())) continue;
+    other_sp_ = word;
+    return *word;
+  }
+  return 0;
+}
+
+io::Nanoseconds Machine::slept_ns() const {
+  return slept_ns_ + (asleep_since_ns_ < 0 ? 0 : now() - asleep_since_ns_);
+}
+
+void Machine::on_timer() {
+  if (asleep_since_ns_ < 0 && timeline_.at(0) != now()) ++timeline_.ran_on;
+  anchor();
+  board_.on_timer();
 }
 
 std::uint32_t Machine::accessing_pc() const {
@@ -262,12 +342,16 @@ void Machine::before_sleep() {
 }
 
 void Machine::sleep() {
-  for (int round = 0; round < kRounds; ++round) {
-    if (!api_.cpu_thread_is_idle(cpu_)) return;
+  if (!api_.cpu_thread_is_idle(cpu_)) return;  // something was pending: the core did not sleep
+  asleep_since_ns_ = now();
+  for (int round = 0; round < kRounds && api_.cpu_thread_is_idle(cpu_); ++round) {
     api_.icount_start_warp_timer();
     api_.qemu_clock_run_timers(kVirtualClock);
   }
-  before_sleep();
+  slept_ns_ += now() - asleep_since_ns_;
+  asleep_since_ns_ = -1;
+  anchor();
+  if (api_.cpu_thread_is_idle(cpu_)) before_sleep();
 }
 
 }  // namespace whirl::qemu

@@ -14,11 +14,13 @@
 #pragma once
 #include <memory>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "io_bridges/qemu/board/board.hpp"
 #include "io_bridges/qemu/plugin/qemu_api.hpp"
 #include "io_bridges/qemu/plugin/system_control.hpp"
+#include "io_bridges/qemu/plugin/timeline.hpp"
 
 namespace whirl::qemu {
 
@@ -38,6 +40,13 @@ class Machine final : public board::Emulator {
   SystemControl& system_control() { return *system_control_; }
   // R0..R15 (0..15) and XPSR (25) as of the start of the current basic block.
   std::uint32_t core_register(int number) const;
+  std::uint32_t process_stack_pointer();  // in handler mode; 0: not found
+
+  // For the instruments.
+  Timeline& timeline() { return timeline_; }
+  bool look(std::uint32_t address, void* to, std::size_t size) { return peek(address, to, size); }
+  void note_block(std::uint32_t start, std::uint32_t last) { last_in_block_[start] = last; }
+  void throw_code_away() { api_.tb_flush(cpu_); }
 
   io::Nanoseconds now() const override { return api_.qemu_clock_get_ns(kVirtualClock); }
   void arm(io::Nanoseconds deadline) override;
@@ -47,11 +56,23 @@ class Machine final : public board::Emulator {
   bool read_bus(std::uint32_t address, void* to, std::size_t size) override;
   bool write_bus(std::uint32_t address, const void* from, std::size_t size) override;
   bool peek(std::uint32_t address, void* to, std::size_t size) override;
+  std::uint32_t system_control_word(std::uint32_t offset) override;
   void write_cells(std::uint32_t address, const void* from, std::size_t size) override;
   std::uint32_t accessing_pc() const override;
+  io::Nanoseconds slept_ns() const override;
   [[noreturn]] void end() override;
 
  private:
+  // One mapped block of registers.
+  struct Window {
+    Machine* machine;
+    stm32::Peripheral* block;
+  };
+  static std::uint64_t read_window(void* window, hwaddr offset, unsigned size);
+  static void write_window(void* window, hwaddr offset, std::uint64_t value, unsigned size);
+  void anchor() { timeline_.anchor(now()); }
+  void on_timer();
+  bool find_registers();
   MemoryRegion& new_region();
   void map_block(MemoryRegion* parent, const stm32::Region& block, int priority);
   void map_ram(MemoryRegion* parent, const char* name, const board::MemoryBlock& block);
@@ -67,10 +88,17 @@ class Machine final : public board::Emulator {
   MemoryRegion* core_memory_ = nullptr;
   std::vector<Irq*> interrupts_;
   std::vector<std::unique_ptr<MemoryRegion>> regions_;
+  std::vector<std::unique_ptr<Window>> windows_;
   std::unique_ptr<SystemControl> system_control_;
   GByteArray* register_text_ = nullptr;
   void* parking_ = nullptr;  // bottom half of the main loop
   Timer timer_;
+  Timeline timeline_;
+  const std::uint32_t* core_registers_ = nullptr;  // R0..R15 in QEMU's CPU; its env begins there
+  const std::uint32_t* core_end_ = nullptr;
+  const std::uint32_t* other_sp_ = nullptr;
+  std::unordered_map<std::uint32_t, std::uint32_t> last_in_block_;
+  io::Nanoseconds slept_ns_ = 0, asleep_since_ns_ = -1;
 };
 
 }  // namespace whirl::qemu

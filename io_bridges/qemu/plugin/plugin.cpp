@@ -16,6 +16,7 @@
 #include <memory>
 #include <optional>
 
+#include "io_bridges/qemu/plugin/instruments.hpp"
 #include "io_bridges/qemu/plugin/machine.hpp"
 #include "io_bridges/qemu/plugin/plugin_api.hpp"
 
@@ -29,12 +30,11 @@ __attribute__((visibility("default"))) int qemu_plugin_install(qemu_plugin_id_t 
 namespace whirl::qemu {
 namespace {
 
-constexpr std::uint16_t kWfi = 0xBF30;
-
 struct Plugin {
   Api api;
   std::string versions;
   std::unique_ptr<Machine> machine;
+  std::unique_ptr<Instruments> instruments;
   Notifier board_exists{};
 };
 Plugin* plugin = nullptr;  // QEMU's callbacks carry no pointer of ours
@@ -81,18 +81,6 @@ Result<std::string> check_qemu(const Api& api, const std::vector<std::string>& m
   return "qemu\t" + version.number + " (" + version.package + ")\n";
 }
 
-void translated(qemu_plugin_id_t, qemu_plugin_tb* block) {
-  for (std::size_t i = 0; i < qemu_plugin_tb_n_insns(block); ++i) {
-    qemu_plugin_insn* insn = qemu_plugin_tb_get_insn(block, i);
-    std::uint16_t code = 0;
-    std::memcpy(&code, qemu_plugin_insn_data(insn), sizeof code);
-    if (code == kWfi && qemu_plugin_insn_size(insn) == 2) {
-      qemu_plugin_register_vcpu_insn_exec_cb(
-          insn, [](unsigned, void*) { plugin->machine->before_sleep(); }, 0, nullptr);
-    }
-  }
-}
-
 [[noreturn]] void refuse(io::Channel& channel, const whirl::Error& error) {
   std::fprintf(stderr, "whirl_board: %s\n", error.message().c_str());
   channel.fail(error);
@@ -102,7 +90,9 @@ void translated(qemu_plugin_id_t, qemu_plugin_tb* block) {
 // QEMU aborts when the core locks up (a fault within HardFault or NMI).
 void on_abort(int) {
   std::signal(SIGABRT, SIG_DFL);
-  plugin->machine->board().core_locked_up("QEMU ended the core: see its last words");
+  Machine& machine = *plugin->machine;
+  machine.board().core_locked_up(machine.timeline().at(0),
+                                 [&](int number) { return machine.core_register(number); });
 }
 
 int install(qemu_plugin_id_t id, const Options& options) {
@@ -123,10 +113,15 @@ int install(qemu_plugin_id_t id, const Options& options) {
   plugin->board_exists.notify = [](Notifier*, void*) {
     const auto built = plugin->machine->build(plugin->versions);
     if (!built) plugin->machine->board().refuse(built.error());
+    plugin->instruments = std::make_unique<Instruments>(*plugin->machine);
     std::signal(SIGABRT, on_abort);
   };
   plugin->api.qemu_add_machine_init_done_notifier(&plugin->board_exists);
-  qemu_plugin_register_vcpu_tb_trans_cb(id, translated);
+  qemu_plugin_register_vcpu_tb_trans_cb(
+      id, [](qemu_plugin_id_t, qemu_plugin_tb* block) { plugin->instruments->translated(block); });
+  qemu_plugin_register_flush_cb(id, [](qemu_plugin_id_t) {
+    if (plugin->instruments) plugin->instruments->code_thrown_away();
+  });
   return 0;
 }
 

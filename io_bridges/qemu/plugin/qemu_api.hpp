@@ -119,6 +119,9 @@ constexpr unsigned kWord = 2;     // MO_32, little endian
   F(qemu_mutex_unlock_iothread, void, (void))                                                      \
   F(qemu_mutex_iothread_locked, bool, (void))                                                      \
   F(arm_cpu_gdb_read_register, int, (Cpu*, GByteArray*, int))                                      \
+  F(arm_cpu_gdb_write_register, int, (Cpu*, std::uint8_t*, int))                                   \
+  F(object_get_typename, const char*, (const void*))                                               \
+  F(object_type_get_instance_size, std::size_t, (const char*))                                     \
   F(tb_flush, void, (Cpu*))                                                                        \
   F(qmp_query_version, VersionInfo*, (Error**))                                                    \
   F(g_byte_array_new, GByteArray*, (void))                                                         \

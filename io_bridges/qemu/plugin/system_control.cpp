@@ -24,8 +24,12 @@ unsigned memory_op(unsigned size) {
 }  // namespace
 
 SystemControl::SystemControl(const Api& api, board::Board& board, MemoryRegion* nvic,
-                             std::function<void()> reset_request)
-    : api_(api), board_(board), nvic_(nvic), reset_request_(std::move(reset_request)) {}
+                             std::function<void()> reset_request, std::function<void()> accessed)
+    : api_(api),
+      board_(board),
+      nvic_(nvic),
+      reset_request_(std::move(reset_request)),
+      accessed_(std::move(accessed)) {}
 
 void SystemControl::map(MemoryRegion* parent, MemoryRegion& region) {
   static const RegionOps kOps = {
@@ -48,6 +52,7 @@ std::uint32_t SystemControl::write_hook(void* self, hwaddr offset, std::uint64_t
 
 std::uint32_t SystemControl::read(std::uint32_t offset, std::uint64_t& value, unsigned size,
                                   Attributes attributes) {
+  accessed_();
   if (offset >= kSysTick && offset < kSysTick_end) {
     value = board_.systick().read(offset - kSysTick, size);
     return kOk;
@@ -64,6 +69,7 @@ std::uint32_t SystemControl::read(std::uint32_t offset, std::uint64_t& value, un
 
 std::uint32_t SystemControl::write(std::uint32_t offset, std::uint64_t value, unsigned size,
                                    Attributes attributes) {
+  accessed_();
   if (offset >= kSysTick && offset < kSysTick_end) {
     board_.systick().write(offset - kSysTick, static_cast<std::uint32_t>(value), size);
     return kOk;
@@ -80,10 +86,7 @@ std::uint32_t SystemControl::write(std::uint32_t offset, std::uint64_t value, un
   if (is_priority(offset)) value |= kStoredZero;
   const std::uint32_t result =
       api_.memory_region_dispatch_write(nvic_, offset, value, memory_op(size), attributes);
-  if (offset == kVtor) {
-    vector_table_ = word(kVtor);
-    if (moved_) moved_();
-  }
+  if (offset == kVtor) vector_table_ = word(kVtor);
   return result;
 }
 

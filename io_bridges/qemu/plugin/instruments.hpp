@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+//
+// Which instructions of the guest are instrumented, and what happens there.
+//
+//   Every block       its length is added to the time line (in line, no call)
+//   WFI               exact sleep (machine.hpp)
+//   Watched function  its first instruction; and the addresses to which it returns, learned at run
+//                     time: a new one throws all translated code away once, so that it is seen
+//   Handlers          first instruction (any address in the vector table, reached with EXC_RETURN
+//                     in LR), and in handler mode every instruction that may return
+//   Cost              a call of about 10 ns at each of these; nothing elsewhere
+#pragma once
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <set>
+#include <vector>
+
+#include "io_bridges/qemu/board/watch.hpp"
+#include "io_bridges/qemu/plugin/machine.hpp"
+#include "io_bridges/qemu/plugin/plugin_api.hpp"
+
+namespace whirl::qemu {
+
+class Instruments {
+ public:
+  explicit Instruments(Machine& machine);
+
+  void translated(qemu_plugin_tb* block);
+  void code_thrown_away() { sites_.clear(); }
+
+ private:
+  enum class Kind : std::uint8_t { sleep, function, return_site, handler, handler_exit };
+  struct Site {
+    Instruments* owner;
+    Kind kind;
+    std::uint16_t number;   // of the watched function
+    std::uint32_t address;  // without the Thumb bit
+    std::uint32_t behind;   // instructions of the block from this one to its end
+  };
+
+  void put(qemu_plugin_insn* insn, const Site& site);
+  void put_block_start(qemu_plugin_insn* insn, std::uint32_t address, std::uint32_t length);
+  void put_instruction(qemu_plugin_insn* insn, std::uint32_t behind);
+  void reached(const Site& site);
+  void enter_function(const Site& site);
+  void enter_handler(const Site& site);
+  board::CoreState core_at(const Site& site) const;
+  bool is_handler(std::uint32_t address) const;
+
+  Machine& machine_;
+  std::multimap<std::uint32_t, std::uint16_t> functions_;  // address, watch number
+  std::set<std::uint32_t> return_sites_;
+  std::deque<Site> sites_;  // translated code points at them
+  bool handler_mode_ = false;
+};
+
+}  // namespace whirl::qemu
