@@ -211,9 +211,7 @@ void Stm32f405::make_function_blocks() {
   host.adc_volts = [this](int adc, int channel, Nanoseconds t) {
     return adc_volts(adc, channel, t);
   };
-#ifdef WHIRL_STM32_FUNCTION_BLOCKS
   functions_ = make_f405_function_blocks(chip_, host);
-#endif
 }
 
 void Stm32f405::make_serial_blocks() {

@@ -219,5 +219,67 @@ TEST(Stm32f405, DmaMovesAUsartBufferAndRaisesItsInterrupt) {
   EXPECT_FALSE(bench.irq(17));
 }
 
+// Both halves of the part joined: TIM3_CH1 reaches PC6 through AF2 only, TIM2's update moves words
+// by DMA, and a 5 kHz update interrupt comes every 200 us.
+TEST(Stm32f405, TimerReachesItsPinThroughTheAlternateFunction) {
+  ChipBench bench;
+  bench.clock_168();
+  constexpr std::uint32_t kTim3 = 0x40000400;
+  bench.set_bits(kRcc + 0x40, 2);
+  bench.put(kTim3 + 0x2C, 839);  // 84 MHz / 840 = 100 kHz
+  bench.put(kTim3 + 0x34, 210);
+  bench.put(kTim3 + 0x18, 0x68);  // PWM mode 1
+  bench.put(kTim3 + 0x20, 1);
+  bench.put(kTim3 + 0x14, 1);
+  bench.mux('C', 6, 3);  // TIM8_CH1 first: the wrong one
+  bench.put(kTim3, 1);
+  std::vector<Nanoseconds> rises;
+  bench.chip().pin("PC6")->watch([&](bool level, Nanoseconds now) {
+    if (level) rises.push_back(now);
+  });
+  bench.run(100'000);
+  EXPECT_TRUE(rises.empty());
+  bench.mux('C', 6, 2);
+  bench.run(100'000);
+  ASSERT_GE(rises.size(), 9u);
+  EXPECT_EQ(rises[5] - rises[4], 10'000);
+}
+
+TEST(Stm32f405, TimerUpdateMovesWordsToAPortByDma) {
+  ChipBench bench;
+  bench.clock_168();
+  constexpr std::uint32_t kTim1 = 0x40010000, kStream5 = 0x40026410 + 5 * 0x18;
+  bench.set_bits(kRcc + 0x30, 2 | (1u << 22));
+  bench.set_bits(kRcc + 0x44, 1);
+  bench.put(kGpioB, 0x281);
+  const std::uint32_t pattern[4] = {1, 1u << 16, 1, 1u << 16};
+  std::memcpy(bench.ram(0x20000000), pattern, sizeof pattern);
+  bench.put(kStream5 + 8, kGpioB + 0x18);
+  bench.put(kStream5 + 0xC, 0x20000000);
+  bench.put(kStream5 + 4, 4);
+  bench.put(kStream5, (6u << 25) | (2u << 13) | (2u << 11) | (1u << 10) | (1u << 6) | 1);
+  bench.put(kTim1 + 0x2C, 16799);  // 100 us
+  bench.put(kTim1 + 0x0C, 1u << 8);
+  std::vector<Nanoseconds> edges;
+  bench.chip().pin("PB0")->watch([&](bool, Nanoseconds now) { edges.push_back(now); });
+  bench.put(kTim1, 1);
+  bench.run(1'000'000);
+  ASSERT_EQ(edges.size(), 4u);
+  EXPECT_EQ(edges[3] - edges[0], 300'000);
+}
+
+TEST(Stm32f405, IndependentWatchdogResetsThePartAndCsrTellsIt) {
+  ChipBench bench;
+  ResetCause asked = ResetCause::pin;
+  bench.chip().on_reset_request([&](ResetCause cause) { asked = cause; });
+  bench.put(kRcc + 0x74, 1u << 24);
+  EXPECT_EQ(bench.get(kRcc + 0x74) >> 25, 0u);
+  bench.put(0x40003000, 0xCCCC);  // 4096 x 4 / 32 kHz = 512 ms after reset
+  bench.run(520'000'000);
+  ASSERT_EQ(asked, ResetCause::independent_watchdog);
+  bench.chip().reset(asked);
+  EXPECT_EQ(bench.get(kRcc + 0x74) & 0xFE000000, (1u << 29) | (1u << 26));  // IWDG, NRST pin
+}
+
 }  // namespace
 }  // namespace whirl::stm32
