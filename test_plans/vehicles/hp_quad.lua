@@ -10,7 +10,8 @@ return {
   rotor_height = "3 cm", -- of the rotor plane above the centre of mass
   propeller = "../propellers/hk_10x4.5.lua",
   gear = { half_span = "12 cm", below = "10 cm", foot_radius = "1 cm", restitution = 0.3, friction = 0.8 },
-  parasitic_area_m2 = 0.01, -- drag coefficient x frontal area
+  rotor_drag_s_per_m = 0.033, -- what the blade elements (0.007) lack of the measured 0.04
+  parasitic_area_m2 = 0.002, -- drag coefficient x frontal area
   avionics_current = "250 mA",
   motor = { -- Turnigy D2836/9 with ESC32v2 and leads, line to line
     kv_rpm_per_V = 950,
