@@ -36,7 +36,7 @@ enum class FaultKind : std::uint32_t {
   uart_silence,           // nothing reaches the MCU
   uart_flip,              // value: probability of a flipped bit in each byte towards the MCU
   supply_dip,             // harness: bus voltage drops by value volts
-  capture_lost,             // harness: no pose from the capture system
+  capture_lost,           // harness: no pose from the capture system
   esc_stopped,            // harness: the ESC of motor `address` stops its motor
 };
 

@@ -165,6 +165,17 @@ TEST(SpiFault, FrozenRepeatsTheLastGoodBurst) {
   EXPECT_NE(burst(wire, 20), before);
 }
 
+TEST(SpiFault, FrozenGoesBackBehindWhatAnotherFaultSpoiled) {
+  FaultBook book;
+  Counter counter;
+  SpiWireFaults wire(book, counter, 1, 0);
+  book.add({.kind = FaultKind::spi_flip, .start_ns = 10, .end_ns = 20, .bus = 1, .value = 7});
+  book.add({.kind = FaultKind::spi_frozen, .start_ns = 20, .end_ns = 30, .bus = 1});
+  const auto good = burst(wire, 5);
+  burst(wire, 10);
+  EXPECT_EQ(burst(wire, 20), good);
+}
+
 TEST(SpiFault, SilentReadsOnesAndFlipTurnsOneBit) {
   FaultBook book;
   Counter counter;

@@ -49,7 +49,7 @@ TEST(EscSetpoint, OtherLengthsUpperBitsAndForeignAddressesAreRefused) {
   const auto good = pack_setpoint(0x29, 100);
   EXPECT_FALSE(unpack_setpoint(0x29, std::span(good).first(2)));
   EXPECT_FALSE(unpack_setpoint(0x2A, good));
-  const std::uint8_t upper[] = {0x10, 0x0B, remainder_of({0x52, 0x10, 0x0B})};
+  const std::uint8_t upper[] = {0x10, 0x08, remainder_of({0x52, 0x10, 0x08})};
   EXPECT_FALSE(unpack_setpoint(0x29, upper));  // right CRC, but bit 3 of lo is set
 }
 
