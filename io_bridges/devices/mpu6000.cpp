@@ -162,7 +162,7 @@ void Mpu6000::end_access() {
   busy_ = false;
   if (!pending_) return;
   pending_ = false;
-  for (std::uint8_t i = 0; i < internal_.size(); ++i) {
+  for (std::size_t i = 0; i < internal_.size(); ++i) {
     registers_.poke(static_cast<std::uint8_t>(ACCEL_XOUT_H + i), internal_[i]);
   }
 }
@@ -172,7 +172,7 @@ void Mpu6000::end_access() {
 void Mpu6000::fill_fifo() {
   if ((registers_.peek(USER_CTRL) & kFIFO_ENABLE) == 0) return;
   const std::uint8_t enabled = registers_.peek(FIFO_EN);
-  for (std::uint8_t i = 0; i < internal_.size(); ++i) {  // in register order, low to high
+  for (std::size_t i = 0; i < internal_.size(); ++i) {  // in register order, low to high
     const std::uint8_t gate = i < 6    ? kACCEL_FIFO_EN
                               : i < 8  ? kTEMP_FIFO_EN
                               : i < 10 ? kXG_FIFO_EN

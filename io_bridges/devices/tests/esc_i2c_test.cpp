@@ -26,10 +26,10 @@ struct Bench {
     return ack;
   }
   std::vector<std::uint8_t> read(int length) {
-    std::vector<std::uint8_t> bytes;
+    std::vector<std::uint8_t> bytes(static_cast<std::size_t>(length));
     bus.start(0);
     bus.address(0x29, true, 0);
-    for (int i = 0; i < length; ++i) bytes.push_back(bus.read(i + 1 < length, 0));
+    for (std::uint8_t& byte : bytes) byte = bus.read(&byte != &bytes.back(), 0);
     bus.stop(0);
     return bytes;
   }
