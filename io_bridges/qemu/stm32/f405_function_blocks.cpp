@@ -1,16 +1,17 @@
 // The function blocks of STM32F405 at their places (RM0090 table 1, ITR and trigger tables).
 #include "io_bridges/qemu/stm32/crc.hpp"
+#include "io_bridges/qemu/stm32/dac.hpp"
 #include "io_bridges/qemu/stm32/dwt.hpp"
 #include "io_bridges/qemu/stm32/function_block_set.hpp"
 #include "io_bridges/qemu/stm32/probe_stub.hpp"
 #include "io_bridges/qemu/stm32/rng.hpp"
-#include "io_bridges/qemu/stm32/watchdog.hpp"
+#include "io_bridges/qemu/stm32/rtc.hpp"
 
 namespace whirl::stm32 {
 
 namespace {
 
-constexpr int kAdcIrq = 18, kRngIrq = 80, kWwdgIrq = 0;
+constexpr int kAdcIrq = 18, kRngIrq = 80, kWwdgIrq = 0, kTim6DacIrq = 54;
 
 // clang-format off
 struct TimerPlace {
@@ -41,7 +42,9 @@ class F405FunctionBlocks : public FunctionBlockSet {
         adc_(chip_, adc_config(host)),
         adc_block_(adc_),
         dwt_(chip_),
-        debug_core_(dwt_) {
+        debug_core_(dwt_),
+        dac_(chip_, kTim6DacIrq),
+        rtc_(chip_, rtc_host(host)) {
     add_timers();
     map(0x40012000, 0x400, adc_block_);
     add_adc_requests(adc_);
@@ -50,14 +53,18 @@ class F405FunctionBlocks : public FunctionBlockSet {
     map(0xE000EDF0, 0x10, debug_core_);
     add_block(0x40023000, 0x400, std::make_unique<Crc>());
     add_block(0x50060800, 0x400, std::make_unique<Rng>(chip_, kRngIrq, host.seed));
-    add_block(
-        0x40003000, 0x400,
-        std::make_unique<IndependentWatchdog>(chip_, asks_reset(ResetCause::independent_watchdog)));
-    add_block(
-        0x40002C00, 0x400,
-        std::make_unique<WindowWatchdog>(chip_, kWwdgIrq, asks_reset(ResetCause::window_watchdog)));
+    map(0x40002800, 0x400, rtc_);
+    map(0x40007400, 0x400, dac_);
+    add_watchdogs(kWwdgIrq);
+    add_can({1, 19, 20, 21, 22}, 0x40006400, can_filters_);
+    add_can({2, 63, 64, 65, 66}, 0x40006800, can_filters_);
+    join_dac();
     add_stubs();
   }
+
+  void reset_backup_domain() override { rtc_.reset_backup_domain(); }
+  void backup_clock_changed() override { rtc_.clock_changed(); }
+  double dac_volts(int channel) override { return dac_.volts(channel); }
 
  private:
   static AdcConfig adc_config(const FunctionBlockHost& host) {
@@ -66,7 +73,11 @@ class F405FunctionBlocks : public FunctionBlockSet {
     config.volts = host.adc_volts;
     return config;
   }
+  static RtcHost rtc_host(const FunctionBlockHost& host) {
+    return {host.rtcclk_Hz, host.backup_writable, host.exti};
+  }
   void add_timers();
+  void join_dac();
   void join_adc();
   void add_stubs();
   void add_stub(const char* name, std::uint32_t base, std::uint32_t size,
@@ -78,6 +89,9 @@ class F405FunctionBlocks : public FunctionBlockSet {
   AdcF4Block adc_block_;
   Dwt dwt_;
   DebugCore debug_core_;
+  Dac dac_;
+  Rtc rtc_;
+  CanFilters can_filters_{28};
 };
 
 void F405FunctionBlocks::add_timers() {
@@ -125,6 +139,15 @@ void F405FunctionBlocks::join_adc() {
   }
   adc_.connect_regular(15, exti11_);
   adc_.connect_injected(15, exti15_);
+}
+
+void F405FunctionBlocks::join_dac() {
+  unsigned selection = 0;
+  for (const int master : {6, 8, 7, 5, 2, 4})
+    dac_.connect_trigger(selection++, timer(master)->trgo());
+  dac_.connect_trigger(selection, exti9_);
+  add_request("DAC1", dac_.request(1));
+  add_request("DAC2", dac_.request(2));
 }
 
 // Reset values and self-clearing request bits of what a driver may probe.

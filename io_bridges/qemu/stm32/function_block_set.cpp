@@ -1,5 +1,7 @@
 #include "io_bridges/qemu/stm32/function_block_set.hpp"
 
+#include "io_bridges/qemu/stm32/watchdog.hpp"
+
 namespace whirl::stm32 {
 
 namespace {
@@ -55,6 +57,28 @@ void FunctionBlockSet::add_adc_requests(AdcBank& bank) {
   }
 }
 
+BxCan& FunctionBlockSet::add_can(const CanConfig& config, std::uint32_t base, CanFilters& filters) {
+  BxCan& can = *(cans_[config.number] = std::make_unique<BxCan>(chip_, config, filters));
+  map(base, 0x400, can);
+  add_signal(can.rx());
+  add_signal(can.tx());
+  return can;
+}
+
+BxCan* FunctionBlockSet::can(int number) {
+  const auto found = cans_.find(number);
+  return found == cans_.end() ? nullptr : found->second.get();
+}
+
+void FunctionBlockSet::add_watchdogs(int window_irq) {
+  add_block(
+      0x40003000, 0x400,
+      std::make_unique<IndependentWatchdog>(chip_, asks_reset(ResetCause::independent_watchdog)));
+  add_block(
+      0x40002C00, 0x400,
+      std::make_unique<WindowWatchdog>(chip_, window_irq, asks_reset(ResetCause::window_watchdog)));
+}
+
 std::function<void()> FunctionBlockSet::asks_reset(ResetCause cause) const {
   return [request = host_.request_reset, cause] {
     if (request) request(cause);
@@ -77,6 +101,7 @@ Timer* FunctionBlockSet::timer(int number) {
 }
 
 void FunctionBlockSet::exti_edge(int line, Nanoseconds now) {
+  if (line == 9) exti9_.pulse(now);
   if (line == 11) exti11_.pulse(now);
   if (line == 15) exti15_.pulse(now);
 }

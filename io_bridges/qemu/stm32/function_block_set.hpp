@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "io_bridges/qemu/stm32/adc.hpp"
+#include "io_bridges/qemu/stm32/bxcan.hpp"
 #include "io_bridges/qemu/stm32/function_blocks.hpp"
 #include "io_bridges/qemu/stm32/irq_line.hpp"
 #include "io_bridges/qemu/stm32/timer.hpp"
@@ -22,11 +23,9 @@ class FunctionBlockSet : public FunctionBlocks {
   Signal* signal(std::string_view name) override;
   DmaRequest* dma_request(std::string_view name) override;
   Timer* timer(int number) override;
-  BxCan* can(int /*number*/) override { return nullptr; }
+  BxCan* can(int number) override;
   void exti_edge(int line, Nanoseconds now) override;
   void reset(ResetCause cause) override;
-  void reset_backup_domain() override {}
-  void backup_clock_changed() override {}
   double dac_volts(int /*channel*/) override { return 0.0; }
 
  protected:
@@ -38,15 +37,18 @@ class FunctionBlockSet : public FunctionBlocks {
   void add_signal(Signal& signal) { signals_[signal.name()] = &signal; }
   void add_request(const std::string& name, DmaRequest& request) { requests_[name] = &request; }
   void add_adc_requests(AdcBank& bank);
+  BxCan& add_can(const CanConfig& config, std::uint32_t base, CanFilters& filters);
+  void add_watchdogs(int window_irq);
   std::function<void()> asks_reset(ResetCause cause) const;
 
   OredInterrupts ored_;
   Chip chip_;  // with ored_ in place of the NVIC
   FunctionBlockHost host_;
-  TriggerLine exti11_, exti15_;
+  TriggerLine exti9_, exti11_, exti15_;
 
  private:
   std::map<int, std::unique_ptr<Timer>> timers_;
+  std::map<int, std::unique_ptr<BxCan>> cans_;
   std::vector<std::unique_ptr<Peripheral>> blocks_;
   std::vector<Peripheral*> resettable_;
   std::vector<Region> regions_;

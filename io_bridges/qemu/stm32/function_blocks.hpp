@@ -42,7 +42,7 @@ class FunctionBlocks {
   virtual DmaRequest* dma_request(std::string_view name) = 0;  // null: no such request
   virtual Timer* timer(int number) = 0;                        // null: the part has no such timer
   virtual BxCan* can(int number) = 0;
-  // Level of an EXTI line as ADC external trigger (lines 11 and 15): call at each edge EXTI passes.
+  // EXTI lines that trigger converters (9: DAC; 11 and 15: ADC): call at each edge that EXTI passes.
   virtual void exti_edge(int line, Nanoseconds now) = 0;
   virtual void reset(ResetCause cause) = 0;  // power_on clears the backup domain too
   virtual void reset_backup_domain() = 0;    // RCC_BDCR.BDRST

@@ -188,5 +188,39 @@ TEST(F405FunctionBlocks, NamesReachSignalsAndRequests) {
   EXPECT_EQ(blocks->signal("TIM14_CH2"), nullptr);
 }
 
+// The ESC's way of sampling: TIM1_CC1 starts both converters of an F103.
+TEST(F103FunctionBlocks, Timer1CompareStartsBothConvertersAtTheSameInstant) {
+  BareChip bare;
+  bare.clocks.timclk2 = 72e6;
+  FunctionBlockHost host;
+  host.adcclk_Hz = [] { return 12e6; };
+  std::vector<std::pair<int, Nanoseconds>> sampled;
+  host.adc_volts = [&](int adc, int, Nanoseconds t) {
+    sampled.emplace_back(adc, t);
+    return 1.0;
+  };
+  const auto blocks = make_f103_function_blocks(bare.chip(), host);
+  std::map<std::uint32_t, Peripheral*> at;
+  for (const Region& region : blocks->regions()) at[region.base] = region.block;
+  Peripheral &one = *at.at(0x40012400), &two = *at.at(0x40012800);
+  put(one, 0x04, 6u << 16);
+  put(two, 0x08, 1 | 1u << 20 | 7u << 17);
+  put(one, 0x08, 1 | 1u << 20);
+  Timer& timer = *blocks->timer(1);
+  put(timer, tim::ARR, 3599);
+  put(timer, tim::CCMR1, 0x70);  // PWM 2: rises at the compare value
+  put(timer, tim::CCR1, 1800);
+  put(timer, tim::CCER, 1);
+  put(timer, tim::EGR, 1);
+  put(timer, tim::CR1, 1);
+  bare.run_to(60'000);
+  ASSERT_EQ(sampled.size(), 2u);
+  EXPECT_EQ(sampled[0].second, sampled[1].second);
+  // 1801 clocks of 72 MHz, the next clock of 12 MHz (the 301st), 1.5 clocks of it to sample.
+  EXPECT_EQ(sampled[0].second, 25'209);
+  bare.run_to(70'000);
+  EXPECT_NE(get(one, 0x4C) >> 16, 0u);
+}
+
 }  // namespace
 }  // namespace whirl::stm32
