@@ -74,7 +74,7 @@ class Mpu6000 {
   std::uint32_t burst_time_us() const { return burst_time_us_; }  // of its data-ready
 
  private:
-  enum class Phase : std::uint8_t { reset, reset_paths, identify, write, verify, run };
+  enum class Phase : std::uint8_t { power_up, reset, reset_paths, identify, write, verify, run };
   enum class Transfer : std::uint8_t { none, setup, burst, check };
   enum Address : std::uint8_t {
     SMPLRT_DIV = 0x19,
@@ -107,7 +107,7 @@ class Mpu6000 {
   }};
   static constexpr std::uint8_t kExpectedId = 0x68;
   static constexpr std::uint8_t kRead = 0x80;
-  static constexpr unsigned kSettle_ms = 100;
+  static constexpr unsigned kPowerUp_ms = 30, kSettle_ms = 100;
 
   Status read_register(Address address) {
     return start(Transfer::setup, {static_cast<std::uint8_t>(address | kRead), 0});
@@ -137,7 +137,7 @@ class Mpu6000 {
   void check_one_setting();
 
   Bus& bus_;
-  Phase phase_ = Phase::reset;
+  Phase phase_ = Phase::power_up;
   volatile Transfer transfer_ = Transfer::none;
   Status error_ = Status::busy;
   bool asked_ = false;
@@ -153,6 +153,8 @@ template <BackgroundSpi Bus>
 Status Mpu6000<Bus>::setup_tick() {
   if (transfer_ != Transfer::none) return Status::busy;
   switch (phase_) {
+    case Phase::power_up:  // what is written before the registers are up is lost
+      return wait_ms_++ < kPowerUp_ms ? Status::busy : begin(Phase::reset);
     case Phase::reset:
       if (wait_ms_++ == 0) return write_register(PWR_MGMT_1, 0x80);
       return wait_ms_ > kSettle_ms ? begin(Phase::reset_paths) : Status::busy;

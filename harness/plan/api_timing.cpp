@@ -129,6 +129,7 @@ struct BusWish {
   std::string name, place;
   bool spi = false, any_direction = true, read = false;
   int bus = 0, address = 0;
+  std::int64_t bytes = 0;  // 0: transactions of any length
   std::optional<Limit> period, tolerance;
   std::int64_t nacks = 0;
 };
@@ -139,6 +140,7 @@ void judge_bus(Script& self, const BusWish& w, std::int64_t from, std::int64_t t
   for (const auto& r : self.stage().events.bus) {
     if (r.spi != w.spi || r.bus != w.bus || r.address != w.address) continue;
     if (!w.any_direction && r.read != w.read) continue;
+    if (w.bytes > 0 && r.length != w.bytes) continue;
     if (r.start_ns < from || r.start_ns > to) continue;
     starts.push_back(r.start_ns);
     refused += r.acked ? 0 : 1;
@@ -155,6 +157,7 @@ void judge_bus(Script& self, const BusWish& w, std::int64_t from, std::int64_t t
 }
 
 // t:bus { device = "esc1", direction = "write", period = "20 ms", tolerance = "0.5 ms" }
+// bytes = n judges the transactions of that length only: a driver may check a register in between.
 int bus(lua_State* L) {
   Script& self = Script::of(L);
   const Board& board = self.stage().board;
@@ -178,6 +181,7 @@ int bus(lua_State* L) {
   w.period = optional_limit(wish, "period", Dimension::time);
   w.tolerance = optional_limit(wish, "tolerance", Dimension::time);
   w.nacks = wish.integer_or("nacks", 0, 0);
+  w.bytes = wish.integer_or("bytes", 0, 0);
   const std::int64_t end = window_end(self, wish);
   check_finish(L, wish);
   if (w.period.has_value() != w.tolerance.has_value()) raise(L, "period and tolerance go together");

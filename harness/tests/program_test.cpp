@@ -131,7 +131,7 @@ TEST(Program, TimingBudgetsBusesAndLatencyAreJudged) {
     t:budget("cpu") { busy = "60 %" }
     t:bus { device = "esc1", direction = "write", period = "20 ms", tolerance = "0.5 ms" }
     t:bus { device = "esc2", direction = "read", period = "50 ms", tolerance = "1 ms" }
-    t:bus { device = "imu", period = "1 ms", tolerance = "20 us" }
+    t:bus { device = "imu", bytes = 15, period = "1 ms", tolerance = "20 us" }
     t:latency { from = "imu", through = { "fw::imu_task", "fw::attitude_task" }, to = "esc", at_most = "7 ms" }
     t:wait "1 s")"));
   EXPECT_EQ(ran.outcome.code, 0) << ran.outcome.out;

@@ -20,7 +20,8 @@ plan "hover" {
     t:budget("fw::esc_task") { execution = "200 us", response = "500 us", during = "20 s" }
     t:budget("fw::telemetry_task") { execution = "300 us", response = "500 us", during = "20 s" }
     t:budget("cpu") { busy = "60 %", during = "20 s" }
-    t:bus { device = "imu", period = "1 ms", tolerance = "20 us", during = "20 s" }
+    -- The sample bursts: an address and 14 bytes. Between them the driver checks its settings.
+    t:bus { device = "imu", bytes = 15, period = "1 ms", tolerance = "20 us", during = "20 s" }
     for _, esc in ipairs { "esc1", "esc2", "esc3", "esc4" } do
       t:bus { device = esc, direction = "write", period = "20 ms", tolerance = "0.5 ms", during = "20 s" }
       t:bus { device = esc, direction = "read", period = "50 ms", tolerance = "1 ms", during = "20 s" }
