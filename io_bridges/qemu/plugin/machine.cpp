@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdlib>
 #include <cstring>
+#include <utility>
 
 #include "io_bridges/qemu/board/post_mortem.hpp"
 
@@ -18,7 +19,7 @@ constexpr int kGaps = 5, kBlocks = 10, kMemories = 10;
 constexpr int kInterrupts = 82;  // of the F405; the machine wires 96
 constexpr int kSysTickException = 15;
 constexpr int kCoreRegisters = 16;
-constexpr int kRounds = 64;        // of a sleep before other work of the CPU's thread gets a turn
+constexpr int kRounds = 64;  // of a sleep before other work of the CPU's thread gets a turn
 constexpr std::size_t kHostPage = 4096;
 using board::kUntouched;  // RAM is not 0 at power-up; the stack watch counts on it
 
@@ -210,14 +211,18 @@ void Machine::arm(io::Nanoseconds deadline) {
 }
 
 void Machine::set_interrupt(int irq, bool level) {
-  api_.qemu_set_irq(interrupts_[static_cast<std::size_t>(irq)], level ? 1 : 0);
+  act_or_defer({Deferred::interrupt, irq, level, {}});
 }
 
 void Machine::pend_systick() {
-  api_.armv7m_nvic_set_pending(nvic_, kSysTickException, false);
+  act_or_defer({Deferred::systick, 0, true, {}});
 }
 
 void Machine::reset_core(stm32::ResetCause cause) {
+  act_or_defer({Deferred::reset, 0, true, cause});
+}
+
+void Machine::queue_reset(stm32::ResetCause cause) {
   struct Order {
     Machine* machine;
     stm32::ResetCause cause;
@@ -332,9 +337,9 @@ void Machine::park_main_loop() {
 // Exact sleep. With -icount QEMU's main loop may move the clock on as soon as the CPU has halted,
 // that is, before the last few instructions have been accounted: about one sleep in 50,000 is then
 // off by some instructions, depending on the host. Work queued before the halt keeps the CPU "not
-// idle" until all is accounted; the work itself then moves the clock to the next event and runs it
-// here, in the CPU's thread, again and again until something wakes the core. The main loop has no
-// part in it, and no thread is switched.
+// idle" until all is accounted; the work itself then runs the board's events in the CPU's thread.
+// QEMU's clock stays behind meanwhile (moving it costs more than most events) and catches up before
+// anything reaches the core: interrupt lines and resets wait in `deferred_` until then.
 void Machine::before_sleep() {
   api_.async_run_on_cpu(
       cpu_, [](Cpu*, WorkData self) { static_cast<Machine*>(self.pointer)->sleep(); },
@@ -343,15 +348,49 @@ void Machine::before_sleep() {
 
 void Machine::sleep() {
   if (!api_.cpu_thread_is_idle(cpu_)) return;  // something was pending: the core did not sleep
-  asleep_since_ns_ = now();
+  io::EventQueue& events = board_.events();
+  asleep_since_ns_ = sleep_now_ns_ = api_.qemu_clock_get_ns(kVirtualClock);
   for (int round = 0; round < kRounds && api_.cpu_thread_is_idle(cpu_); ++round) {
-    api_.icount_start_warp_timer();
-    api_.qemu_clock_run_timers(kVirtualClock);
+    sleep_now_ns_ = std::max(sleep_now_ns_, events.next_deadline());
+    WHIRL_CHECK(sleep_now_ns_ != io::kNever);  // the next boundary is always there
+    events.run_until(sleep_now_ns_);
+    if (!deferred_.empty()) catch_up();
   }
-  slept_ns_ += now() - asleep_since_ns_;
+  catch_up();
+  slept_ns_ += sleep_now_ns_ - asleep_since_ns_;
   asleep_since_ns_ = -1;
   anchor();
-  if (api_.cpu_thread_is_idle(cpu_)) before_sleep();
+  // Idle still: other work of this thread gets a turn, then the sleep goes on.
+  if (api_.cpu_thread_is_idle(cpu_)) return before_sleep();
+  arm(events.next_deadline());
+}
+
+// QEMU's clock to the board's, then what waited for it. On an idle CPU arming a timer moves the clock
+// to its deadline at once.
+void Machine::catch_up() {
+  if (api_.qemu_clock_get_ns(kVirtualClock) != sleep_now_ns_) {
+    api_.timer_mod(&timer_, sleep_now_ns_);
+    const std::int64_t there = api_.qemu_clock_get_ns(kVirtualClock);
+    WHIRL_CHECK(there == sleep_now_ns_, there, sleep_now_ns_);
+  }
+  const std::vector<Deferred> waiting = std::exchange(deferred_, {});
+  for (const Deferred& what : waiting) act(what);
+}
+
+void Machine::act(const Deferred& what) {
+  switch (what.kind) {
+    case Deferred::interrupt:
+      return api_.qemu_set_irq(interrupts_[static_cast<std::size_t>(what.irq)], what.level ? 1 : 0);
+    case Deferred::systick:
+      return api_.armv7m_nvic_set_pending(nvic_, kSysTickException, false);
+    case Deferred::reset:
+      return queue_reset(what.cause);
+  }
+}
+
+void Machine::act_or_defer(const Deferred& what) {
+  if (asleep_since_ns_ < 0) return act(what);
+  deferred_.push_back(what);
 }
 
 }  // namespace whirl::qemu

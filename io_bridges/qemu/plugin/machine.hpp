@@ -48,7 +48,9 @@ class Machine final : public board::Emulator {
   void note_block(std::uint32_t start, std::uint32_t last) { last_in_block_[start] = last; }
   void throw_code_away() { api_.tb_flush(cpu_); }
 
-  io::Nanoseconds now() const override { return api_.qemu_clock_get_ns(kVirtualClock); }
+  io::Nanoseconds now() const override {
+    return asleep_since_ns_ < 0 ? api_.qemu_clock_get_ns(kVirtualClock) : sleep_now_ns_;
+  }
   void arm(io::Nanoseconds deadline) override;
   void set_interrupt(int irq, bool level) override;
   void pend_systick() override;
@@ -78,7 +80,18 @@ class Machine final : public board::Emulator {
   void map_ram(MemoryRegion* parent, const char* name, const board::MemoryBlock& block);
   void map_memories();
   void load_image();
+  // What reaches the core from outside, and must not before QEMU's clock is right.
+  struct Deferred {
+    enum Kind : std::uint8_t { interrupt, systick, reset } kind;
+    int irq;
+    bool level;
+    stm32::ResetCause cause;
+  };
   void sleep();
+  void catch_up();
+  void act(const Deferred& what);
+  void act_or_defer(const Deferred& what);
+  void queue_reset(stm32::ResetCause cause);
   void park_main_loop();
 
   const Api& api_;
@@ -98,7 +111,8 @@ class Machine final : public board::Emulator {
   const std::uint32_t* core_end_ = nullptr;
   const std::uint32_t* other_sp_ = nullptr;
   std::unordered_map<std::uint32_t, std::uint32_t> last_in_block_;
-  io::Nanoseconds slept_ns_ = 0, asleep_since_ns_ = -1;
+  io::Nanoseconds slept_ns_ = 0, asleep_since_ns_ = -1, sleep_now_ns_ = 0;
+  std::vector<Deferred> deferred_;  // in order
 };
 
 }  // namespace whirl::qemu
