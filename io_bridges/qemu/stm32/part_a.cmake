@@ -5,3 +5,5 @@ whirl_library(whirl_stm32 SOURCES rcc.cpp pwr.cpp flash_f4.cpp pins.cpp gpio.cpp
               LINK whirl_devices whirl_stm32_b)
 whirl_test(stm32f405_test SOURCES tests/stm32f405_test.cpp LINK whirl_stm32)
 whirl_test(stm32_i2c_test SOURCES tests/i2c_master_test.cpp tests/i2c_slave_test.cpp LINK whirl_stm32)
+whirl_test(stm32_serial_test SOURCES tests/spi_test.cpp tests/usart_test.cpp LINK whirl_stm32)
+whirl_test(stm32_system_test SOURCES tests/dma_test.cpp tests/clocks_and_pins_test.cpp LINK whirl_stm32)

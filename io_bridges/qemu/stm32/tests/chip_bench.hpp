@@ -39,16 +39,16 @@ class ChipBench : InterruptLines, SystemBus, FlashArray {
 
   Nanoseconds now() const { return events_.now(); }
   void run(Nanoseconds ns) { events_.run_until(events_.now() + ns); }
-  // Spins on a register, as a driver does, one read per 100 ns. Returns when it was satisfied.
+  // Spins on a register, as a driver does, one read per 100 ns (or step). Returns when it was satisfied.
   Nanoseconds wait(std::uint32_t address, std::uint32_t mask, std::uint32_t want,
-                   Nanoseconds limit = 100'000'000) {
+                   Nanoseconds limit = 100'000'000, Nanoseconds step = 100) {
     const Nanoseconds end = now() + limit;
     while ((get(address) & mask) != want) {
       if (now() >= end) {
         ADD_FAILURE() << std::hex << "no " << want << " under " << mask << " at " << address;
         return now();
       }
-      run(100);
+      run(step);
     }
     return now();
   }
