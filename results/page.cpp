@@ -1,10 +1,78 @@
-// index.html of a run: one file, no network, plots drawn by a small script of our own.
+// index.html of a run: one file, no network, plots drawn by a small script of our own (page.html).
+//
+//   Curves   at most kPoints per signal: the lowest and the highest value of each stretch, so that no
+//            spike is lost
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
 #include "results/folder.hpp"
+#include "results/page_text.hpp"
 
 namespace whirl::results {
+namespace {
 
-std::string page_html(const Report& report, const TruthLog&) {
-  return "<!doctype html><title>" + report.plan + "</title>\n";
+using nlohmann::ordered_json;
+
+constexpr std::size_t kPoints = 900;
+
+// Four digits are finer than a pixel.
+ordered_json rounded(double x) {
+  if (!std::isfinite(x)) return nullptr;
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", x);
+  return std::strtod(text, nullptr);
+}
+
+ordered_json curve(const TruthLog& truth, std::size_t column) {
+  const auto values = truth.values(column);
+  ordered_json out;
+  out["name"] = truth.columns()[column].name;
+  out["unit"] = truth.columns()[column].unit_suffix;
+  const auto [low, high] = std::minmax_element(values.begin(), values.end());
+  const bool any_nan =
+      std::any_of(values.begin(), values.end(), [](double v) { return std::isnan(v); });
+  if (values.empty() || (!any_nan && *low == *high)) {
+    out["constant"] = values.empty() ? ordered_json(nullptr) : rounded(values[0]);
+    return out;
+  }
+  const std::size_t stride = (values.size() + kPoints - 1) / kPoints;
+  out["stride"] = stride;
+  out["low"] = out["high"] = ordered_json::array();
+  for (std::size_t i = 0; i < values.size(); i += stride) {
+    const auto piece = values.subspan(i, std::min(stride, values.size() - i));
+    const auto [a, b] = std::minmax_element(piece.begin(), piece.end());
+    out["low"].push_back(rounded(*a));
+    out["high"].push_back(rounded(*b));
+  }
+  return out;
+}
+
+// Inside a script element only "</" could end it too soon.
+std::string safe_in_script(const std::string& text) {
+  std::string out;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    out += text[i];
+    if (text[i] == '<' && i + 1 < text.size() && text[i + 1] == '/') out += '\\';
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string page_html(const Report& report, const TruthLog& truth) {
+  auto data = ordered_json::parse(run_json(report));
+  data.erase("board");
+  data["step_s"] = static_cast<double>(truth.step_ns()) * 1e-9;
+  data["signals"] = ordered_json::array();
+  for (std::size_t i = 0; i < truth.columns().size(); ++i)
+    data["signals"].push_back(curve(truth, i));
+  std::string page = kPageText;
+  const std::string mark = "%DATA%";
+  const auto at = page.find(mark);
+  WHIRL_CHECK(at != std::string::npos);
+  return page.replace(at, mark.size(), safe_in_script(data.dump()));
 }
 
 }  // namespace whirl::results

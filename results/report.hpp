@@ -27,6 +27,13 @@ struct Expectation {
   double t_s = 0.0;            // when it was judged, or the worst value happened
   std::string note;            // "never reached", "2 of 1000 periods late"
 
+  // For the page: the signals it was measured on, over which time, and whether its limits are levels
+  // of the signal itself (and not of a time or a mean of it).
+  std::vector<std::string> signals;
+  double from_s = 0.0, to_s = 0.0;
+  bool level = false;
+  std::vector<double> limits_SI;
+
   std::string limit_text() const;  // "at most 50 ms"
 };
 
@@ -98,6 +105,7 @@ struct Report {
   std::vector<FaultRow> faults;
   std::vector<Note> findings;
   std::vector<Note> log;
+  std::vector<Note> steps;  // t:step
   std::vector<CpuFaultRow> cpu_faults;
   std::string statistics_json;  // the board's own words; may be empty
 

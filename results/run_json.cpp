@@ -31,7 +31,12 @@ ordered_json expectation(const Expectation& e) {
           {"margin", number(e.margin)},
           {"place", e.place},
           {"t_s", e.t_s},
-          {"note", e.note}};
+          {"note", e.note},
+          {"signals", e.signals},
+          {"from_s", e.from_s},
+          {"to_s", e.to_s},
+          {"level", e.level},
+          {"limits_SI", e.limits_SI}};
 }
 
 ordered_json task(const TaskRow& row) {
@@ -104,6 +109,12 @@ std::string run_json(const Report& r) {
   }
   out["findings"] = notes(r.findings);
   out["log"] = notes(r.log);
+  out["steps"] = notes(r.steps);
+  out["histograms"] = ordered_json::array();
+  for (const Histogram& h : r.histograms) {
+    out["histograms"].push_back(
+        {{"name", h.name}, {"unit", h.unit}, {"limit", h.limit}, {"samples", h.samples}});
+  }
   const auto board = ordered_json::parse(r.statistics_json, nullptr, false);
   out["board"] = board.is_discarded() ? ordered_json(nullptr) : board;
   return out.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";

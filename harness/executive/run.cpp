@@ -6,6 +6,7 @@
 
 #include "harness/base/digest.hpp"
 #include "harness/executive/cpu_fault.hpp"
+#include "harness/executive/task_table.hpp"
 #include "harness/plan/script.hpp"
 #include "io_bridges/devices/faults.hpp"
 
@@ -132,6 +133,7 @@ class Run {
     file_batch(rest);
     results::Report& report = record_.report;
     report.statistics_json = record_.events.statistics;
+    report.tasks = task_table(parts_.board.watch, record_.events);
     // Guards and windows are judged also when the run has failed: their figures help to see why.
     if (auto judged = script_.finish(); !judged) fail(judged.error());
     for (const results::FaultRow& fault : report.faults) {

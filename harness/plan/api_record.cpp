@@ -52,8 +52,10 @@ Chosen choose(lua_State* L) {
   return {};
 }
 
-int push(lua_State* L, double value, Dimension dimension, const std::string& name) {
-  push_measurement(L, {value, dimension, name});
+int push(lua_State* L, const Chosen& c, double value, Dimension dimension, const char* what,
+         bool level = false) {
+  push_measurement(
+      L, {value, dimension, c.name + what, {c.name}, c.info->from_ns, c.info->to_ns, level});
   return 1;
 }
 
@@ -62,15 +64,14 @@ using Metric = double (*)(const metrics::Record&);
 template <Metric metric>
 int time_metric(lua_State* L, const char* what) {
   const Chosen c = choose(L);
-  return push(L, metric(view(Script::of(L).stage(), *c.info, c.column)), Dimension::time,
-              c.name + what);
+  return push(L, c, metric(view(Script::of(L).stage(), *c.info, c.column)), Dimension::time, what);
 }
 template <Metric metric>
 int value_metric(lua_State* L, const char* what) {
   const Chosen c = choose(L);
   Script& self = Script::of(L);
-  return push(L, metric(view(self.stage(), *c.info, c.column)), self.dimension(c.column),
-              c.name + what);
+  return push(L, c, metric(view(self.stage(), *c.info, c.column)), self.dimension(c.column), what,
+              true);
 }
 
 int rise_time(lua_State* L) {
@@ -85,12 +86,12 @@ int response_time(lua_State* L) {
   const double from_call_s =
       metrics::response_time_s(view(Script::of(L).stage(), *c.info, c.column));
   const double wire_s = static_cast<double>(c.info->wire_ns - c.info->from_ns) * 1e-9;
-  return push(L, from_call_s - wire_s, Dimension::time, c.name + " response time");
+  return push(L, c, from_call_s - wire_s, Dimension::time, " response time");
 }
 int overshoot(lua_State* L) {
   const Chosen c = choose(L);
-  return push(L, metrics::overshoot_ratio(view(Script::of(L).stage(), *c.info, c.column)),
-              Dimension::ratio, c.name + " overshoot");
+  return push(L, c, metrics::overshoot_ratio(view(Script::of(L).stage(), *c.info, c.column)),
+              Dimension::ratio, " overshoot");
 }
 int mean(lua_State* L) {
   return value_metric<metrics::mean>(L, " mean");
@@ -109,8 +110,8 @@ int quantile(lua_State* L, double p, const char* what) {
   const Chosen c = choose(L);
   Script& self = Script::of(L);
   const auto record = view(self.stage(), *c.info, c.column);
-  return push(L, metrics::quantile(record.values.subspan(record.command), p),
-              self.dimension(c.column), c.name + what);
+  return push(L, c, metrics::quantile(record.values.subspan(record.command), p),
+              self.dimension(c.column), what);
 }
 int p50(lua_State* L) {
   return quantile(L, 0.5, " p50");
@@ -125,7 +126,7 @@ struct Errors {
   std::vector<double> values;  // from the reference rows on
   std::size_t command = 0;
   Dimension dimension = Dimension::none;
-  std::string name;
+  std::vector<std::string> signals;
 };
 
 void add_squares(Errors& errors, const metrics::Record& record, double reference) {
@@ -148,19 +149,19 @@ Errors errors_about(lua_State* L, int index) {
       if (std::find(info.columns.begin(), info.columns.end(), column) == info.columns.end()) {
         raise(L, "signal '" + key + "' is not in this record");
       }
-      if (!errors.name.empty() && errors.dimension != self.dimension(column)) {
+      if (!errors.signals.empty() && errors.dimension != self.dimension(column)) {
         raise(L, "signals of different dimensions have no common distance");
       }
       errors.dimension = self.dimension(column);
-      errors.name += (errors.name.empty() ? "" : ", ") + key;
+      errors.signals.push_back(key);
       add_squares(errors, view(self.stage(), info, column), wish.quantity(key, errors.dimension));
     }
     check_finish(L, wish);
-    if (errors.name.empty()) raise(L, "a reference { signal = \"0 m\" } is wanted");
+    if (errors.signals.empty()) raise(L, "a reference { signal = \"0 m\" } is wanted");
   } else {
     const Chosen c = choose(L);
     errors.dimension = self.dimension(c.column);
-    errors.name = c.name;
+    errors.signals = {c.name};
     add_squares(errors, view(self.stage(), info, c.column),
                 check_limit(L, index, errors.dimension).value_SI);
   }
@@ -172,23 +173,32 @@ int reference_index(lua_State* L) {
   return lua_istable(L, 2) ? 2 : choose(L).next;
 }
 
+int push_errors(lua_State* L, const Errors& e, double value, Dimension dimension,
+                const char* what) {
+  const RecordInfo& info = Script::of(L).records[check_handle(L, 1, kRecord)];
+  std::string name;
+  for (const std::string& signal : e.signals) name += (name.empty() ? "" : ", ") + signal;
+  push_measurement(L, {value, dimension, name + what, e.signals, info.from_ns, info.to_ns, false});
+  return 1;
+}
+
 int rms_error(lua_State* L) {
   const Errors e = errors_about(L, reference_index(L));
-  const metrics::Record record{e.values, 1'000'000, e.command};
-  return push(L, metrics::rms_about(record, 0.0), e.dimension, e.name + " RMS error");
+  return push_errors(L, e, metrics::rms_about({e.values, 1'000'000, e.command}, 0.0), e.dimension,
+                     " RMS error");
 }
 int max_error(lua_State* L) {
   const Errors e = errors_about(L, reference_index(L));
-  return push(L, metrics::maximum({e.values, 1'000'000, e.command}), e.dimension,
-              e.name + " max error");
+  return push_errors(L, e, metrics::maximum({e.values, 1'000'000, e.command}), e.dimension,
+                     " max error");
 }
 
 // RMS about zero.
 int rms(lua_State* L) {
   const Chosen c = choose(L);
   Script& self = Script::of(L);
-  return push(L, metrics::rms_about(view(self.stage(), *c.info, c.column), 0.0),
-              self.dimension(c.column), c.name + " RMS");
+  return push(L, c, metrics::rms_about(view(self.stage(), *c.info, c.column), 0.0),
+              self.dimension(c.column), " RMS");
 }
 
 // record:settled("10 cm", "1.1 m"), record:settled("10 cm", { north = "0 m" }), or
@@ -201,8 +211,8 @@ int settled(lua_State* L) {
   if (!lua_isnoneornil(L, band + 1)) {
     const Errors e = errors_about(L, band + 1);
     const double width = check_limit(L, band, e.dimension).value_SI;
-    return push(L, metrics::settled_s({e.values, step_ns, e.command}, 0.0, width), Dimension::time,
-                e.name + " settling time");
+    return push_errors(L, e, metrics::settled_s({e.values, step_ns, e.command}, 0.0, width),
+                       Dimension::time, " settling time");
   }
   const Chosen c = choose(L);
   const metrics::Record record = view(self.stage(), info, c.column);
@@ -211,7 +221,7 @@ int settled(lua_State* L) {
   for (std::size_t i = 0; i < record.command; ++i) from += record.values[i];
   from = record.command == 0 ? std::nan("") : from / static_cast<double>(record.command);
   const double width = check_limit(L, band, Dimension::ratio).value_SI * std::abs(to - from);
-  return push(L, metrics::settled_s(record, to, width), Dimension::time, c.name + " settling time");
+  return push(L, c, metrics::settled_s(record, to, width), Dimension::time, " settling time");
 }
 
 std::vector<std::size_t> columns_of(lua_State* L, int index) {

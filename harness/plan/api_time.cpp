@@ -78,7 +78,8 @@ int value(lua_State* L) {
   const std::size_t column = self.column(L, signal);
   const double x = self.stage().truth.last(column);
   if (lua_isnoneornil(L, 3)) {
-    push_measurement(L, {x, self.dimension(column), signal});
+    const std::int64_t now_ns = self.stage().now_ns;
+    push_measurement(L, {x, self.dimension(column), signal, {signal}, now_ns, now_ns, true});
     return 1;
   }
   const std::string unit = check_text(L, 3, "a unit");

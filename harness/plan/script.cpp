@@ -195,8 +195,19 @@ void Script::judge(const Measurement& m, How how, std::optional<Limit> low,
   e.margin = in_unit(margin_of(m.value_SI, low, high), e.unit) - in_unit(0.0, e.unit);
   e.place = place;
   e.t_s = t_s;
+  e.signals = m.signals;
+  e.from_s = seconds(m.from_ns);
+  e.to_s = seconds(m.to_ns);
+  e.level = m.level;
+  if (low) e.limits_SI.push_back(low->value_SI);
+  if (high && how != How::equal) e.limits_SI.push_back(high->value_SI);
   e.note = std::isnan(m.value_SI) && note.empty() ? "nothing to measure" : note;
   add(std::move(e));
+}
+
+void Script::set_step(const std::string& name) {
+  step_name_ = name;
+  stage_.report.steps.push_back({seconds(stage_.now_ns), "plan", name});
 }
 
 void Script::add_window(std::int64_t to_ns, Window window) {
@@ -227,8 +238,10 @@ void Script::judge_guard(const Guard& guard) {
     at = row;
     if (std::isnan(x)) break;
   }
-  judge({worst, dimension(*guard.column), guard.name}, *guard.how, guard.low, guard.high,
-        guard.place, seconds(static_cast<std::int64_t>(at) * truth.step_ns()));
+  const std::string signal = truth.columns()[*guard.column].name;
+  judge({worst, dimension(*guard.column), guard.name, {signal}, guard.from_ns, end, true},
+        *guard.how, guard.low, guard.high, guard.place,
+        seconds(static_cast<std::int64_t>(at) * truth.step_ns()));
 }
 
 void Script::judge_faults() {

@@ -37,6 +37,10 @@ struct Measurement {
   double value_SI = 0.0;
   Dimension dimension = Dimension::none;
   std::string name;
+  // Where it comes from, for the page: see results::Expectation.
+  std::vector<std::string> signals = {};
+  std::int64_t from_ns = 0, to_ns = 0;
+  bool level = false;
 };
 
 struct Limit {
@@ -93,11 +97,12 @@ class Script {
   void add(results::Expectation expectation);  // makes its name unique
   void wait_until(std::int64_t t_ns, int condition_ref = -1);
   bool condition_met() const { return condition_met_; }
-  void set_step(std::string name) { step_name_ = std::move(name); }
+  void set_step(const std::string& name);
   // Judged in finish() over [from, min(to, end)].
   using Window = std::function<void(Script&, std::int64_t from_ns, std::int64_t to_ns)>;
   void add_window(std::int64_t to_ns, Window window);
 
+  std::vector<Measurement> measurements;  // all that Lua holds a table of
   std::vector<RecordInfo> records;
   std::vector<Guard> guards;
   std::vector<PendingExpectation> pending;

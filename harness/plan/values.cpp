@@ -28,14 +28,16 @@ void declare_measurement(lua_State* L) {
 }
 
 void push_measurement(lua_State* L, const Measurement& m) {
+  auto& all = Script::of(L).measurements;
   lua_createtable(L, 0, 3);
   lua_pushnumber(L, m.value_SI);
   lua_setfield(L, -2, "value");
-  lua_pushinteger(L, static_cast<int>(m.dimension));
-  lua_setfield(L, -2, "dimension");
   lua_pushstring(L, m.name.c_str());
   lua_setfield(L, -2, "name");
+  lua_pushinteger(L, static_cast<lua_Integer>(all.size()));
+  lua_setfield(L, -2, "number");
   luaL_setmetatable(L, kMeasurement);
+  all.push_back(m);
 }
 
 Measurement check_measurement(lua_State* L, int index) {
@@ -49,15 +51,12 @@ Measurement check_measurement(lua_State* L, int index) {
   if (!ours) {
     raise(L, std::string("a measurement or a number is wanted, not a ") + luaL_typename(L, index));
   }
-  Measurement m;
-  lua_getfield(L, index, "value");
-  lua_getfield(L, index < 0 ? index - 1 : index, "dimension");
-  lua_getfield(L, index < 0 ? index - 2 : index, "name");
-  m.value_SI = lua_tonumber(L, -3);
-  m.dimension = static_cast<Dimension>(lua_tointeger(L, -2));
-  m.name = luaL_optstring(L, -1, "value");
-  lua_pop(L, 3);
-  return m;
+  lua_getfield(L, index, "number");
+  const auto number = static_cast<std::size_t>(lua_tointeger(L, -1));
+  lua_pop(L, 1);
+  const auto& all = Script::of(L).measurements;
+  if (number >= all.size()) raise(L, "this measurement has been changed");
+  return all[number];
 }
 
 Limit check_limit(lua_State* L, int index, Dimension wanted) {

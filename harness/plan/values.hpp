@@ -8,8 +8,8 @@
 
 namespace whirl::plan {
 
-// A measurement is a table { value = SI, name = ... } with a hidden dimension; a bare number is one
-// without a dimension.
+// A measurement is a table { value = SI, name = ..., number = ... }, the whole of it is in
+// Script::measurements; a bare number is one without a dimension.
 void push_measurement(lua_State* L, const Measurement& measurement);
 Measurement check_measurement(lua_State* L, int index);
 void declare_measurement(lua_State* L);
