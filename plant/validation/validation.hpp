@@ -30,10 +30,10 @@ struct Figure {
 struct Proof {
   std::string title;
   std::string x_label, y_label;  // with units
-  std::string source;            // of the reference, a key of REFERENCES.md
-  std::vector<Curve> model, reference;
-  std::vector<Figure> figures;
-  std::string note;
+  std::string source{};          // of the reference, a key of REFERENCES.md
+  std::vector<Curve> model{}, reference{};
+  std::vector<Figure> figures{};
+  std::string note{};
 };
 
 // Motor, battery, airframe and sensors; `blade` is the 10 x 4.5 of the reference vehicle.
