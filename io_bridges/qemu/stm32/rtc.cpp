@@ -49,7 +49,9 @@ Rtc::Rtc(const Chip& chip, RtcHost host)
 }
 
 void Rtc::clock_changed() {
+  const std::int64_t before_Hz = grid_.frequency_Hz();
   grid_.set_frequency(host_.rtcclk_Hz ? host_.rtcclk_Hz() : 0.0, chip_.events.now());
+  if (grid_.frequency_Hz() == before_Hz) return;
   arm_alarms();
   arm_wakeup(true);
 }

@@ -182,7 +182,7 @@ Stm32f405::Stm32f405(const ChipHost& host)
     gpios_.push_back(std::make_unique<Gpio>(chip_, bank_, port));
     gpios_.back()->on_edge([this, port](int pin, bool level, Nanoseconds now) {
       exti_.pin_edge(port, pin, level);
-      if (functions_ && (pin == 11 || pin == 15)) functions_->exti_edge(pin, now);
+      if (functions_ && (pin == 9 || pin == 11 || pin == 15)) functions_->exti_edge(pin, now);
     });
   }
   dma_bus_.bar(kCcmBase, kCcmBytes);

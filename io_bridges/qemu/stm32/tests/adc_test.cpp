@@ -166,6 +166,17 @@ TEST(AdcF405, ATriggerEdgeOfTheSelectedPolarityStartsAtTheNextClock) {
   EXPECT_EQ(adc.sampled, std::vector<Nanoseconds>{clocks_ns(45, 21'000'000)});
 }
 
+TEST(AdcF405, ATriggerBetweenClocksWaitsForTheNextWholeOne) {
+  F405Adc adc;
+  TriggerLine line;
+  adc.bank.connect_regular(8, line);
+  put(adc.block, CR2, ADON | 1u << 28 | 8u << 24);
+  adc.bare.run_to(1'020);  // 21.42 clocks: the half clock at 21.5 does not count
+  line.set(true, 1'020);
+  adc.bare.run_to(3'000);
+  EXPECT_EQ(adc.sampled, std::vector<Nanoseconds>{clocks_ns(22 + 3, 21'000'000)});
+}
+
 TEST(AdcF405, AnInjectedGroupInterruptsAndTheRegularConversionStartsAgain) {
   F405Adc adc;
   put(adc.block, CR1, SCAN);

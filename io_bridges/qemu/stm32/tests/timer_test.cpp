@@ -94,6 +94,16 @@ TEST(Timer, ManyPeriodsAtOnceEqualManyLooks) {
   EXPECT_EQ(get(a, CNT), get(b, CNT));
   EXPECT_EQ(get(a, CR1), get(b, CR1));
   EXPECT_EQ(a.output(1, false), b.output(1, false));
+  Nanoseconds updated[2] = {};
+  int i = 0;
+  for (BareChip* bare : {&lazy, &eager}) {
+    Timer& timer = bare == &lazy ? a : b;
+    put(timer, SR, 0);
+    put(timer, DIER, 1);
+    while (!bare->interrupts.lines[25]) bare->run_to(bare->events.next_deadline());
+    updated[i++] = bare->events.now();
+  }
+  EXPECT_EQ(updated[0], updated[1]);
 }
 
 TEST(Timer, CentreAlignedCountsToArrAndBackAndUpdatesAtBothEnds) {
@@ -157,6 +167,34 @@ TEST(Timer, EdgeAlignedPwmIsHighBelowTheCompareValue) {
       if (timer.output(1, false) == Drive::high) ++high;
     }
     EXPECT_EQ(high, ccr);
+  }
+}
+
+// RM0090 figure "Center-aligned PWM waveforms (ARR=8)": CCR = 4 is high for 8 of 16 steps, around 0.
+TEST(Timer, CentreAlignedPwmIsHighAroundZeroAndDownCountingUpToTheCompareValue) {
+  struct Row {
+    std::uint32_t cr1;
+    std::vector<int> low;  // steps of one period in which OCxREF is low
+  };
+  const Row rows[] = {{CEN | (1u << 5), {4, 5, 6, 7, 8, 9, 10, 11}},
+                      {CEN | DIR, {0, 1, 2, 3}}};  // counts 8 7 6 5, then 4 3 2 1 0 high
+  for (const Row& row : rows) {
+    BareChip bare;
+    Timer timer(bare.chip(), general());
+    put(timer, ARR, 8);
+    put(timer, CCMR1, 0x60);
+    put(timer, CCR1, 4);
+    put(timer, CCER, 1);
+    put(timer, CR1, row.cr1 & ~CEN);
+    put(timer, EGR, 1);
+    put(timer, CR1, row.cr1);
+    const int steps = (row.cr1 & DIR) != 0 ? 9 : 16;
+    std::vector<int> low;
+    for (int i = 0; i < steps; ++i) {
+      bare.run_to(edge_ns(1 + i, 84'000'000));
+      if (timer.output(1, false) == Drive::low) low.push_back(i);
+    }
+    EXPECT_EQ(low, row.low);
   }
 }
 
