@@ -1,0 +1,110 @@
+-- One plan per class of fault, each in mid-hover: what the flight image does about it.
+-- told_state: 0 disarmed, 1 armed, 2 flying, 3 landing, 4 failsafe landing.
+
+local function hover(t)
+  t:within("8 s", function(s) return s.heartbeat_age_s < 1.5 end, "the first heartbeat")
+  t:wait "3 s"
+  t:command { arm = true }
+  t:within("4 s", function(s) return s.told_armed == 1 end, "armed")
+  t:command { takeoff = "1.1 m" }
+  t:within("6 s", function(s) return s.height_m > 1.0 end, "1 m high")
+  t:wait "3 s"
+end
+
+-- The set-points of these ESCs stay on time whatever happens to the others.
+local function on_time(t, escs)
+  for _, esc in ipairs(escs) do
+    t:bus { device = esc, direction = "write", period = "20 ms", tolerance = "0.5 ms", nacks = 0,
+            during = "1 s" }
+  end
+end
+
+-- Flies on as if nothing had been, and lands by command.
+local function flies_on(t)
+  local after = t:record({ "height", "offset", "tilt" }, "3 s")
+  t:expect(after:rms_error("height", "1.1 m"), "after: height RMS error"):at_most "5 cm"
+  t:expect(after:rms_error("offset", "0 m"), "after: sideways RMS error"):at_most "10 cm"
+  t:command { land = true }
+  t:within("10 s", function(s) return s.told_armed == 0 end, "landed and disarmed")
+end
+
+local function flight_plan(name, run)
+  plan(name) {
+    image = "flight", board = "px4fmu_v1", vehicle = "hp_quad",
+    tags = { "flight", "faults" }, timeout = "60 s",
+    run = run,
+  }
+end
+
+flight_plan("an ESC that refuses for 100 ms is tried again and flown on", function(t)
+  hover(t)
+  on_time(t, { "esc1", "esc3", "esc4" })
+  t:fault { kind = "i2c_nack", device = "esc2", duration = "100 ms" }
+  t:wait "500 ms"
+  flies_on(t)
+end)
+
+flight_plan("an ESC that refuses for ever ends the flight within a second", function(t)
+  hover(t)
+  t:fault { kind = "i2c_nack", device = "esc2" }
+  t:within("2 s", function(s) return s.told_state == 4 or s.told_state == 0 end, "failsafe")
+  t:within("15 s", function(s) return s.told_armed == 0 end, "motors off")
+end)
+
+flight_plan("SDA stuck until nine clocks is freed by the image", function(t)
+  hover(t)
+  on_time(t, { "esc1", "esc2", "esc3", "esc4" })
+  t:fault { kind = "i2c_stuck_sda", bus = "i2c3", duration = "400 ms", value = 9 }
+  t:wait "500 ms"
+  flies_on(t)
+end)
+
+flight_plan("a frozen IMU stops the motors", function(t)
+  hover(t)
+  t:fault { kind = "sensor_frozen", device = "imu" }
+  t:within("2 s", function(s) return s.told_armed == 0 end, "motors off")
+end)
+
+flight_plan("a lost capture makes the image land by itself", function(t)
+  hover(t)
+  t:fault { kind = "capture_lost" }
+  t:within("2 s", function(s) return s.told_state == 4 end, "failsafe landing")
+  local tilt = t:always("tilt")
+  tilt:at_most "10 deg"
+  t:within("12 s", function(s) return s.on_ground == 1 end, "on the ground")
+  t:within("6 s", function(s) return s.told_armed == 0 end, "disarmed")
+  tilt:stop()
+end)
+
+flight_plan("a radio that falls silent makes the image land by itself", function(t)
+  hover(t)
+  t:fault { kind = "uart_silence", device = "radio" }
+  t:within("2 s", function(s) return s.told_state == 4 end, "failsafe landing")
+  t:within("12 s", function(s) return s.on_ground == 1 end, "on the ground")
+  t:within("6 s", function(s) return s.told_armed == 0 end, "disarmed")
+end)
+
+flight_plan("an IMU that leaves the bus stops the motors", function(t)
+  hover(t)
+  t:fault { kind = "spi_silent", device = "imu" }
+  t:within("2 s", function(s) return s.told_armed == 0 end, "motors off")
+end)
+
+flight_plan("an IMU of another make is never armed", function(t)
+  t:fault { kind = "sensor_wrong_identity", device = "imu", value = 0x70 }
+  t:within("8 s", function(s) return s.heartbeat_age_s < 1.5 end, "the first heartbeat")
+  t:wait "3 s"
+  local armed = t:always("told_armed")
+  armed:at_most(0)
+  t:command { arm = true }
+  t:within("2 s", function(s) return s.command_result == 1 end, "refused for the time being")
+  t:wait "2 s"
+  armed:stop()
+end)
+
+flight_plan("one radio byte in a hundred lost is flown through", function(t)
+  hover(t)
+  t:fault { kind = "uart_loss", device = "radio", duration = "1 s", value = 0.01 }
+  t:wait "1 s"
+  flies_on(t)
+end)
