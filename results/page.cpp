@@ -29,7 +29,7 @@ ordered_json curve(const TruthLog& truth, std::size_t column) {
   const auto values = truth.values(column);
   ordered_json out;
   out["name"] = truth.columns()[column].name;
-  out["unit"] = truth.columns()[column].unit_suffix;
+  out["unit"] = truth.columns()[column].unit;
   const auto [low, high] = std::minmax_element(values.begin(), values.end());
   const bool any_nan =
       std::any_of(values.begin(), values.end(), [](double v) { return std::isnan(v); });

@@ -13,7 +13,8 @@ class TruthLog {
  public:
   struct Column {
     std::string name;         // "height"
-    std::string unit_suffix;  // "m"; empty for ratios and numbers
+    std::string unit_suffix;  // "mps"; empty for ratios and numbers
+    std::string unit;         // "m/s", for people
   };
 
   TruthLog(std::vector<Column> columns, std::int64_t step_ns)

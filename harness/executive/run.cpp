@@ -32,7 +32,7 @@ class Stopwatch {
 results::TruthLog truth_log_for(const World& world) {
   std::vector<results::TruthLog::Column> columns;
   for (const Signal& signal : world.signals()) {
-    columns.push_back({signal.name, si_suffix(signal.dimension)});
+    columns.push_back({signal.name, si_suffix(signal.dimension), si_symbol(signal.dimension)});
   }
   return {std::move(columns), kStep_ns};
 }

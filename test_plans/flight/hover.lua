@@ -37,10 +37,10 @@ plan "hover" {
     t:step "hover"
     local tilt = t:always("tilt")
     tilt:at_most "20 deg"
-    t:wait "6 s"
+    t:wait "4 s"
 
     t:step "gust"
-    local gust = t:record({ "offset", "height" }, "4 s", function()
+    local gust = t:record({ "offset", "height" }, "6 s", function()
       t:gust { east = "2 m/s", duration = "1 s" }
     end)
     t:expect(gust:max "offset", "gust: it moves the vehicle"):at_least "1 mm"
