@@ -148,8 +148,8 @@ struct Counter : SpiTarget {
 
 std::vector<std::uint8_t> burst(SpiTarget& target, Nanoseconds now) {
   target.select(true, now);
-  std::vector<std::uint8_t> miso;
-  for (int i = 0; i < 3; ++i) miso.push_back(target.transfer(0, 1'000'000, 0, now));
+  std::vector<std::uint8_t> miso(3);
+  for (std::uint8_t& byte : miso) byte = target.transfer(0, 1'000'000, 0, now);
   target.select(false, now);
   return miso;
 }
