@@ -1,51 +1,48 @@
 #include "plant/power_bus.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+
+#include "harness/base/check.hpp"
 
 namespace whirl::plant {
 namespace {
 
-constexpr double kAgree_V = 1e-9;
+constexpr double kAgree_V = 1e-8;
 constexpr int kMostRounds = 30;
-
-double drawn_C(std::span<const AveragedMotor> motors, std::span<Drive> drives,
-               std::span<const ShaftLoad> loads, double bus_V, double dt_s) {
-  double charge = 0.0;
-  for (std::size_t i = 0; i < motors.size(); ++i) {
-    drives[i].bus_V = bus_V;
-    charge += motors[i].bus_charge_C(drives[i], loads[i], dt_s);
-  }
-  return charge;
-}
+constexpr std::size_t kMostMotors = 8;
 
 }  // namespace
 
 BusDraw step_bus(std::span<AveragedMotor> motors, std::span<Drive> drives,
                  std::span<const ShaftLoad> loads, double avionics_A, Battery& battery, double dt_s,
                  std::span<MotorBooks> books) {
+  WHIRL_CHECK(motors.size() <= kMostMotors, motors.size());
+  std::array<AveragedMotor::Trial, kMostMotors> trials;
   const double source = battery.source_V(), ohm = battery.series_resistance_ohm();
-  // The charge is nearly affine in the voltage: secant steps, started from the open circuit.
-  auto miss = [&](double bus_V) {
-    const double charge = drawn_C(motors, drives, loads, bus_V, dt_s) + avionics_A * dt_s;
-    return std::max(0.0, source - ohm * charge / dt_s) - bus_V;
-  };
-  for (AveragedMotor& motor : motors) motor.prepare(dt_s);
-  double before = source, miss_before = miss(before);
-  double bus = std::max(0.0, before + miss_before), miss_now = 0.0;
-  for (int round = 0; round < kMostRounds; ++round) {
-    miss_now = miss(bus);
-    if (std::abs(miss_now) < kAgree_V) break;
-    const double slope = (miss_now - miss_before) / (bus - before);
-    before = bus;
-    miss_before = miss_now;
-    bus = std::max(0.0, slope < -0.5 ? bus - miss_now / slope : bus + 0.5 * miss_now);
-  }
-  BusDraw draw{.bus_V = bus, .charge_C = avionics_A * dt_s, .residual_V = miss_now};
+  double slope = 1.0;  // of the miss over the voltage, nearly constant
   for (std::size_t i = 0; i < motors.size(); ++i) {
-    drives[i].bus_V = bus;
-    books[i] = motors[i].step(drives[i], loads[i], dt_s);
-    draw.charge_C += books[i].bus_charge_C;
+    motors[i].prepare(dt_s);
+    slope += ohm / dt_s * motors[i].bus_charge_per_volt(drives[i], dt_s);
+  }
+  // The last sub-step's voltage is close: one correction is usually enough.
+  const double before = drives.empty() ? 0.0 : drives[0].bus_V;
+  BusDraw draw{.bus_V = before > 0.0 ? before : source};
+  for (int round = 0; round < kMostRounds; ++round) {
+    draw.charge_C = avionics_A * dt_s;
+    for (std::size_t i = 0; i < motors.size(); ++i) {
+      drives[i].bus_V = draw.bus_V;
+      trials[i] = motors[i].attempt(drives[i], loads[i], dt_s);
+      draw.charge_C += trials[i].books.bus_charge_C;
+    }
+    draw.residual_V = std::max(0.0, source - ohm * draw.charge_C / dt_s) - draw.bus_V;
+    if (std::abs(draw.residual_V) < kAgree_V || round + 1 == kMostRounds) break;
+    draw.bus_V = std::max(0.0, draw.bus_V + draw.residual_V / slope);
+  }
+  for (std::size_t i = 0; i < motors.size(); ++i) {
+    motors[i].accept(trials[i]);
+    books[i] = trials[i].books;
   }
   battery.draw(draw.charge_C, dt_s);
   return draw;

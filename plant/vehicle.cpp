@@ -64,11 +64,13 @@ struct Vehicle::Parts {
   std::array<AveragedMotor, 4> motors{AveragedMotor(params.motor), AveragedMotor(params.motor),
                                       AveragedMotor(params.motor), AveragedMotor(params.motor)};
   std::array<MotorCommand, 4> commands;
+  std::array<Drive, 4> drives;  // kept: the last bus voltage is the next first guess
   std::array<RotorLoads, 4> loads;
   std::array<double, 4> loads_at_radps{};
   std::vector<Dip> dips;
   std::vector<Push> pushes;
   Vector3d spin_start_B_Nms = Vector3d::Zero();
+  double viscosity_Pas = 0.0;
   BodyState body;
   VehicleState state;
 };
@@ -80,7 +82,6 @@ Vector3d Vehicle::Parts::spin_B() const {
 }
 
 void Vehicle::Parts::run_motors(double dt_s) {
-  std::array<Drive, 4> drives;
   std::array<ShaftLoad, 4> shaft;
   std::array<MotorBooks, 4> books, total{};
   for (int i = 0; i < 4; ++i) {
@@ -128,7 +129,7 @@ Forcing Vehicle::Parts::run_rotors(double dt_s) {
   RotorConditions conditions;
   conditions.w_WP_P_radps = body.w_WB_B_radps;
   conditions.density_kgpm3 = state.air_density_kgpm3;
-  conditions.viscosity_Pas = air.at(body.p_WB_W_m).viscosity_Pas;
+  conditions.viscosity_Pas = viscosity_Pas;
   for (int i = 0; i < 4; ++i) {
     const Vector3d& arm_B = params.airframe.rotors[i].p_BP_B_m;
     const Vector3d p_W = hub_W(i);
@@ -191,6 +192,7 @@ void Vehicle::Parts::publish_air() {
   state.static_pressure_Pa = here.pressure_Pa;
   state.air_temperature_K = here.temperature_K;
   state.air_density_kgpm3 = here.density_kgpm3;
+  viscosity_Pas = here.viscosity_Pas;
   state.p_WB_W_m = body.p_WB_W_m;
   state.v_WB_W_mps = body.v_WB_W_mps;
   state.q_WB = body.q_WB;

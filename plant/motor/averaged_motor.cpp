@@ -17,11 +17,6 @@ struct AveragedMotor::Winding {
   double held_A = 0.0, square_A2s = 0.0, fall_charge_C = 0.0;
 };
 
-struct AveragedMotor::Outcome {
-  MotorBooks books;
-  double speed = 0.0, current = 0.0;
-};
-
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
@@ -78,20 +73,23 @@ AveragedMotor::AveragedMotor(const MotorParams& params)
 MotorBooks AveragedMotor::step(const Drive& drive, const ShaftLoad& load, double dt_s) {
   WHIRL_CHECK(drive.duty >= 0.0 && drive.duty <= 1.0 && dt_s > 0.0, drive.duty, dt_s);
   prepare(dt_s);
-  const Outcome outcome = solve(drive, load, dt_s);
-  speed_ = outcome.speed;
-  current_ = outcome.current;
-  return outcome.books;
-}
-
-double AveragedMotor::bus_charge_C(const Drive& drive, const ShaftLoad& load, double dt_s) const {
-  return solve(drive, load, dt_s).books.bus_charge_C;
+  const Trial trial = attempt(drive, load, dt_s);
+  accept(trial);
+  return trial.books;
 }
 
 void AveragedMotor::prepare(double dt_s) {
   if (params_.six_step_overlap) find_overlap();
-  overlap_.tau_s = params_.inductance_H / (resistance_ + overlap_.drop_ohm);
+  const double ohm = resistance_ + overlap_.drop_ohm;
+  if (dt_s == prepared_dt_s_ && ohm == prepared_ohm_) return;
+  prepared_dt_s_ = dt_s;
+  prepared_ohm_ = ohm;
+  overlap_.tau_s = params_.inductance_H / ohm;
   overlap_.blend = -std::expm1(-dt_s / overlap_.tau_s);
+}
+
+double AveragedMotor::bus_charge_per_volt(const Drive& drive, double dt_s) const {
+  return drive.duty * drive.duty / prepared_ohm_ * (dt_s - overlap_.tau_s * overlap_.blend);
 }
 
 // Between commutations the pair's current recovers from I/2 to I, as an exponential towards
@@ -114,7 +112,7 @@ AveragedMotor::Winding AveragedMotor::conduct(double voltage_V, double dt_s) con
   w.tau_s = overlap_.tau_s;
   w.blend = overlap_.blend;
   w.voltage_V = voltage_V;
-  const double settled_s = dt_s - w.tau_s * w.blend, ohm = resistance_ + overlap_.drop_ohm;
+  const double settled_s = dt_s - w.tau_s * w.blend, ohm = prepared_ohm_;
   w.a_C = voltage_V / ohm * settled_s + current_ * w.tau_s * w.blend;
   w.b_Cs = params_.torque_constant_NmpA / ohm * settled_s;
   return w;
@@ -123,8 +121,11 @@ AveragedMotor::Winding AveragedMotor::conduct(double voltage_V, double dt_s) con
 // Under diode freewheeling the current does not follow the mean voltage below the pulses' mean.
 void AveragedMotor::diode_limit(const Drive& drive, double dt_s, Winding& w) const {
   const double emf = params_.torque_constant_NmpA * speed_;
+  const double ends = (w.voltage_V - emf) / prepared_ohm_;  // where the mean voltage would lead
+  const double ripple_A = (drive.bus_V + params_.diode_drop_V) * drive.duty * (1.0 - drive.duty) /
+                          (params_.inductance_H * params_.pwm_Hz);
+  if (ends > ripple_A && current_ > ripple_A) return;  // far from running dry
   const Pulses limit = pulses(params_, resistance_, drive, emf);
-  const double ends = (w.voltage_V - emf) / resistance_;     // where the mean voltage would lead
   const bool cut = drive.duty == 0.0 || drive.bus_V <= emf;  // no pulses at all
   if (!limit.discontinuous && !cut) return;
   const double floor_A = cut ? 0.0 : limit.mean_A;
@@ -160,7 +161,7 @@ double AveragedMotor::mean_speed(const Winding& winding, const ShaftLoad& load, 
   return std::max(mean, 0.5 * speed_);  // friction stops the shaft, it does not turn it back
 }
 
-AveragedMotor::Outcome AveragedMotor::solve(const Drive& drive, const ShaftLoad& load,
+AveragedMotor::Trial AveragedMotor::attempt(const Drive& drive, const ShaftLoad& load,
                                             double dt_s) const {
   const double diode_V = drive.diode ? (1.0 - drive.duty) * params_.diode_drop_V : 0.0;
   Winding w = conduct(drive.duty * drive.bus_V - diode_V, dt_s);
@@ -168,19 +169,19 @@ AveragedMotor::Outcome AveragedMotor::solve(const Drive& drive, const ShaftLoad&
   const double kt = params_.torque_constant_NmpA;
   const double mean = mean_speed(w, load, dt_s);
 
-  Outcome out;
-  out.speed = blocked_ ? 0.0 : 2.0 * mean - speed_;
+  Trial out;
+  out.speed_radps = blocked_ ? 0.0 : 2.0 * mean - speed_;
   MotorBooks& books = out.books;
   double given_back_J = 0.0;  // the overlap's voltage drop returns to the bus what it does not burn
   books.winding_charge_C = w.a_C - w.b_Cs * mean;
   if (w.held) {
-    out.current = w.held_A;
+    out.current_A = w.held_A;
     books.copper_J = resistance_ * w.square_A2s;
     books.diode_J = params_.diode_drop_V * w.fall_charge_C;
   } else {
     const double ends = (w.voltage_V - kt * mean) / (resistance_ + overlap_.drop_ohm);
     const double gap = current_ - ends;
-    out.current = ends + gap * (1.0 - w.blend);
+    out.current_A = ends + gap * (1.0 - w.blend);
     const double square = ends * ends * dt_s + 2.0 * ends * gap * w.tau_s * w.blend +
                           gap * gap * 0.5 * w.tau_s * w.blend * (2.0 - w.blend);
     const double ripple_A = drive.bus_V * drive.duty * (1.0 - drive.duty) /
@@ -190,7 +191,8 @@ AveragedMotor::Outcome AveragedMotor::solve(const Drive& drive, const ShaftLoad&
     books.diode_J = diode_V * books.winding_charge_C;
     given_back_J = (resistance_ + overlap_.drop_ohm) * square - books.copper_J;
   }
-  books.magnetic_J = 0.5 * params_.inductance_H * (out.current * out.current - current_ * current_);
+  books.magnetic_J =
+      0.5 * params_.inductance_H * (out.current_A * out.current_A - current_ * current_);
   const double converted_J = kt * mean * books.winding_charge_C;
   if (w.held) {  // the pulses' share of the bus charge follows from what they delivered
     books.electrical_in_J = books.copper_J + books.diode_J + books.magnetic_J + converted_J;
@@ -202,8 +204,9 @@ AveragedMotor::Outcome AveragedMotor::solve(const Drive& drive, const ShaftLoad&
   }
   books.air_torque_Nm = load.quadratic_Nm_s2 * mean * mean + load.constant_Nm;
   books.air_J = books.air_torque_Nm * mean * dt_s;
-  books.kinetic_J = 0.5 * params_.inertia_kgm2 * (out.speed * out.speed - speed_ * speed_);
-  const bool stopped = out.speed == 0.0;  // friction took what was left
+  books.kinetic_J =
+      0.5 * params_.inertia_kgm2 * (out.speed_radps * out.speed_radps - speed_ * speed_);
+  const bool stopped = out.speed_radps == 0.0;  // friction took what was left
   books.no_load_J = stopped ? converted_J - books.air_J - books.kinetic_J
                             : kt * params_.no_load_current_A * mean * dt_s;
   return out;

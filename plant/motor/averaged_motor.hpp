@@ -51,10 +51,16 @@ class AveragedMotor {
 
   MotorBooks step(const Drive& drive, const ShaftLoad& load, double dt_s);
 
-  // What step() would take from the bus, without taking it: charge at this bus voltage.
-  // Pre: prepare(dt_s) since the last step.
-  double bus_charge_C(const Drive& drive, const ShaftLoad& load, double dt_s) const;
+  // The same in two halves, for a bus voltage that depends on what all motors draw: try voltages,
+  // then accept one. prepare() first, once per sub-step.
+  struct Trial {
+    MotorBooks books;
+    double speed_radps = 0.0, current_A = 0.0;
+  };
   void prepare(double dt_s);  // what depends on the state and the step, but not on the voltage
+  Trial attempt(const Drive& drive, const ShaftLoad& load, double dt_s) const;
+  void accept(const Trial& trial) { speed_ = trial.speed_radps, current_ = trial.current_A; }
+  double bus_charge_per_volt(const Drive& drive, double dt_s) const;  // its slope, shaft held
 
   void block();  // the shaft is held and stands still from now on
   void set_speed(double speed_radps);
@@ -69,14 +75,12 @@ class AveragedMotor {
 
  private:
   struct Winding;
-  struct Outcome;
   struct Overlap {                    // neutral values: none
     double drop_ohm = 0.0;            // mean voltage per mean current
     double square_share = 1.0;        // mean square of the current over the square of its mean
     double ripple_share = 0.0;        // of the PWM ripple's heat
     double tau_s = 0.0, blend = 0.0;  // of the mean current, drop included
   };
-  Outcome solve(const Drive& drive, const ShaftLoad& load, double dt_s) const;
   void find_overlap();
   Winding conduct(double voltage_V, double dt_s) const;
   double mean_speed(const Winding& winding, const ShaftLoad& load, double dt_s) const;
@@ -88,6 +92,7 @@ class AveragedMotor {
   double temperature_K_;
   double resistance_;
   Overlap overlap_;
+  double prepared_dt_s_ = 0.0, prepared_ohm_ = 0.0;  // what the blend was found for
   bool blocked_ = false;
 };
 
