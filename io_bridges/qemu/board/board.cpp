@@ -225,7 +225,7 @@ io::CpuFault Board::fault_registers(const Registers& registers) {
 
 void Board::exception_entered(std::uint32_t preempted, std::uint32_t frame, const CoreState& core,
                               const Registers& registers) {
-  watch_.enter_exception(preempted, core);
+  if (!watch_.enter_exception(preempted, core)) return;
   if (core.exception < kHardFault || core.exception > kUsageFault) return;
   const Peek peek = [this](std::uint32_t address, void* to, std::size_t size) {
     return emulator_.peek(address, to, size);
@@ -265,6 +265,7 @@ void Board::find(const io::Finding& finding) {
 }
 
 void Board::set(int irq, bool level) {
+  watch_.line_changed(kFirstInterrupt + static_cast<std::uint32_t>(irq), level, events_.now());
   emulator_.set_interrupt(irq, level);
 }
 

@@ -64,9 +64,21 @@ void Watch::return_site(std::uint32_t address, const CoreState& core) {
   }
 }
 
-void Watch::enter_exception(std::uint32_t preempted, const CoreState& core) {
+void Watch::may_leave_exception(Nanoseconds after) {
+  contexts_.back().left_ns = after;
+  contexts_.back().may_be_left = true;
+}
+
+bool Watch::enter_exception(std::uint32_t preempted, const CoreState& core) {
+  const Context& top = contexts_.back();
+  if (top.exception == core.exception && top.sp == core.sp && !top.may_be_left) return false;
   settle(preempted);
-  contexts_.push_back({core.exception, core.now, core.now, 0});
+  contexts_.push_back({core.exception, core.now, core.now, 0, core.sp, false});
+  tell_latency(core);
+  return true;
+}
+
+void Watch::tell_latency(const CoreState& core) {
   if (core.exception >= kExceptions) return;
   Nanoseconds& raised_ns = raised_ns_[core.exception];
   if (raised_ns < 0) return;

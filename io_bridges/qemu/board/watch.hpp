@@ -8,6 +8,7 @@
 //   Execution of a call: its time less that of the exceptions that came on top of it
 //   Leaving   the last instruction that could leave a handler is the one that did: known when
 //             anything happens in another context
+//   Loops     a handler that jumps to its own first instruction ("b .") has not been entered again
 //   Left out  tasks switched by an RTOS: execution of a call then includes the other tasks'
 #pragma once
 #include <array>
@@ -34,9 +35,9 @@ class Watch {
 
   void enter_function(std::uint16_t number, const CoreState& core);
   void return_site(std::uint32_t address, const CoreState& core);
-  // `preempted` is the exception number in the stacked xPSR.
-  void enter_exception(std::uint32_t preempted, const CoreState& core);
-  void may_leave_exception(Nanoseconds after) { contexts_.back().left_ns = after; }
+  // `preempted` is the exception number in the stacked xPSR. False: it was not an entry.
+  bool enter_exception(std::uint32_t preempted, const CoreState& core);
+  void may_leave_exception(Nanoseconds after);
 
   void line_changed(std::uint32_t exception, bool level, Nanoseconds now);
   void core_was_reset();
@@ -47,6 +48,8 @@ class Watch {
     std::uint32_t exception = 0;
     Nanoseconds entered_ns = 0, left_ns = 0;
     Nanoseconds preempted_ns = 0;  // by what came on top
+    std::uint32_t sp = 0;          // at entry
+    bool may_be_left = false;
   };
   struct Call {
     std::uint16_t number = 0;
@@ -57,6 +60,7 @@ class Watch {
 
   void settle(std::uint32_t exception);  // drops the contexts that have been left
   void leave_context();
+  void tell_latency(const CoreState& core);
   void finish(std::size_t call, Nanoseconds now);
 
   io::Batch& happened_;

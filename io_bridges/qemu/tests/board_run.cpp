@@ -1,0 +1,85 @@
+#include "io_bridges/qemu/tests/board_run.hpp"
+
+#include <cstdlib>
+
+#include "harness/base/digest.hpp"
+
+namespace whirl::board_test {
+
+std::string image(const std::string& name) {
+  return std::string(WHIRL_IMAGES "/") + name + ".elf";
+}
+
+VirtualBoardOptions options_for(const BoardSetup& setup) {
+  std::string watch;
+  for (const std::string& name : setup.watch) watch += (watch.empty() ? "\"" : ",\"") + name + "\"";
+  VirtualBoardOptions options;
+  options.board_json = R"({"board":"bench","mcu":"bench_m4","image":")" + setup.image +
+                       R"(","gdb_port":)" + std::to_string(setup.gdb_port) + R"(,"watch":[)" +
+                       watch + "]}";
+  options.silence_s = setup.silence_s;
+  return options;
+}
+
+namespace {
+
+void keep(BoardRun& run, Digest& digest, const io::Batch& batch) {
+  digest.add_bytes(batch.bytes().data(), batch.bytes().size());
+  for (io::Reader r(batch.bytes()); r.next();) {
+    run.messages.push_back({r.header(), {r.payload().begin(), r.payload().end()}});
+  }
+}
+
+}  // namespace
+
+BoardRun run_for(const BoardSetup& setup, int milliseconds) {
+  VirtualBoard target(options_for(setup));
+  BoardRun run;
+  Digest digest;
+  const auto started = target.start();
+  if (!started) {
+    run.error = started.error();
+    return run;
+  }
+  io::Batch happened;
+  for (int k = 1; k <= milliseconds && run.state == TargetState::running; ++k) {
+    target.run(k * std::int64_t{1'000'000}, {});
+    const auto state = target.arrive(happened);
+    if (!state) {
+      run.error = state.error();
+      return run;
+    }
+    run.state = state.value();
+    keep(run, digest, happened);
+  }
+  target.stop(happened);
+  keep(run, digest, happened);
+  run.digest = digest.hex();
+  return run;
+}
+
+std::vector<const Message*> BoardRun::of(io::Kind kind) const {
+  std::vector<const Message*> found;
+  for (const Message& message : messages) {
+    if (message.head.kind == kind) found.push_back(&message);
+  }
+  return found;
+}
+
+std::string BoardRun::text_of(const Message& message, std::size_t head) const {
+  if (message.payload.size() < head) return "";
+  return {message.payload.begin() + static_cast<std::ptrdiff_t>(head), message.payload.end()};
+}
+
+std::vector<std::uint32_t> BoardRun::said() const {
+  std::vector<std::uint32_t> values;
+  for (const Message* message : of(io::Kind::finding)) {
+    const std::string text = text_of(*message);
+    const std::size_t at = text.find("says 0x");
+    if (at == std::string::npos) continue;
+    values.push_back(static_cast<std::uint32_t>(std::strtoul(text.c_str() + at + 5, nullptr, 16)));
+  }
+  return values;
+}
+
+}  // namespace whirl::board_test

@@ -1,0 +1,46 @@
+// Runs a test image in QEMU for some virtual milliseconds and keeps what it said.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "harness/target/virtual_board.hpp"
+
+namespace whirl::board_test {
+
+std::string image(const std::string& name);  // its path
+
+struct BoardSetup {
+  std::string image;
+  std::vector<std::string> watch;
+  int gdb_port = 0;
+  int silence_s = 30;
+};
+VirtualBoardOptions options_for(const BoardSetup& setup);
+
+struct Message {
+  io::Header head;
+  std::vector<std::uint8_t> payload;
+  template <typename T>
+  T as() const {
+    T value{};
+    std::memcpy(&value, payload.data(), std::min(payload.size(), sizeof value));
+    return value;
+  }
+};
+
+struct BoardRun {
+  Error error;  // empty `what`: none
+  TargetState state = TargetState::running;
+  std::vector<Message> messages;
+  std::string digest;
+
+  std::vector<const Message*> of(io::Kind kind) const;
+  // What the image said: values written to the bench part's SAY register.
+  std::vector<std::uint32_t> said() const;
+  std::string text_of(const Message& message, std::size_t head = 0) const;
+};
+
+BoardRun run_for(const BoardSetup& setup, int milliseconds);
+
+}  // namespace whirl::board_test

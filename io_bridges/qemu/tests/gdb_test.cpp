@@ -1,0 +1,53 @@
+// gdb on the running image: stops, steps, sees functions; the world's time waits for it.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <thread>
+
+#include "io_bridges/qemu/tests/board_run.hpp"
+
+namespace whirl::board_test {
+namespace {
+
+std::string gdb(int port, const std::string& commands) {
+  const std::string line =
+      "gdb-multiarch -nx -batch -ex 'set pagination off' -ex 'target remote :" +
+      std::to_string(port) + "' " + commands + " " + image("calls") + " 2>&1";
+  FILE* pipe = popen(line.c_str(), "r");
+  std::string text;
+  char chunk[512];
+  while (pipe != nullptr && fgets(chunk, sizeof chunk, pipe) != nullptr) text += chunk;
+  if (pipe != nullptr) pclose(pipe);
+  return text;
+}
+
+TEST(Gdb, StopsInAFunctionWhileTheWorldWaits) {
+  BoardSetup setup{image("calls"), {}};
+  setup.gdb_port = 20000 + static_cast<int>(getpid() % 20000);
+  setup.silence_s = 1;  // must not count under gdb
+  VirtualBoard target(options_for(setup));
+  ASSERT_TRUE(target.start());
+  std::string text;
+  std::thread person([&] {
+    text =
+        gdb(setup.gdb_port,
+            "-ex 'break counted' -ex 'continue' -ex 'shell sleep 2' -ex 'print $pc' -ex 'backtrace'"
+            " -ex 'stepi' -ex 'print $r0' -ex 'delete' -ex 'detach'");
+  });
+  io::Batch happened;
+  bool alive = true;
+  for (int k = 1; k <= 3 && alive; ++k) {
+    target.run(k * std::int64_t{1'000'000}, {});
+    alive = target.arrive(happened).ok();
+  }
+  person.join();
+  EXPECT_TRUE(alive) << target.output();
+  EXPECT_NE(text.find("Breakpoint 1, counted"), std::string::npos) << text;
+  EXPECT_NE(text.find("main () at"), std::string::npos) << text;
+  EXPECT_NE(text.find("= 100"), std::string::npos) << text;
+  target.stop(happened);
+}
+
+}  // namespace
+}  // namespace whirl::board_test
