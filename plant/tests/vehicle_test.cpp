@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "harness/base/near.hpp"
+#include "plant/observe.hpp"
 #include "plant/tests/quadratic_rotor.hpp"
 
 namespace whirl::plant {
@@ -187,6 +188,19 @@ TEST(Vehicle, SameSeedSameBits) {
   };
   EXPECT_EQ(end_of(1), end_of(1));
   EXPECT_NE(end_of(1), end_of(2));
+}
+
+TEST(Vehicle, SensorsSeeItsStateAndFeelTheWind) {
+  Vehicle v = hovering();
+  all(v, 0.3);
+  v.set_steady_wind({0.0, 3.0, 0.0});
+  v.step(kStep_s);
+  const Truth truth = observe(v.state());
+  EXPECT_TRUE(near(truth.v_AB_B_mps.y(), -3.0, stated(0.01, "hardly moved yet")));
+  EXPECT_EQ(truth.thrust_N[2], v.state().motors[2].thrust_N);
+  EXPECT_LT(truth.static_pressure_Pa, 101325.0 - 55.0);  // 5 m up
+  EXPECT_EQ(imu_motion(v.state()).specific_force_B_mps2, v.state().specific_force_B_mps2);
+  EXPECT_EQ(imu_motion(v.state()).rotor_speed_radps[3], v.state().motors[3].speed_radps);
 }
 
 TEST(VehicleParams, SayWhichBoundIsBroken) {
