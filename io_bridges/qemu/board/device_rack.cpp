@@ -8,6 +8,7 @@
 #include "io_bridges/devices/esc_i2c.hpp"
 #include "io_bridges/devices/mavlink_link.hpp"
 #include "io_bridges/devices/mpu6000.hpp"
+#include "io_bridges/devices/serial_port.hpp"
 #include "io_bridges/devices/wire_faults.hpp"
 #include "io_bridges/qemu/board/inertial_sensor.hpp"
 
@@ -82,6 +83,9 @@ struct DeviceRack::Parts {
   Result<Done> add_mpu6000(const DeviceConfig& device, int number);
   Result<Done> add_esc(const DeviceConfig& device);
   Result<Done> add_radio(const DeviceConfig& device);
+  Result<Done> add_serial(const DeviceConfig& device);
+  Result<Done> add_volts(const DeviceConfig& device);
+  Result<Done> add_jumper(const DeviceConfig& device);
   io::I2cBus* i2c(int number);
   io::SpiBus* spi(int number);
   io::Wire* pin(const std::string& name) { return name.empty() ? nullptr : site.chip.pin(name); }
@@ -101,6 +105,7 @@ struct DeviceRack::Parts {
   std::vector<std::unique_ptr<io::Mpu6000>> mpus;
   std::map<int, std::unique_ptr<io::EscI2c>> escs;         // by motor
   std::map<int, std::unique_ptr<io::MavlinkLink>> radios;  // by UART
+  std::map<int, std::unique_ptr<io::SerialPort>> serials;  // by UART
 };
 
 DeviceRack::DeviceRack(Site site) : parts_(std::make_unique<Parts>(std::move(site))) {
@@ -126,7 +131,11 @@ Result<Done> DeviceRack::Parts::add(const DeviceConfig& device, int number) {
   if (device.type == "mpu6000") return add_mpu6000(device, number);
   if (device.type == "esc_i2c") return add_esc(device);
   if (device.type == "mavlink_link") return add_radio(device);
-  return wrong(device, "unknown type '" + device.type + "'; use mpu6000, esc_i2c or mavlink_link");
+  if (device.type == "serial") return add_serial(device);
+  if (device.type == "volts") return add_volts(device);
+  if (device.type == "jumper") return add_jumper(device);
+  return wrong(device, "unknown type '" + device.type +
+                           "'; use mpu6000, esc_i2c, mavlink_link, serial, volts or jumper");
 }
 
 io::I2cBus* DeviceRack::Parts::i2c(int number) {
@@ -244,6 +253,46 @@ Result<Done> DeviceRack::Parts::add_radio(const DeviceConfig& device) {
   return Done{};
 }
 
+Result<Done> DeviceRack::Parts::add_serial(const DeviceConfig& device) {
+  const BusName name = split(device.bus);
+  if (device.baud <= 0.0) return wrong(device, "needs a baud rate");
+  auto serial =
+      std::make_unique<io::SerialPort>(site.events, device.name, device.baud, site.finding);
+  serial->on_message([this, name](std::span<const std::uint8_t> bytes, io::Nanoseconds t_ns) {
+    site.happened.add(Kind::uart_received, port(name.number), t_ns, bytes.data(),
+                      static_cast<std::uint32_t>(bytes.size()));
+  });
+  uart_faults.push_back(
+      std::make_unique<io::UartWireFaults>(site.events, faults, *serial, name.number, site.seed));
+  if ((name.kind != "usart" && name.kind != "uart") || radios.count(name.number) != 0 ||
+      serials.count(name.number) != 0 || !site.chip.join_uart(name.number, *uart_faults.back())) {
+    return wrong(device, "the part has no bus '" + device.bus + "' for it");
+  }
+  serials[name.number] = std::move(serial);
+  return Done{};
+}
+
+Result<Done> DeviceRack::Parts::add_volts(const DeviceConfig& device) {
+  const auto volts = device.params.find("volts");
+  if (volts == device.params.end()) return wrong(device, "needs params.volts");
+  const double level_V = volts->second;
+  if (!site.chip.set_analog(device.bus, [level_V](io::Nanoseconds) { return level_V; })) {
+    return wrong(device, "the part has no analog pin '" + device.bus + "'");
+  }
+  return Done{};
+}
+
+Result<Done> DeviceRack::Parts::add_jumper(const DeviceConfig& device) {
+  io::Wire* from = pin(device.cs);
+  io::Wire* to = pin(device.interrupt);
+  if (from == nullptr || to == nullptr) return wrong(device, "the part lacks one of its two pins");
+  const int driver = to->add_driver();
+  from->watch([to, driver](bool level, io::Nanoseconds now) {
+    to->drive(driver, level ? io::Drive::high : io::Drive::low, now);
+  });
+  return Done{};
+}
+
 bool DeviceRack::take(const io::Reader& message) {
   const io::Header& head = message.header();
   switch (head.kind) {
@@ -262,6 +311,10 @@ bool DeviceRack::take(const io::Reader& message) {
     case Kind::uart_frame: {
       const auto radio = parts_->radios.find(head.port);
       if (radio != parts_->radios.end()) radio->second->send_frame(message.payload(), head.t_ns);
+      const auto serial = parts_->serials.find(head.port);
+      if (serial != parts_->serials.end()) {
+        serial->second->send_bytes(message.payload(), head.t_ns);
+      }
       return true;
     }
     case Kind::fault: {

@@ -3,9 +3,12 @@
 //
 //   Numbers   a device's number is its place in the description's list; motors and UARTs have theirs
 //   Types     mpu6000 (bus spiN, cs, int), esc_i2c (bus i2cN, address, motor), mavlink_link
-//             (bus usartN or uartN, baud)
+//             (bus usartN or uartN, baud), serial (bus, baud: text lines and bytes as messages),
+//             volts (bus: an analog pin; params volts), jumper (cs: the pin it copies, int: the pin
+//             it drives)
 //   Logs      every I2C transaction; every SPI transaction with its first 16 pairs of bytes (MOSI,
-//             MISO); data-ready edges; set-points; frames down the radio
+//             MISO); data-ready edges; set-points; frames down the radio and
+//             lines from a serial port
 //   Errors    bad_input: unknown type, a bus or pin that the part does not have, a missing key
 #pragma once
 #include <memory>
