@@ -1,7 +1,7 @@
 // The thesis's propeller as a description; the same numbers as test_plans/propellers/hk_10x4.5.lua.
 //
 //   Source  no drawing of this blade is published. Planform and twist are those of the measured APC
-//           9x4.7 slow flyer [UiucProp], chord x 0.77 and angle + 1.2 deg + 6 deg (r/R - 0.7), set
+//           9x4.7 slow flyer [UiucProp], chord x 0.78 and angle + 0.95 deg + 6 deg (r/R - 0.7), set
 //           so that three things are met at once: the static thrust of [Bangura2017, 3.5], a
 //           figure of merit near the 0.68 to 0.71 that its bus current means, and the loss of
 //           thrust with inflow that measured slow flyers show. Sections E63 to NACA 4412; the

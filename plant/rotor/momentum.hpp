@@ -7,7 +7,8 @@
 //            smooth curve through the measured induced velocities of a rotor in vertical descent.
 //            Odd in u and rising: one root for a given thrust, whatever the state.
 //   Source   [Glauert], [Leishman, eq. 2.96]: u/vh = 1 - 1.125 x - 1.372 x^2 - 1.718 x^3 - 0.655 x^4
-//   Error    f against that quartic under 7 % of u (the flight and tunnel data behind it scatter by 15 %) (tests/momentum_test.cpp)
+//   Error    u against that quartic within 4 %; the data behind it scatter by 15 %
+//            (validation/momentum_limits.cpp)
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -23,7 +24,8 @@ inline double mass_flow_shape(double xi) {
   const double z = xi + 1.0;
   const double z2 = z * z;
   const double q = 1.0 - z2;
-  return 0.28 + 0.94 * z2 - 0.22 * z2 * z2 - (0.4 * z + 0.2 * z2) * q * q;
+  const double bump = -z * (0.4522 + z * (0.3873 + z * (0.0926 - 0.1230 * z)));
+  return 0.3107 + 0.8786 * z2 - 0.1893 * z2 * z2 + bump * q * q;
 }
 
 inline double mass_flow_mps(double u, double V, double Vxy) {

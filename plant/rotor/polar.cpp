@@ -12,6 +12,7 @@ constexpr double kPi = 3.14159265358979323846;
 constexpr double kDeg = kPi / 180.0;
 constexpr double kDrag_at_90 = 1.11 + 0.018 * 8.0;  // slow-fly blades: aspect ratio near 8
 constexpr double kSkin_friction = 0.02;
+constexpr double kLift_below = 0.1;  // power of Re below the lowest curve
 
 // A separated plate; Viterna's continuation turns into it at 90 deg.
 SectionCoefficients plate(double alpha) {
@@ -63,9 +64,12 @@ SectionCoefficients PolarFamily::at(double alpha_rad, double reynolds) const {
   if (above == curves_.begin() || above == curves_.end()) {
     const PolarCurve& edge = above == curves_.begin() ? curves_.front() : curves_.back();
     SectionCoefficients c = on_curve(edge, alpha);
-    if (above == curves_.end()) {
+    const double ratio = re / edge.reynolds;
+    if (above == curves_.begin()) {
+      c.cl *= std::pow(ratio, kLift_below);
+    } else {
       // Only the friction share falls on; separated drag does not ask for the Reynolds number.
-      c.cd += std::min(c.cd, 0.05) * (std::pow(re / edge.reynolds, -0.2) - 1.0);
+      c.cd += std::min(c.cd, 0.05) * (std::pow(ratio, -0.2) - 1.0);
     }
     return c;
   }

@@ -3,9 +3,9 @@
 //   In       curves as measured or computed, one per Reynolds number, about stall to stall
 //   Out      section_coefficients(alpha, Re) for any alpha on the full circle, any Re > 0
 //   Valid    inside the given curves: linear between rows, linear in log Re between curves. Beyond
-//            stall the curve runs into a flat plate of the blade's aspect ratio within about 10 deg;
-//            the lowest Re is held, above the highest friction falls as Re^-1/5. Tunnel curves at
-//            the lowest Re are the pessimistic end: a blade's flow is rotating and rarely so quiet.
+//            stall the curve runs into a flat plate of the blade's aspect ratio (Viterna). Below
+//            the lowest Re drag is held and lift falls as Re^0.1 (computed sections lose between
+//            Re^0.1 and Re^0.4 from 60k to 30k); above the highest friction falls as Re^-1/5.
 //   Source   plate: [Hoerner]; drag at 90 deg 1.11 + 0.018 AR [Viterna]
 //   Left out pitching moment (blades are stiff in torsion), hysteresis at stall, compressibility.
 #pragma once

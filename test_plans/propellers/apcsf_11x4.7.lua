@@ -8,7 +8,7 @@ return {
   blades = 2,
   diameter = "11 in",
   mass = "14 g",
-  tip_twist_correction = "3.6 deg",
+  tip_twist_correction = "3.9 deg",
   polars = { { r = 0.2, file = "bw3.polar" }, { r = 0.6, file = "naca6409.polar" }, { r = 1.0, file = "naca4412.polar" } },
   stations = {
     { r = 0.15, c = 0.112, beta = 19.64 },

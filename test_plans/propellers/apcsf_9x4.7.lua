@@ -8,7 +8,7 @@ return {
   blades = 2,
   diameter = "9 in",
   mass = "8.5 g",
-  tip_twist_correction = "1.8 deg",
+  tip_twist_correction = "2.1 deg",
   polars = { { r = 0.2, file = "bw3.polar" }, { r = 0.6, file = "naca6409.polar" }, { r = 1.0, file = "naca4412.polar" } },
   stations = {
     { r = 0.15, c = 0.127, beta = 27.54 },

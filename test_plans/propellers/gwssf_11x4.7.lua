@@ -8,7 +8,7 @@ return {
   blades = 2,
   diameter = "11 in",
   mass = "9 g",
-  tip_twist_correction = "0.7 deg",
+  tip_twist_correction = "0.8 deg",
   polars = { { r = 0.2, file = "bw3.polar" }, { r = 0.9, file = "e63.polar" } },
   stations = {
     { r = 0.15, c = 0.103, beta = 17.31 },

@@ -8,7 +8,7 @@ return {
   blades = 2,
   diameter = "9 in",
   mass = "6 g",
-  tip_twist_correction = "-0.4 deg",
+  tip_twist_correction = "-0.3 deg",
   polars = { { r = 0.2, file = "bw3.polar" }, { r = 0.9, file = "e63.polar" } },
   stations = {
     { r = 0.15, c = 0.086, beta = 31.66 },

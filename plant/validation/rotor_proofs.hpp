@@ -1,0 +1,10 @@
+// Every proof of the rotor, ready to be printed and drawn.
+#pragma once
+#include "plant/validation/measured_propellers.hpp"
+
+namespace whirl::plant {
+
+// `read` answers with the text of a file under plant/data. Takes about five seconds.
+std::vector<Proof> rotor_proofs(const ReadData& read);
+
+}  // namespace whirl::plant
