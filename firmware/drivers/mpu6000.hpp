@@ -107,6 +107,7 @@ class Mpu6000 {
   }};
   static constexpr std::uint8_t kExpectedId = 0x68;
   static constexpr std::uint8_t kRead = 0x80;
+  static constexpr std::uint32_t kCheckEvery = 10;  // all nine settings in 90 ms
   static constexpr unsigned kPowerUp_ms = 30, kSettle_ms = 100;
 
   Status read_register(Address address) {
@@ -144,7 +145,7 @@ class Mpu6000 {
   unsigned wait_ms_ = 0;
   unsigned next_ = 0;
   std::uint8_t answer_ = 0;
-  std::uint32_t reconfigured_ = 0;
+  std::uint32_t reconfigured_ = 0, samples_ = 0;
   std::uint32_t started_us_ = 0, burst_time_us_ = 0;
   ImuBurst burst_;
 };

@@ -126,7 +126,7 @@ TEST(Mpu6000Driver, NoticesALostSettingInFlightAndRestoresIt) {
   for (int i = 0; i < 100; ++i) sample(imu, spi);
   EXPECT_EQ(imu.reconfigured(), 0u);
   spi.registers[0x1B] = 0x00;
-  for (int i = 0; i < 10; ++i) sample(imu, spi);  // nine settings, one a tick
+  for (int i = 0; i < 90; ++i) sample(imu, spi);  // nine settings, one every tenth sample
   EXPECT_EQ(imu.reconfigured(), 1u);
   EXPECT_FALSE(imu.running());
   EXPECT_LT(ticks_until_running(imu, spi, 400), 30);  // no reset: back within 30 ms
