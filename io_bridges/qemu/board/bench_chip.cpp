@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "harness/base/digest.hpp"
+#include "io_bridges/qemu/stm32/dwt.hpp"
 
 namespace whirl::board {
 namespace {
@@ -118,10 +119,20 @@ class BenchBlock final : public stm32::Peripheral {
 class BenchChip final : public stm32::ChipModel {
  public:
   explicit BenchChip(const stm32::ChipHost& host)
-      : block_(host), regions_{{0x40000000, 0x400, &block_}} {}
+      : chip_{host.events, host.interrupts, host.memory, clocks_, host.finding},
+        block_(host),
+        dwt_(chip_),
+        debug_core_(dwt_),
+        regions_{{0x40000000, 0x400, &block_},
+                 {0xE0001000, 0x1000, &dwt_},
+                 {0xE000EDF0, 0x10, &debug_core_}} {}
 
   const std::vector<stm32::Region>& regions() const override { return regions_; }
-  void reset(stm32::ResetCause cause) override { block_.was_reset(cause); }
+  void reset(stm32::ResetCause cause) override {
+    block_.was_reset(cause);
+    dwt_.reset();
+    debug_core_.reset();
+  }
   void on_reset_request(std::function<void(stm32::ResetCause)> request) override {
     block_.on_reset_request(std::move(request));
   }
@@ -140,7 +151,10 @@ class BenchChip final : public stm32::ChipModel {
 
  private:
   FixedClocks clocks_;
+  stm32::Chip chip_;
   BenchBlock block_;
+  stm32::Dwt dwt_;
+  stm32::DebugCore debug_core_;
   std::vector<stm32::Region> regions_;
 };
 
