@@ -3,7 +3,6 @@
 #include <cstdio>
 
 #include "harness/base/digest.hpp"
-#include "io_bridges/qemu/stm32/dwt.hpp"
 
 namespace whirl::board {
 namespace {
@@ -119,20 +118,10 @@ class BenchBlock final : public stm32::Peripheral {
 class BenchChip final : public stm32::ChipModel {
  public:
   explicit BenchChip(const stm32::ChipHost& host)
-      : chip_{host.events, host.interrupts, host.memory, clocks_, host.finding},
-        block_(host),
-        dwt_(chip_),
-        debug_core_(dwt_),
-        regions_{{0x40000000, 0x400, &block_},
-                 {0xE0001000, 0x1000, &dwt_},
-                 {0xE000EDF0, 0x10, &debug_core_}} {}
+      : block_(host), regions_{{0x40000000, 0x400, &block_}} {}
 
   const std::vector<stm32::Region>& regions() const override { return regions_; }
-  void reset(stm32::ResetCause cause) override {
-    block_.was_reset(cause);
-    dwt_.reset();
-    debug_core_.reset();
-  }
+  void reset(stm32::ResetCause cause) override { block_.was_reset(cause); }
   void on_reset_request(std::function<void(stm32::ResetCause)> request) override {
     block_.on_reset_request(std::move(request));
   }
@@ -151,10 +140,7 @@ class BenchChip final : public stm32::ChipModel {
 
  private:
   FixedClocks clocks_;
-  stm32::Chip chip_;
   BenchBlock block_;
-  stm32::Dwt dwt_;
-  stm32::DebugCore debug_core_;
   std::vector<stm32::Region> regions_;
 };
 

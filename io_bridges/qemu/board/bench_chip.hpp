@@ -1,7 +1,6 @@
 // A part that does not exist, for tests of the virtual board itself: a core with memories and one
 // register block at 0x40000000 (IRQ 31), whose every access has an exact time.
 //
-//   and the cycle counter. Offsets:
 //   0x00 TIME   r   virtual nanoseconds, low word           0x04 TIMEH r  high word
 //   0x08 TIMER  w   interrupt after so many ns (0: stop)    0x0C EVERY w  and then every so many ns
 //   0x10 ACK    w   lowers the line                          0x14 DIGEST rw  each write: folds the

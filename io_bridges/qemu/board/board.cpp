@@ -55,6 +55,7 @@ Board::Board(Setup setup, io::Channel channel, Emulator& emulator)
                  watch_.line_changed(kSysTickException, true, events_.now());
                  emulator_.pend_systick();
                }),
+      cycle_counter_(events_, chip_->clocks()),
       unanswered_(
           kPeripherals, [this] { return emulator_.accessing_pc(); },
           [this] { return events_.now(); },
@@ -81,11 +82,9 @@ stm32::Region Board::unanswered_region() {
 }
 
 std::vector<stm32::Region> Board::core_regions() {
-  return {{0xE0000000, kPage, &itm_},
-          {0xE0002000, kPage, &flash_patch_},
-          {0xE0040000, kPage, &tpiu_},
-          {0xE0041000, kPage, &etm_},
-          {0xE0042000, kPage, &debug_mcu_}};
+  return {{0xE0000000, kPage, &itm_},         {0xE0001000, kPage, &cycle_counter_},
+          {0xE0002000, kPage, &flash_patch_}, {0xE0040000, kPage, &tpiu_},
+          {0xE0041000, kPage, &etm_},         {0xE0042000, kPage, &debug_mcu_}};
 }
 
 std::vector<std::uint8_t> Board::system_rom() const {
@@ -103,6 +102,7 @@ std::vector<std::uint8_t> Board::system_rom() const {
 void Board::power_on(const std::string& versions) {
   chip_->reset(stm32::ResetCause::power_on);
   systick_.reset();
+  cycle_counter_.reset();
   channel_.set_hello(versions);
   boundary_.at(0);
   channel_.set_state(io::BoardState::running);
@@ -209,6 +209,7 @@ void Board::core_was_reset(stm32::ResetCause cause) {
   watch_.core_was_reset();
   chip_->reset(cause);
   systick_.reset();
+  cycle_counter_.reset();
 }
 
 io::CpuFault Board::fault_registers(const Registers& registers) {

@@ -48,8 +48,9 @@ class Board final : stm32::InterruptLines, stm32::SystemBus, stm32::FlashArray {
   // For the plug-in to map: the part's blocks, the rest of the peripheral space, the core's own.
   const std::vector<stm32::Region>& regions() const { return chip_->regions(); }
   stm32::Region unanswered_region();
-  std::vector<stm32::Region> core_regions();  // beside regions() in 0xE0000000..
+  std::vector<stm32::Region> core_regions();  // in 0xE0000000.., outside the SCS
   SysTick& systick() { return systick_; }
+  CycleCounter& cycle_counter() { return cycle_counter_; }
   std::vector<std::uint8_t> system_rom() const;
   bool flash_store(std::uint32_t address, unsigned size, std::uint32_t value) {
     return chip_->flash_store(address, size, value);
@@ -98,6 +99,7 @@ class Board final : stm32::InterruptLines, stm32::SystemBus, stm32::FlashArray {
   std::unique_ptr<stm32::ChipModel> chip_;
   DeviceRack devices_;
   SysTick systick_;
+  CycleCounter cycle_counter_;
   Unanswered unanswered_;
   StoredWords itm_, flash_patch_, tpiu_, etm_, debug_mcu_;
   io::Event boundary_;

@@ -8,6 +8,8 @@ namespace {
 constexpr std::uint32_t kCsr = 0x0, kRvr = 0x4, kCvr = 0x8, kCalib = 0xC;
 constexpr std::uint32_t kEnable = 1u << 0, kTickInt = 1u << 1, kClkSource = 1u << 2,
                         kCountFlag = 1u << 16;
+constexpr std::uint32_t kDwtCtrl = 0x0, kDwtCyccnt = 0x4;
+constexpr std::uint32_t kFourComparators = 4u << 28;
 
 }  // namespace
 
@@ -102,6 +104,54 @@ void SysTick::write(std::uint32_t offset, std::uint32_t value, unsigned /*size*/
     } else if (!was_running || new_clock) {
       start_from(old);
     }
+  }
+}
+
+CycleCounter::CycleCounter(io::EventQueue& events, const stm32::Clocks& clocks)
+    : events_(events), clocks_(clocks) {}
+
+void CycleCounter::reset() {
+  control_ = 0;
+  trace_ = false;
+  rebase(0);
+}
+
+std::uint32_t CycleCounter::count() const {
+  if (!counting()) return base_;
+  const double cycles = static_cast<double>(events_.now() - base_ns_) * 1e-9 * base_Hz_;
+  return base_ + static_cast<std::uint32_t>(static_cast<std::uint64_t>(cycles));
+}
+
+void CycleCounter::rebase(std::uint32_t value) {
+  base_ = value;
+  base_ns_ = events_.now();
+  base_Hz_ = clocks_.hclk_Hz();
+}
+
+void CycleCounter::follow_clock() {
+  if (clocks_.hclk_Hz() != base_Hz_) rebase(count());
+}
+
+void CycleCounter::set_trace_enabled(bool on) {
+  const std::uint32_t value = count();
+  trace_ = on;
+  rebase(value);
+}
+
+std::uint32_t CycleCounter::read(std::uint32_t offset, unsigned /*size*/) {
+  follow_clock();
+  if (offset == kDwtCtrl) return kFourComparators | control_;
+  return offset == kDwtCyccnt ? count() : 0;
+}
+
+void CycleCounter::write(std::uint32_t offset, std::uint32_t value, unsigned /*size*/) {
+  follow_clock();
+  if (offset == kDwtCtrl) {
+    const std::uint32_t kept = count();
+    control_ = value & 0x0FFFFFFFu;
+    rebase(kept);
+  } else if (offset == kDwtCyccnt) {
+    rebase(value);
   }
 }
 

@@ -1,9 +1,10 @@
-// Blocks of the core that QEMU lacks or models coarsely: SysTick on the part's own clock tree, and
-// words that a debugger's tools write. (The cycle counter is the part's: stm32/dwt.hpp.)
+// Blocks of the core that QEMU lacks or models coarsely: SysTick on the part's own clock tree, the
+// cycle counter, the debug identity.
 //
-//   Source    ARMv7-M ARM B3.3 SysTick; RM0090 38.16 DBGMCU
+//   Source    ARMv7-M ARM: B3.3 SysTick, C1.8 DWT; RM0090 38.16 DBGMCU
 //   SysTick   wraps at exact multiples of (RVR + 1) / f from its start: no drift by rounding
-//   Left out  FPB, ITM and TPIU: output is swallowed
+//   CYCCNT    counts HCLK cycles of virtual time: it shows time, not QEMU's instruction count
+//   Left out  DWT comparators and profiling counters (read 0), FPB, ITM and TPIU output (swallowed)
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -42,6 +43,31 @@ class SysTick final : public stm32::Peripheral {
   double to_first_wrap_ = 0.0;  // ticks from the anchor to the first wrap
   std::int64_t wraps_ = 0;      // since the anchor
   double anchor_Hz_ = 0.0;
+};
+
+class CycleCounter final : public stm32::Peripheral {
+ public:
+  CycleCounter(io::EventQueue& events, const stm32::Clocks& clocks);
+
+  const char* name() const override { return "DWT"; }
+  std::uint32_t read(std::uint32_t offset, unsigned size) override;
+  void write(std::uint32_t offset, std::uint32_t value, unsigned size) override;
+  void reset() override;
+  void set_trace_enabled(bool on);  // DEMCR.TRCENA
+
+ private:
+  bool counting() const { return trace_ && (control_ & 1u) != 0; }
+  std::uint32_t count() const;
+  void rebase(std::uint32_t value);
+  void follow_clock();
+
+  io::EventQueue& events_;
+  const stm32::Clocks& clocks_;
+  bool trace_ = false;
+  std::uint32_t control_ = 0;
+  std::uint32_t base_ = 0;
+  Nanoseconds base_ns_ = 0;
+  double base_Hz_ = 0.0;
 };
 
 // A few words with fixed or remembered values; other offsets read 0.

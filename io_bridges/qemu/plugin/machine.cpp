@@ -16,8 +16,6 @@ namespace {
 
 // Over the machine (0), under nothing: gaps first, then blocks.
 constexpr int kGaps = 5, kBlocks = 10, kMemories = 10;
-constexpr std::uint32_t kCorePeripherals = 0xE0000000, kSystemControl = 0xE000E000,
-                        kSystemControl_size = 0x1000;
 constexpr int kInterrupts = 82;  // of the F405; the machine wires 96
 constexpr int kSysTickException = 15;
 constexpr int kCoreRegisters = 16;
@@ -189,15 +187,7 @@ void Machine::map_memories() {
   }
 
   map_block(system, board_.unanswered_region(), kGaps);
-  for (const stm32::Region& block : board_.regions()) {
-    if (block.base < kCorePeripherals) {
-      map_block(system, block, kBlocks);
-    } else if (block.base - kSystemControl < kSystemControl_size) {
-      system_control_->add(block);
-    } else {
-      map_block(core_memory_, block, kBlocks);
-    }
-  }
+  for (const stm32::Region& block : board_.regions()) map_block(system, block, kBlocks);
   for (const stm32::Region& block : board_.core_regions()) map_block(core_memory_, block, kBlocks);
   system_control_->map(core_memory_, new_region());
 }

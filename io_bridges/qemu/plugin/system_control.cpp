@@ -8,7 +8,8 @@ namespace {
 constexpr std::uint32_t kSysTick = 0x010, kSysTick_end = 0x020;
 constexpr std::uint32_t kIpr = 0x400, kIpr_end = 0x4F0;
 constexpr std::uint32_t kVtor = 0xD08, kAircr = 0xD0C, kShpr = 0xD18, kShpr_end = 0xD24;
-constexpr std::uint32_t kBase = 0xE000E000;
+constexpr std::uint32_t kDemcr = 0xDFC;
+constexpr std::uint32_t kTrcena = 1u << 24;
 constexpr std::uint32_t kVectKey = 0x05FA, kSysResetReq = 1u << 2;
 constexpr std::uint32_t kStoredZero = 0x0F0F0F0Fu;
 
@@ -49,13 +50,6 @@ std::uint32_t SystemControl::write_hook(void* self, hwaddr offset, std::uint64_t
                                                   attributes);
 }
 
-const stm32::Region* SystemControl::block_at(std::uint32_t offset) const {
-  for (const stm32::Region& block : blocks_) {
-    if (kBase + offset - block.base < block.size) return &block;
-  }
-  return nullptr;
-}
-
 std::uint32_t SystemControl::read(std::uint32_t offset, std::uint64_t& value, unsigned size,
                                   Attributes attributes) {
   accessed_();
@@ -63,8 +57,8 @@ std::uint32_t SystemControl::read(std::uint32_t offset, std::uint64_t& value, un
     value = board_.systick().read(offset - kSysTick, size);
     return kOk;
   }
-  if (const stm32::Region* block = block_at(offset)) {
-    value = block->block->read(kBase + offset - block->base, size);
+  if (offset == kDemcr) {
+    value = demcr_;
     return kOk;
   }
   const std::uint32_t result =
@@ -80,8 +74,9 @@ std::uint32_t SystemControl::write(std::uint32_t offset, std::uint64_t value, un
     board_.systick().write(offset - kSysTick, static_cast<std::uint32_t>(value), size);
     return kOk;
   }
-  if (const stm32::Region* block = block_at(offset)) {
-    block->block->write(kBase + offset - block->base, static_cast<std::uint32_t>(value), size);
+  if (offset == kDemcr) {
+    demcr_ = static_cast<std::uint32_t>(value);
+    board_.cycle_counter().set_trace_enabled((demcr_ & kTrcena) != 0);
     return kOk;
   }
   if (offset == kAircr && size == 4 && (value >> 16) == kVectKey && (value & kSysResetReq) != 0) {
@@ -109,6 +104,7 @@ void SystemControl::core_was_reset() {
   };
   clear(kIpr, kIpr_end);
   clear(kShpr, kShpr_end);
+  demcr_ = 0;
   vector_table_ = word(kVtor);
 }
 

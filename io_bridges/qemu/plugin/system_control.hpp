@@ -2,8 +2,7 @@
 //
 // The System Control Space (0xE000E000, 4 KiB) as the part has it, in front of QEMU's NVIC.
 //
-//   Here       SysTick (the board's own), blocks of the part in this page (DEMCR), four priority
-//              bits, SYSRESETREQ
+//   Here       SysTick (the board's own), DEMCR, four priority bits, SYSRESETREQ
 //   Passed on  everything else, to QEMU's nvic_sysregs
 //   Priority   the part stores the upper four bits. Stored with the lower ones set, a mask in
 //              BASEPRI acts as on the part whether or not its own lower bits are set; reads mask
@@ -11,7 +10,6 @@
 #pragma once
 #include <cstdint>
 #include <functional>
-#include <vector>
 
 #include "io_bridges/qemu/board/board.hpp"
 #include "io_bridges/qemu/plugin/qemu_api.hpp"
@@ -24,7 +22,6 @@ class SystemControl {
                 std::function<void()> reset_request, std::function<void()> accessed);
 
   void map(MemoryRegion* parent, MemoryRegion& region);
-  void add(const stm32::Region& block) { blocks_.push_back(block); }
   void core_was_reset();  // priorities back to the stored form of 0
 
   std::uint32_t vector_table() const { return vector_table_; }
@@ -36,13 +33,11 @@ class SystemControl {
   std::uint32_t read(std::uint32_t offset, std::uint64_t& value, unsigned size, Attributes);
   std::uint32_t write(std::uint32_t offset, std::uint64_t value, unsigned size, Attributes);
 
-  const stm32::Region* block_at(std::uint32_t offset) const;
-
   const Api& api_;
   board::Board& board_;
   MemoryRegion* nvic_;
   std::function<void()> reset_request_, accessed_;
-  std::vector<stm32::Region> blocks_;  // of the part, in this page
+  std::uint32_t demcr_ = 0;
   std::uint32_t vector_table_ = 0;
 };
 
