@@ -1,5 +1,6 @@
 // The function blocks of STM32F103 of medium density at their places (RM0008 table 3).
 #include "io_bridges/qemu/stm32/crc.hpp"
+#include "io_bridges/qemu/stm32/dwt.hpp"
 #include "io_bridges/qemu/stm32/function_block_set.hpp"
 #include "io_bridges/qemu/stm32/probe_stub.hpp"
 #include "io_bridges/qemu/stm32/rtc_f1.hpp"
@@ -15,6 +16,8 @@ class F103FunctionBlocks : public FunctionBlockSet {
   F103FunctionBlocks(const Chip& chip, const FunctionBlockHost& host)
       : FunctionBlockSet(chip, host),
         adc_(chip_, adc_config(host)),
+        dwt_(chip_),
+        debug_core_(dwt_),
         rtc_(chip_, kRtcIrq, host.rtcclk_Hz, host.backup_writable, host.exti),
         backup_(host.backup_writable) {
     add_timers();
@@ -22,6 +25,8 @@ class F103FunctionBlocks : public FunctionBlockSet {
     map(0x40012800, 0x400, adc_.converter(2));
     add_request("ADC1", adc_.converter(1).request());  // ADC2 has none
     join_adc();
+    map(0xE0001000, 0x1000, dwt_);
+    map(0xE000EDF0, 0x10, debug_core_);
     add_block(0x40023000, 0x400, std::make_unique<Crc>());
     map(0x40002800, 0x400, rtc_);
     map(0x40006C00, 0x400, backup_);
@@ -55,6 +60,8 @@ class F103FunctionBlocks : public FunctionBlockSet {
   void add_usb();
 
   AdcBank adc_;
+  Dwt dwt_;
+  DebugCore debug_core_;
   RtcF1 rtc_;
   BackupRegisters backup_;
   CanFilters can_filters_{14};

@@ -1,6 +1,7 @@
 // The function blocks of STM32F405 at their places (RM0090 table 1, ITR and trigger tables).
 #include "io_bridges/qemu/stm32/crc.hpp"
 #include "io_bridges/qemu/stm32/dac.hpp"
+#include "io_bridges/qemu/stm32/dwt.hpp"
 #include "io_bridges/qemu/stm32/function_block_set.hpp"
 #include "io_bridges/qemu/stm32/probe_stub.hpp"
 #include "io_bridges/qemu/stm32/rng.hpp"
@@ -40,12 +41,16 @@ class F405FunctionBlocks : public FunctionBlockSet {
       : FunctionBlockSet(chip, host),
         adc_(chip_, adc_config(host)),
         adc_block_(adc_),
+        dwt_(chip_),
+        debug_core_(dwt_),
         dac_(chip_, kTim6DacIrq),
         rtc_(chip_, rtc_host(host)) {
     add_timers();
     map(0x40012000, 0x400, adc_block_);
     add_adc_requests(adc_);
     join_adc();
+    map(0xE0001000, 0x1000, dwt_);
+    map(0xE000EDF0, 0x10, debug_core_);
     add_block(0x40023000, 0x400, std::make_unique<Crc>());
     add_block(0x50060800, 0x400, std::make_unique<Rng>(chip_, kRngIrq, host.seed));
     map(0x40002800, 0x400, rtc_);
@@ -82,6 +87,8 @@ class F405FunctionBlocks : public FunctionBlockSet {
 
   AdcBank adc_;
   AdcF4Block adc_block_;
+  Dwt dwt_;
+  DebugCore debug_core_;
   Dac dac_;
   Rtc rtc_;
   CanFilters can_filters_{28};

@@ -1,5 +1,5 @@
 // The function blocks of a part, wired to each other: timers, converters, RTC, watchdogs, CRC, RNG,
-// DAC, CAN, and blocks that only answer a probe. The chip model (stm32f405,
+// DAC, CAN, the cycle counter, and blocks that only answer a probe. The chip model (stm32f405,
 // stm32f103) adds clocks, pins, DMA and serial ports, and joins both halves by the names below.
 //
 //   Signals   "TIM3_CH2", "TIM1_CH1N", "TIM1_ETR", "TIM1_BKIN", "CAN1_RX", "CAN1_TX"

@@ -1,7 +1,8 @@
-// CRC, watchdogs, RNG, stubs, and the F405's wiring of function blocks.
+// CRC, watchdogs, RNG, cycle counter, stubs, and the F405's wiring of function blocks.
 #include <gtest/gtest.h>
 
 #include "io_bridges/qemu/stm32/crc.hpp"
+#include "io_bridges/qemu/stm32/dwt.hpp"
 #include "io_bridges/qemu/stm32/function_blocks.hpp"
 #include "io_bridges/qemu/stm32/probe_stub.hpp"
 #include "io_bridges/qemu/stm32/rng.hpp"
@@ -111,6 +112,20 @@ TEST(Rng, SameSeedSameWordsAndEachTakesFortyPeriods) {
   }
   for (int i = 0; i < 3; ++i) EXPECT_EQ(first[0][i], first[1][i]);
   EXPECT_NE(first[0][0], first[0][1]);
+}
+
+TEST(Dwt, CountsCoreClocksOnlyWithTraceEnabled) {
+  BareChip bare;
+  Dwt dwt(bare.chip());
+  DebugCore core(dwt);
+  put(dwt, 0x00, 1);
+  bare.run_to(1'000'000);
+  EXPECT_EQ(get(dwt, 0x04), 0u);
+  put(core, 0x0C, 1u << 24);
+  bare.run_to(2'000'000);
+  EXPECT_EQ(get(dwt, 0x04), 168'000u);
+  bare.run_to(28'000'000'000);  // wraps at 2^32
+  EXPECT_EQ(get(dwt, 0x04), static_cast<std::uint32_t>(27'999'000'000LL * 168 / 1000));
 }
 
 TEST(ProbeStub, ReportsEachAddressOnceAndTakesRequestsBack) {
