@@ -71,6 +71,7 @@ Result<Done> write_run(const std::string& folder, Report& report, const TruthLog
   }
   report.host.results_s =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  report.host.total_s += report.host.results_s;  // a run is not over before it is filed
   auto written = write_text(at / "run.json", run_json(report));
   if (written) point_latest(at.parent_path(), at);
   return written;

@@ -77,8 +77,10 @@ int exit_code(const Report& report) {
 int worse_exit_code(int a, int b) {
   constexpr std::array kRank{0, 2, 3, 1,
                              4};  // by code: pass, failed, bad input, inconclusive, internal
-  const auto rank = [&](int code) { return code >= 0 && code <= 4 ? kRank[code] : 4; };
-  return rank(a) >= rank(b) ? a : b;
+  const auto known = [](int code) { return code >= 0 && code <= 4 ? code : 4; };
+  a = known(a);
+  b = known(b);
+  return kRank[static_cast<std::size_t>(a)] >= kRank[static_cast<std::size_t>(b)] ? a : b;
 }
 
 }  // namespace whirl::results

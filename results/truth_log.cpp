@@ -8,8 +8,8 @@ namespace {
 
 void append_number(std::string& line, double x) {
   char text[32];
-  // Nine digits: below what any model here resolves, and the same on every machine.
-  const auto end = std::to_chars(text, text + sizeof text, x, std::chars_format::general, 9).ptr;
+  // Seven digits: below what any model here resolves, and the same on every machine.
+  const auto end = std::to_chars(text, text + sizeof text, x, std::chars_format::general, 7).ptr;
   line.append(text, end);
 }
 
@@ -21,16 +21,20 @@ Result<Done> TruthLog::write_csv(const std::string& path) const {
   for (const Column& column : columns_) {
     line += "," + column.name + (column.unit_suffix.empty() ? "" : "_" + column.unit_suffix);
   }
-  out << line << '\n';
+  line += '\n';
   for (std::size_t row = 0; row < rows(); ++row) {
-    line.clear();
+    if (line.size() > 60'000) {
+      out << line;
+      line.clear();
+    }
     append_number(line, static_cast<double>(row) * static_cast<double>(step_ns_) * 1e-9);
     for (const auto& column : values_) {
       line += ',';
       append_number(line, column[row]);
     }
-    out << line << '\n';
+    line += '\n';
   }
+  out << line;
   if (!out.flush())
     return Error{ErrorKind::internal, path, "cannot be written", "is the disk full?"};
   return Done{};

@@ -46,12 +46,19 @@ std::vector<std::string> plan_files(const RunOptions& options, const std::string
       errors.push_back({ErrorKind::bad_input, path, "no such plan or folder", "see: whirl list"});
     }
   }
+  for (std::string& file : files) file = shown_path(file);
   std::sort(files.begin(), files.end());
   files.erase(std::unique(files.begin(), files.end()), files.end());
   return files;
 }
 
 }  // namespace
+
+std::string shown_path(const std::string& path) {
+  std::error_code status;
+  const std::string near = fs::proximate(path, status).string();
+  return !status && !near.starts_with("..") ? near : path;
+}
 
 FoundPlans find_plans(const RunOptions& options, const std::string& root) {
   FoundPlans found;

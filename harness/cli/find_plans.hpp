@@ -23,4 +23,7 @@ struct FoundPlans {
 };
 FoundPlans find_plans(const RunOptions& options, const std::string& root);
 
+// Relative to where the user stands, when it lies below; so that messages stay short.
+std::string shown_path(const std::string& path);
+
 }  // namespace whirl::cli

@@ -1,7 +1,9 @@
 #include "harness/cli/run_one.hpp"
 
+#include <cstdio>
 #include <filesystem>
 
+#include "harness/cli/versions.hpp"
 #include "results/folder.hpp"
 
 namespace whirl::cli {
@@ -26,6 +28,14 @@ Result<std::string> find_file(const std::string& written, const plan::Plan& plan
                "looked for " + fs::path(tried.front()).lexically_normal().string()};
 }
 
+void announce_gdb(const Setup& setup) {
+  std::fprintf(
+      stderr,
+      "whirl: the board waits for gdb; the world's time stands still while it is stopped:\n"
+      "       gdb-multiarch %s -ex 'target remote localhost:%d'\n",
+      setup.image.c_str(), setup.gdb_port);
+}
+
 Result<RunRecord> run_record(const PlanChoice& choice, const RunOptions& options,
                              const Composition& composition, const ProgressSink& progress) {
   // Loaded anew: no run sees what another left in its Lua.
@@ -40,7 +50,7 @@ Result<RunRecord> run_record(const PlanChoice& choice, const RunOptions& options
   const std::string& root = composition.root;
   const auto board_path = find_file(plan->board, *plan, {root + "/test_plans/boards"}, ".lua");
   if (!board_path) return board_path.error();
-  auto board = read_board(board_path.value());
+  auto board = read_board(shown_path(board_path.value()));
   if (!board) return board.error();
   for (const std::string& function : plan->watch) {
     if (board.value().watch_number(function) < 0) board.value().watch.push_back(function);
@@ -60,7 +70,7 @@ Result<RunRecord> run_record(const PlanChoice& choice, const RunOptions& options
   if (!plan->vehicle.empty()) {
     const auto vehicle = find_file(plan->vehicle, *plan, {root + "/test_plans/vehicles"}, ".lua");
     if (!vehicle) return vehicle.error();
-    setup.vehicle_file = vehicle.value();
+    setup.vehicle_file = shown_path(vehicle.value());
   }
   setup.board_text = board_json(
       board.value(),
@@ -69,8 +79,16 @@ Result<RunRecord> run_record(const PlanChoice& choice, const RunOptions& options
   if (!world) return world.error();
   auto target = composition.target(setup);
   if (!target) return target.error();
-  return execute({*file.value(), *plan, board.value(), *world.value(), *target.value(), setup.seed},
-                 progress);
+  if (options.gdb) announce_gdb(setup);
+  RunRecord record = execute(
+      {*file.value(), *plan, board.value(), *world.value(), *target.value(), setup.seed}, progress);
+  add_files(record.report.versions, {{"image", setup.image},
+                                     {"plan", plan->file},
+                                     {"board", board.value().file},
+                                     {"vehicle", setup.vehicle_file}});
+  add_host(record.report.versions, root);
+  record.board_text = setup.board_text;
+  return record;
 }
 
 // --twice: the second run must cross the boundary with the very same bytes.
@@ -118,6 +136,11 @@ Finished run_one(const PlanChoice& choice, const RunOptions& options,
   const auto written =
       results::write_run(folder.value(), report, record.value().truth, record.value().events);
   if (!written) return {refused(choice, options, written.error()), ""};
+  if (options.keep) {
+    const auto kept =
+        results::write_text(folder.value() + "/board.json", record.value().board_text);
+    if (!kept) return {refused(choice, options, kept.error()), ""};
+  }
   return {std::move(report), folder.value()};
 }
 

@@ -32,6 +32,7 @@ struct RunRecord {
   results::Report report;
   results::TruthLog truth;
   results::EventLog events;
+  std::string board_text = {};  // what the board's process was told
 };
 
 struct Progress {
