@@ -1,0 +1,38 @@
+-- Faults that a sound flight survives without leaving its place: single bits, late answers, short
+-- silences, a sagging supply. What the image must do about lasting ones is in faults.lua.
+local function hover(t)
+  t:within("8 s", function(s) return s.heartbeat_age_s < 1.5 end, "the first heartbeat")
+  t:wait "3 s"
+  t:command { arm = true }
+  t:within("4 s", function(s) return s.told_armed == 1 end, "armed")
+  t:command { takeoff = "1.1 m" }
+  t:within("6 s", function(s) return s.height_m > 1.0 end, "1 m high")
+  t:wait "3 s"
+end
+
+-- The vehicle stays where it was while `fault` acts and for a second more.
+local function unmoved(name, fault, height)
+  plan(name) {
+    image = "flight", board = "px4fmu_v1", vehicle = "hp_quad",
+    tags = { "flight", "faults" }, timeout = "60 s",
+    run = function(t)
+      hover(t)
+      local record = t:record({ "height", "offset", "tilt" }, "2 s", function() t:fault(fault) end)
+      t:expect(record:max "height", name .. ": highest"):at_most(height.most)
+      t:expect(record:min "height", name .. ": lowest"):at_least(height.least)
+      t:expect(record:max "tilt", name .. ": tilt"):at_most "10 deg"
+      t:expect(record:max "offset", name .. ": sideways"):at_most "20 cm"
+    end,
+  }
+end
+
+local still = { most = "1.2 m", least = "1.0 m" }
+unmoved("an ESC that hears nothing for 100 ms",
+        { kind = "i2c_silence", device = "esc3", duration = "100 ms" }, still)
+unmoved("set-points with a flipped bit for 100 ms are refused by their CRC",
+        { kind = "i2c_flip_bit", device = "esc1", duration = "100 ms", value = 3 }, still)
+unmoved("an ESC that stretches the clock by 200 us",
+        { kind = "i2c_late", device = "esc4", duration = "1 s", value = "200 us" }, still)
+unmoved("SCL held low for 50 ms", { kind = "i2c_stuck_scl", bus = "i2c3", duration = "50 ms" }, still)
+unmoved("the supply dips by 3 V for half a second",
+        { kind = "supply_dip", duration = "500 ms", value = "3 V" }, { most = "1.2 m", least = "0.9 m" })
