@@ -1,5 +1,5 @@
 # Clocks, pins, DMA and serial ports, and the whole parts.
-whirl_library(whirl_stm32 SOURCES rcc.cpp pwr.cpp flash_f4.cpp pins.cpp gpio.cpp exti.cpp dma.cpp
+whirl_library(whirl_stm32 SOURCES rcc.cpp rcc_f4.cpp rcc_f1.cpp pwr.cpp flash_f4.cpp pins.cpp gpio_f4.cpp gpio_f1.cpp flash_f1.cpp dma_f1.cpp exti.cpp dma.cpp
               dma_bus.cpp spi.cpp usart.cpp uart_sampling.cpp i2c.cpp i2c_master.cpp i2c_slave.cpp
               f405_tables.cpp stm32f405.cpp
               LINK whirl_devices whirl_stm32_b)

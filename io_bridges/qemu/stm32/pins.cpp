@@ -14,7 +14,7 @@ void Pin::attach(io::Wire& wire) {
   wire.watch([this, at = &wire](bool level, Nanoseconds now) {
     if (at != wire_) return;  // left behind when the pin joined another net
     for (Signal* signal : setting_.signals) {
-      if (signal != nullptr && setting_.mode == PinMode::alternate) signal->sense(level, now);
+      if (signal != nullptr) signal->sense(level, now);
     }
     watcher_(level, now);
   });
@@ -64,10 +64,9 @@ void Pin::set(const PinSetting& setting, Nanoseconds now) {
   const PinSetting before = setting_;
   setting_ = setting;
   for (Signal* signal : before.signals) {
-    if (signal != nullptr && before.mode == PinMode::alternate) signal->route(-1);
+    if (signal != nullptr) signal->route(-1);
   }
   drive(now);
-  if (setting.mode != PinMode::alternate) return;
   for (Signal* signal : setting.signals) {
     if (signal == nullptr) continue;
     signal->route(+1);
@@ -106,9 +105,8 @@ Signal* PinBank::find_signal(const std::string& name) {
 void PinBank::connect(Pin& pin, Signal& signal) {
   signal.add_outlet([&pin, &signal](Drive, Nanoseconds now) {
     const PinSetting& s = pin.setting();
-    if (s.mode == PinMode::alternate && (s.signals[0] == &signal || s.signals[1] == &signal)) {
-      pin.drive(now);
-    }
+    const bool carried = std::find(s.signals.begin(), s.signals.end(), &signal) != s.signals.end();
+    if (s.mode == PinMode::alternate && carried) pin.drive(now);
   });
 }
 

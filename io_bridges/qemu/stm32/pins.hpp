@@ -3,6 +3,8 @@
 //   Pin      one driver on its wire; GPIO tells it mode, output type, pull and which signals its
 //            alternate function selects. The wire may be replaced by the net of a bus (I2C): a pin
 //            that is muxed to a signal with a net joins that net for good, as if soldered to it
+//   Input    signals hear the pin in whatever mode carries them (F103: RX and captures hear input
+//            mode, too); they drive it in alternate mode only
 //   Signals  by name ("SPI1_SCK"), shared by GPIO and the peripherals
 #pragma once
 #include <array>
@@ -26,7 +28,7 @@ struct PinSetting {
   bool open_drain = false;
   Drive pull = Drive::none;
   bool output = false;               // ODR
-  std::array<Signal*, 2> signals{};  // of the selected alternate function (TIM2_CH1 and _ETR)
+  std::array<Signal*, 4> signals{};  // that the pin carries now (F405: TIM2_CH1 and _ETR at most)
   bool operator==(const PinSetting&) const = default;
 };
 

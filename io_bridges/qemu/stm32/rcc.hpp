@@ -1,12 +1,12 @@
-// RCC of the STM32F405: oscillators, PLL, prescalers, block enables and resets, reset causes.
+// RCC, what both parts have in common: oscillators with their start-up times, the clock switch,
+// ready interrupts, reset causes, the backup domain, block enables and resets.
 //
-//   Source    RM0090 chapter 7; start-up times from the STM32F405 datasheet (typical): HSE 2 ms,
-//             HSI 2.2 us, PLL 200 us, LSI 30 us, LSE 2 s
-//   Findings  PLL input outside 1..2 MHz, VCO outside 100..432 MHz, SYSCLK, PCLK1 or PCLK2 above
-//             168, 42, 84 MHz: once each
+//   Source    RM0090 chapter 7 (F405), RM0008 chapter 7 (F103)
+//   Times     typical values of the datasheets: HSE 2 ms, HSI 2.2 us, PLL 200 us, LSI 30 us, LSE 2 s
 //   Left out  MCO pins, spread spectrum, I2S clocks (PLLI2S locks, nobody uses it)
 #pragma once
 #include <array>
+#include <string>
 #include <vector>
 
 #include "io_bridges/qemu/stm32/reset_cause.hpp"
@@ -24,9 +24,25 @@ struct RccSetup {
   double lse_Hz = 0.0;
 };
 
-class Rcc final : public WordBlock, public Clocks {
+// Where a part keeps what all parts have.
+struct RccLayout {
+  std::uint32_t cfgr, cir, bdcr, csr;     // CR is at 0
+  std::uint32_t first_reset, last_reset;  // the block reset registers
+  std::uint32_t cr_writable;
+  std::uint32_t power_on_causes;  // CSR flags
+  double hsi_Hz, lsi_Hz;
+  double max_sysclk_Hz, max_pclk1_Hz, max_pclk2_Hz;
+};
+
+// Frequencies as CFGR and PLL settings give them.
+struct ClockTree {
+  double sysclk_Hz = 0.0;
+  double ahb = 1.0, apb1 = 1.0, apb2 = 1.0;  // divisors
+};
+
+class Rcc : public WordBlock, public Clocks {
  public:
-  explicit Rcc(const RccSetup& setup);
+  Rcc(const RccSetup& setup, const RccLayout& layout);
 
   // Clocks
   double hclk_Hz() const override { return hclk_Hz_; }
@@ -34,22 +50,20 @@ class Rcc final : public WordBlock, public Clocks {
   double pclk2_Hz() const override { return pclk2_Hz_; }
   double timclk1_Hz() const override { return timclk1_Hz_; }
   double timclk2_Hz() const override { return timclk2_Hz_; }
-  double lsi_Hz() const override { return 32'000.0; }
+  double lsi_Hz() const override { return layout_.lsi_Hz; }
   double lse_Hz() const override { return lse_Hz_; }
   double hse_Hz() const override { return hse_Hz_; }
   void on_change(std::function<void()> changed) override {
     listeners_.push_back(std::move(changed));
   }
   double sysclk_Hz() const { return sysclk_Hz_; }
-  double pll48_Hz() const;  // PLLQ output: RNG, SDIO, USB
 
-  // Gates. The pointers stay valid; a block's clock is on when (*enable & mask) != 0.
+  // Gates. The pointer stays valid; a block's clock is on when (*enable & mask) != 0.
   const std::uint32_t* enable_register(std::uint32_t offset) const { return &word(offset); }
   void on_block_reset(std::uint32_t offset, std::uint32_t mask, std::function<void()> reset);
 
   // Backup domain: RTC's clock and write protection (PWR_CR.DBP).
   double rtc_Hz() const;  // 0 while RTCEN is off or its source does not run
-  bool rtc_enabled() const;
   void set_backup_writable(std::function<bool()> writable) { backup_writable_ = writable; }
   void on_backup_reset(std::function<void()> reset) { backup_reset_ = std::move(reset); }
 
@@ -57,6 +71,25 @@ class Rcc final : public WordBlock, public Clocks {
   void system_reset(ResetCause cause);  // reset() and the cause in CSR
   void fail_hse();                      // the crystal stops; with CSSON: HSI takes over, NMI
   void on_nmi(std::function<void(bool)> nmi) { nmi_ = std::move(nmi); }
+
+ protected:
+  enum Source : std::uint32_t { hsi = 0, hse = 1, pll = 2 };
+
+  virtual void set_reset_values() = 0;
+  virtual ClockTree clock_tree() const = 0;
+  virtual bool pll_from_hse() const = 0;
+  virtual double rtc_from_hse_Hz() const = 0;
+  virtual bool pll_can_lock() { return true; }  // asked as PLLON is set; findings go here
+  virtual void write_other(std::uint32_t offset, std::uint32_t value) = 0;
+
+  std::uint32_t& word(std::uint32_t offset) { return words_[offset / 4]; }
+  const std::uint32_t& word(std::uint32_t offset) const { return words_[offset / 4]; }
+  std::uint32_t sws() const { return (word(layout_.cfgr) >> 2) & 3; }
+  bool pll_on() const { return (word(0) & (1u << 24)) != 0; }
+  void report_once(std::uint32_t bit, const std::string& what);
+
+  const RccLayout layout_;
+  const double hse_Hz_, lse_Hz_;
 
  private:
   struct ResetLine {
@@ -66,9 +99,6 @@ class Rcc final : public WordBlock, public Clocks {
 
   std::uint32_t read_word(std::uint32_t offset) override;
   void write_word(std::uint32_t offset, std::uint32_t value) override;
-  std::uint32_t& word(std::uint32_t offset) { return words_[offset / 4]; }
-  const std::uint32_t& word(std::uint32_t offset) const { return words_[offset / 4]; }
-
   void write_cr(std::uint32_t value);
   void write_cfgr(std::uint32_t value);
   void write_cir(std::uint32_t value);
@@ -81,14 +111,10 @@ class Rcc final : public WordBlock, public Clocks {
   void try_switch();
   void update_clocks();
   void update_irq();
-  double pll_vco_Hz() const;
-  void check_limits();
-  void report_once(std::uint32_t bit, const std::string& what);
 
   io::EventQueue& events_;
   InterruptLines& interrupts_;
   io::FindingSink finding_;
-  double hse_Hz_, lse_Hz_;
   std::array<std::uint32_t, 0x90 / 4> words_{};
   io::Event hsi_ready_, hse_ready_, pll_ready_, plli2s_ready_, lsi_ready_, lse_ready_;
   std::vector<ResetLine> reset_lines_;
@@ -100,5 +126,9 @@ class Rcc final : public WordBlock, public Clocks {
   double timclk1_Hz_ = 0, timclk2_Hz_ = 0;
   std::uint32_t reported_ = 0;
 };
+
+// Divisors of HPRE and PPRE, the same on both parts.
+double ahb_divisor(std::uint32_t hpre);
+double apb_divisor(std::uint32_t ppre);
 
 }  // namespace whirl::stm32

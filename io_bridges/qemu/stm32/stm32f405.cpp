@@ -12,10 +12,10 @@
 #include "io_bridges/qemu/stm32/f405_tables.hpp"
 #include "io_bridges/qemu/stm32/flash_f4.hpp"
 #include "io_bridges/qemu/stm32/function_blocks.hpp"
-#include "io_bridges/qemu/stm32/gpio.hpp"
+#include "io_bridges/qemu/stm32/gpio_f4.hpp"
 #include "io_bridges/qemu/stm32/i2c.hpp"
 #include "io_bridges/qemu/stm32/pwr.hpp"
-#include "io_bridges/qemu/stm32/rcc.hpp"
+#include "io_bridges/qemu/stm32/rcc_f4.hpp"
 #include "io_bridges/qemu/stm32/spi.hpp"
 #include "io_bridges/qemu/stm32/usart.hpp"
 
@@ -138,13 +138,13 @@ class Stm32f405 final : public ChipModel {
   ChipHost host_;
   ChangesOnly interrupts_;
   DmaBus dma_bus_;
-  Rcc rcc_;
+  RccF4 rcc_;
   Chip chip_;
   PinBank bank_;
   Pwr pwr_;
   FlashF4 flash_;
   Exti exti_;
-  std::vector<std::unique_ptr<Gpio>> gpios_;  // A to I
+  std::vector<std::unique_ptr<GpioF4>> gpios_;  // A to I
   Syscfg syscfg_;
   Dma dma1_, dma2_;
   BackupSram backup_sram_;
@@ -179,7 +179,7 @@ Stm32f405::Stm32f405(const ChipHost& host)
       dma2_("DMA2", chip_, kDma2Irqs, true),
       backup_sram_(pwr_) {
   for (char port = 'A'; port <= 'I'; ++port) {
-    gpios_.push_back(std::make_unique<Gpio>(chip_, bank_, port));
+    gpios_.push_back(std::make_unique<GpioF4>(chip_, bank_, port));
     gpios_.back()->on_edge([this, port](int pin, bool level, Nanoseconds now) {
       exti_.pin_edge(port, pin, level);
       if (functions_ && (pin == 9 || pin == 11 || pin == 15)) functions_->exti_edge(pin, now);

@@ -1,4 +1,6 @@
-#include "io_bridges/qemu/stm32/gpio.hpp"
+#include "io_bridges/qemu/stm32/gpio_f4.hpp"
+
+#include <algorithm>
 
 namespace whirl::stm32 {
 namespace {
@@ -23,7 +25,7 @@ std::uint32_t field(std::uint32_t reg, int pin, int bits) {
 
 }  // namespace
 
-Gpio::Gpio(Chip chip, PinBank& bank, char port)
+GpioF4::GpioF4(Chip chip, PinBank& bank, char port)
     : WordBlock(std::string("GPIO") + port, Narrow::merge),
       chip_(std::move(chip)),
       bank_(bank),
@@ -35,13 +37,13 @@ Gpio::Gpio(Chip chip, PinBank& bank, char port)
   reset();
 }
 
-void Gpio::add_alternate(int pin, int af, Signal& signal) {
+void GpioF4::add_alternate(int pin, int af, Signal& signal) {
   auto& cell = alternates_[static_cast<std::size_t>(pin)][static_cast<std::size_t>(af)];
   cell[cell[0] == nullptr ? 0 : 1] = &signal;
   bank_.connect(*pins_[static_cast<std::size_t>(pin)], signal);
 }
 
-void Gpio::reset() {
+void GpioF4::reset() {
   moder_ = port_ == 'A' ? 0xA8000000 : port_ == 'B' ? 0x00000280 : 0;
   ospeedr_ = port_ == 'A' ? 0x0C000000 : port_ == 'B' ? 0x000000C0 : 0;
   pupdr_ = port_ == 'A' ? 0x64000000 : port_ == 'B' ? 0x00000100 : 0;
@@ -50,7 +52,7 @@ void Gpio::reset() {
   for (int pin = 0; pin < 16; ++pin) apply(pin);
 }
 
-std::uint32_t Gpio::read_word(std::uint32_t offset) {
+std::uint32_t GpioF4::read_word(std::uint32_t offset) {
   switch (offset) {
     case MODER:
       return moder_;
@@ -80,13 +82,13 @@ std::uint32_t Gpio::read_word(std::uint32_t offset) {
 }
 
 // BSRR is write-only: a narrow write must not repeat what the other half does.
-void Gpio::write(std::uint32_t offset, std::uint32_t value, unsigned size) {
+void GpioF4::write(std::uint32_t offset, std::uint32_t value, unsigned size) {
   if (size == 4 || (offset & ~3u) != BSRR) return WordBlock::write(offset, value, size);
   const std::uint32_t mask = size == 1 ? 0xFFu : 0xFFFFu;
   write_word(BSRR, (value & mask) << (8 * (offset & 3)));
 }
 
-void Gpio::write_word(std::uint32_t offset, std::uint32_t value) {
+void GpioF4::write_word(std::uint32_t offset, std::uint32_t value) {
   switch (offset) {
     case MODER:
       return set_configuration(moder_, value, 2, 0);
@@ -111,7 +113,7 @@ void Gpio::write_word(std::uint32_t offset, std::uint32_t value) {
   }
 }
 
-void Gpio::set_odr(std::uint32_t value) {
+void GpioF4::set_odr(std::uint32_t value) {
   std::uint32_t changed = odr_ ^ value;
   odr_ = value;
   const Nanoseconds now = changed != 0 ? chip_.events.now() : 0;
@@ -121,7 +123,7 @@ void Gpio::set_odr(std::uint32_t value) {
   }
 }
 
-void Gpio::set_configuration(std::uint32_t& reg, std::uint32_t value, int bits, int first) {
+void GpioF4::set_configuration(std::uint32_t& reg, std::uint32_t value, int bits, int first) {
   std::uint32_t changed_pins = 0;
   for (int pin = first; pin < 16 && (pin - first) * bits < 32; ++pin) {
     const std::uint32_t mask = ((1u << bits) - 1) << ((pin - first) * bits);
@@ -134,7 +136,7 @@ void Gpio::set_configuration(std::uint32_t& reg, std::uint32_t value, int bits, 
 }
 
 // The key: write 1, 0, 1 with the same mask in the low half, then read.
-void Gpio::write_lock(std::uint32_t value) {
+void GpioF4::write_lock(std::uint32_t value) {
   if ((lckr_ & LCKK) != 0) return;
   const bool key = (value & LCKK) != 0;
   const bool same = (value & 0xFFFF) == (lckr_ & 0xFFFF);
@@ -148,7 +150,7 @@ void Gpio::write_lock(std::uint32_t value) {
   }
 }
 
-PinSetting Gpio::setting(int pin) const {
+PinSetting GpioF4::setting(int pin) const {
   PinSetting s;
   s.mode = static_cast<PinMode>(field(moder_, pin, 2));
   s.open_drain = field(otyper_, pin, 1) != 0;
@@ -157,12 +159,13 @@ PinSetting Gpio::setting(int pin) const {
   s.output = field(odr_, pin, 1) != 0;
   if (s.mode == PinMode::alternate) {
     const std::uint32_t af = field(afr_[pin / 8], pin % 8, 4);
-    s.signals = alternates_[static_cast<std::size_t>(pin)][af];
+    const auto& cell = alternates_[static_cast<std::size_t>(pin)][af];
+    std::copy(cell.begin(), cell.end(), s.signals.begin());
   }
   return s;
 }
 
-void Gpio::apply(int pin) {
+void GpioF4::apply(int pin) {
   Pin& p = *pins_[static_cast<std::size_t>(pin)];
   const PinSetting s = setting(pin);
   const std::uint32_t bit = 1u << pin;

@@ -11,11 +11,11 @@
 
 namespace whirl::stm32 {
 
-class Gpio final : public WordBlock {
+class GpioF4 final : public WordBlock {
  public:
   using EdgeSink = std::function<void(int pin, bool level, Nanoseconds now)>;
 
-  Gpio(Chip chip, PinBank& bank, char port);
+  GpioF4(Chip chip, PinBank& bank, char port);
 
   void add_alternate(int pin, int af, Signal& signal);
   void on_edge(EdgeSink sink) { edge_ = std::move(sink); }  // EXTI
