@@ -1,4 +1,6 @@
 // whirl: the virtual board and the flight world, put together.
+#include <cstdlib>
+
 #include "harness/cli/composition.hpp"
 #include "harness/flight/flight_world.hpp"
 #include "harness/flight/vehicle_file.hpp"
@@ -28,5 +30,9 @@ Result<std::unique_ptr<Target>> make_target(const cli::Setup& setup) {
 }  // namespace whirl
 
 int main(int argc, char** argv) {
-  return whirl::cli::run_program(argc, argv, {whirl::make_world, whirl::make_target, WHIRL_ROOT});
+  const char* results = std::getenv("WHIRL_RESULTS");
+  return whirl::cli::run_program(
+      argc, argv,
+      {whirl::make_world, whirl::make_target, WHIRL_ROOT,
+       results != nullptr ? std::string(results) : std::string(WHIRL_ROOT) + "/results"});
 }

@@ -31,6 +31,7 @@ struct Composition {
   std::function<Result<std::unique_ptr<World>>(const Setup&)> world;
   std::function<Result<std::unique_ptr<Target>>(const Setup&)> target;
   std::string root;
+  std::string results;  // folder of runs and history
 };
 
 // The whole program but its composition. Returns the exit code.

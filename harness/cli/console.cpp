@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
 
 namespace whirl::cli {
 namespace {
@@ -61,7 +60,7 @@ void clear_progress() {
   if (is_terminal()) std::fprintf(stderr, "\r\033[K");
 }
 
-std::string outcome(const Finished& finished, const std::string& root) {
+std::string outcome(const Finished& finished) {
   const results::Report& r = finished.report;
   std::string text = word(r.verdict) + r.plan;
   if (!finished.folder.empty()) {
@@ -83,8 +82,7 @@ std::string outcome(const Finished& finished, const std::string& root) {
     if (e.verdict != results::Verdict::pass) text += expectation_line(e);
   }
   if (!finished.folder.empty()) {
-    text += "       " + std::filesystem::path(finished.folder).lexically_relative(root).string() +
-            "/index.html\n";
+    text += "       " + shown_path(finished.folder + "/index.html") + "\n";
   }
   return text;
 }

@@ -13,7 +13,7 @@ ProgressSink progress_line(const std::string& plan);
 void clear_progress();
 
 // One plan's outcome: a line, and the failed expectations below it.
-std::string outcome(const Finished& finished, const std::string& root);
+std::string outcome(const Finished& finished);
 std::string summary(int passed, int failed, int inconclusive, int errors);
 
 }  // namespace whirl::cli

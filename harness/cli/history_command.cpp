@@ -6,9 +6,9 @@
 
 namespace whirl::cli {
 
-int history_command(const HistoryOptions& options, const std::string& root) {
-  const auto rows = results::recall(root + "/results/history.sqlite", options.plan,
-                                    options.expectation, options.last);
+int history_command(const HistoryOptions& options, const std::string& results) {
+  const auto rows =
+      results::recall(results + "/history.sqlite", options.plan, options.expectation, options.last);
   if (!rows) {
     std::fprintf(stderr, "whirl: %s\n", rows.error().message().c_str());
     return 2;

@@ -10,6 +10,6 @@ struct HistoryOptions {
   int last = 10;
 };
 
-int history_command(const HistoryOptions& options, const std::string& root);
+int history_command(const HistoryOptions& options, const std::string& results);
 
 }  // namespace whirl::cli

@@ -12,6 +12,7 @@ struct RunOptions {
   std::optional<std::uint64_t> seed;
   int jobs = 1;
   bool gdb = false;
+  int gdb_port = 1234;
   bool keep = false;  // a passing run keeps its large logs too
   bool twice = false;
   bool json = false;

@@ -48,6 +48,8 @@ int run_program(int argc, char** argv, const Composition& composition) {
   auto* seed_option = run->add_option("--seed", seed, "instead of the plans' own seeds");
   run->add_option("--jobs,-j", options.jobs, "so many plans at once")->check(CLI::Range(1, 256));
   run->add_flag("--gdb", options.gdb, "open a gdb port and hold the world's time while gdb holds");
+  run->add_option("--gdb-port", options.gdb_port, "instead of 1234")
+      ->check(CLI::Range(1024, 65535));
   run->add_flag("--keep", options.keep, "keep what went into the board's process as well");
   run->add_flag("--twice", options.twice, "run twice and expect the same digest");
   run->add_flag("--json", options.json, "run.json on standard output");
@@ -70,7 +72,7 @@ int run_program(int argc, char** argv, const Composition& composition) {
   }
   if (seed_option->count() > 0) options.seed = seed;
   if (*list) return list_command(options, composition);
-  if (*past) return history_command(history, composition.root);
+  if (*past) return history_command(history, composition.results);
   if (*doctor) return doctor_command(composition.root);
   return run_command(options, composition);
 }

@@ -43,14 +43,13 @@ Tally run_here(const std::vector<PlanChoice>& plans, const RunOptions& options,
     clear_progress();
     tally.add(finished.report);
     if (!finished.folder.empty()) {
-      const auto kept =
-          results::remember(composition.root + "/results/history.sqlite", finished.report);
+      const auto kept = results::remember(composition.results + "/history.sqlite", finished.report);
       if (!kept) std::fprintf(stderr, "whirl: %s\n", kept.error().message().c_str());
     }
     if (options.json) {
       std::fputs(results::run_json(finished.report).c_str(), stdout);
     } else {
-      std::fputs(outcome(finished, composition.root).c_str(), stdout);
+      std::fputs(outcome(finished).c_str(), stdout);
     }
     std::fflush(stdout);
   }

@@ -66,7 +66,7 @@ Result<RunRecord> run_record(const PlanChoice& choice, const RunOptions& options
               "",
               "",
               options.seed.value_or(plan->seed),
-              options.gdb ? 1234 : 0};
+              options.gdb ? options.gdb_port : 0};
   if (!plan->vehicle.empty()) {
     const auto vehicle = find_file(plan->vehicle, *plan, {root + "/test_plans/vehicles"}, ".lua");
     if (!vehicle) return vehicle.error();
@@ -131,7 +131,7 @@ Finished run_one(const PlanChoice& choice, const RunOptions& options,
     if (!again) return {refused(choice, options, again.error()), ""};
     compare_digests(again.value(), report);
   }
-  const auto folder = results::make_run_folder(composition.root + "/results", choice.name);
+  const auto folder = results::make_run_folder(composition.results, choice.name);
   if (!folder) return {refused(choice, options, folder.error()), ""};
   const auto written =
       results::write_run(folder.value(), report, record.value().truth, record.value().events);

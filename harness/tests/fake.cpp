@@ -192,7 +192,7 @@ cli::Composition fake_composition(const std::string& root) {
           [](const cli::Setup& setup) -> Result<std::unique_ptr<Target>> {
             return std::unique_ptr<Target>(std::make_unique<FakeTarget>(setup));
           },
-          root};
+          root, root + "/results"};
 }
 
 Outcome whirl(const FakeRoot& root, const std::vector<std::string>& arguments) {

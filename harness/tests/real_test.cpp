@@ -1,0 +1,177 @@
+// The program on real images in the real QEMU: bad images by name, faults by address and function,
+// silence by the plan's deadline, and digests that repeat, and change with one bit of one sensor.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "harness/base/check.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+struct Outcome {
+  int code = -1;
+  std::string text;  // both outputs
+  json run;          // run.json of --json; discarded where there is none
+};
+
+class Real : public ::testing::Test {
+ protected:
+  Real() {
+    std::string name = (fs::temp_directory_path() / "whirl_real_XXXXXX").string();
+    WHIRL_CHECK(mkdtemp(name.data()) != nullptr);
+    folder_ = name;
+    setenv("WHIRL_RESULTS", (folder_ + "/results").c_str(), 1);
+  }
+  ~Real() override { fs::remove_all(folder_); }
+
+  void write(const std::string& name, const std::string& text) const {
+    std::ofstream(folder_ + "/" + name, std::ios::binary) << text;
+  }
+  // A plan of one second on this image.
+  Outcome run(const std::string& image, const std::string& body,
+              const std::string& vehicle = "hp_quad") const {
+    write("p.lua", "plan \"real\" { image = \"" + image + "\", vehicle = \"" + vehicle +
+                       "\", timeout = \"3 s\",\nrun = function(t)\n" + body + "\nend }\n");
+    return whirl("run --json " + folder_ + "/p.lua");
+  }
+  static Outcome whirl(const std::string& arguments) {
+    std::FILE* pipe = popen((std::string(WHIRL_PROGRAM) + " " + arguments + " 2>&1").c_str(), "r");
+    Outcome outcome;
+    char piece[4096];
+    for (std::size_t n; (n = std::fread(piece, 1, sizeof piece, pipe)) > 0;) {
+      outcome.text.append(piece, n);
+    }
+    const int status = pclose(pipe);
+    outcome.code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    const auto brace = outcome.text.find('{');
+    outcome.run =
+        json::parse(brace == std::string::npos ? "" : outcome.text.substr(brace), nullptr, false);
+    return outcome;
+  }
+
+  std::string folder_;
+};
+
+constexpr const char* kSecond = "t:wait \"1 s\" t:expect(1):at_most(2)";
+
+void expect_told(const Outcome& outcome, int code, const std::string& words) {
+  EXPECT_EQ(outcome.code, code) << outcome.text;
+  EXPECT_NE(outcome.text.find(words), std::string::npos) << outcome.text;
+}
+
+TEST_F(Real, AMissingImageIsNamed) {
+  expect_told(run("nowhere", kSecond), 2, "'nowhere' is not there");
+}
+
+TEST_F(Real, AnImageForAnotherCpuIsRefused) {
+  fs::copy_file("/proc/self/exe", folder_ + "/host.elf");
+  expect_told(run("host.elf", kSecond), 2, "host.elf");
+}
+
+TEST_F(Real, AFileThatIsNoImageIsRefused) {
+  write("text.elf", "not an ELF at all\n");
+  expect_told(run("text.elf", kSecond), 2, "text.elf");
+}
+
+// A word beyond the end of the 1 MiB flash: the program header's size is moved, nothing else.
+TEST_F(Real, AnImageTooLargeForTheFlashIsRefused) {
+  std::ifstream in(std::string(WHIRL_IMAGES) + "/flight.elf", std::ios::binary);
+  std::string elf((std::istreambuf_iterator<char>(in)), {});
+  ASSERT_GT(elf.size(), 52u);
+  const auto word = [&](std::size_t at) {
+    std::uint32_t x;
+    std::memcpy(&x, &elf[at], 4);
+    return x;
+  };
+  const std::size_t header = word(28);  // e_phoff; p_filesz at 16, p_memsz at 20
+  elf.resize(word(header + 4) + (2u << 20));
+  const std::uint32_t size = (1u << 20) + 4;
+  for (std::size_t at : {header + 16, header + 20}) std::memcpy(&elf[at], &size, 4);
+  write("large.elf", elf);
+  expect_told(run("large.elf", kSecond), 2, "large.elf");
+}
+
+TEST_F(Real, ANegativeMassIsRefused) {
+  std::ifstream in(std::string(WHIRL_ROOT) + "/test_plans/vehicles/hp_quad.lua");
+  std::string text((std::istreambuf_iterator<char>(in)), {});
+  const auto at = text.find("mass = \"900 g\"");
+  ASSERT_NE(at, std::string::npos);
+  text.replace(at, 14, "mass = \"-1 kg\"");
+  write("heavy.lua", text);
+  expect_told(run("flight", kSecond, "heavy.lua"), 2, "mass: '-1 kg' must be positive");
+}
+
+TEST_F(Real, AHardFaultIsNamedWithItsFunction) {
+  const Outcome outcome = run("hardfault", kSecond);
+  EXPECT_EQ(outcome.code, 1) << outcome.text;
+  const std::string reason = outcome.run.value("reason", "");
+  EXPECT_NE(reason.find("Fault"), std::string::npos) << reason;
+  EXPECT_NE(reason.find("fault_on_purpose"), std::string::npos) << reason;
+  EXPECT_NE(reason.find("0x080"), std::string::npos) << reason;
+}
+
+TEST_F(Real, AnImageThatNeverFeedsTheBusFailsByItsDeadline) {
+  const Outcome outcome =
+      run("silent",
+          "t:bus { device = \"esc1\", direction = \"write\", period = \"20 ms\","
+          " tolerance = \"1 ms\" } t:wait \"1 s\"");
+  expect_told(outcome, 1, "esc1 write period deviation");
+}
+
+TEST_F(Real, AnImageThatSleepsForEverFailsAtTheTimeoutInVirtualTime) {
+  const Outcome outcome =
+      run("sleeper", "t:wait_until(function(s) return s.told_armed == 1 end, \"1 min\")");
+  expect_told(outcome, 1, "timeout of 3 s virtual time");
+  EXPECT_NEAR(outcome.run.value("virtual_s", 0.0), 3.0, 1e-9);
+}
+
+// gdb stops in a task, reads the world's state from the image, and lets it fly on.
+TEST_F(Real, GdbStopsInATaskAndTheRunGoesOnAfterIt) {
+  write("p.lua", std::string("plan \"real\" { image = \"flight\", vehicle = \"hp_quad\",\n"
+                             "run = function(t) ") +
+                     kSecond + " end }\n");
+  const int port = 20000 + getpid() % 20000;
+  const std::string out = folder_ + "/whirl.txt";
+  const std::string command =
+      std::string(WHIRL_PROGRAM) + " run --gdb --gdb-port " + std::to_string(port) + " " + folder_ +
+      "/p.lua >" + out + " 2>&1 & whirl=$!; gdb-multiarch -batch -nx " + WHIRL_IMAGES +
+      "/flight.elf -ex 'set tcp connect-timeout 60' -ex 'target remote localhost:" +
+      std::to_string(port) +
+      "' -ex 'hbreak fw::attitude_task' -ex continue -ex backtrace"
+      " -ex 'delete' -ex detach 2>&1; wait $whirl; echo code $?";
+  std::FILE* pipe = popen(command.c_str(), "r");
+  std::string text;
+  char piece[4096];
+  for (std::size_t n; (n = std::fread(piece, 1, sizeof piece, pipe)) > 0;) text.append(piece, n);
+  pclose(pipe);
+  EXPECT_NE(text.find("#0  fw::attitude_task"), std::string::npos) << text;
+  EXPECT_NE(text.find("code 0"), std::string::npos) << text;
+}
+
+TEST_F(Real, ADeviceThatTheBoardDoesNotKnowIsNamed) {
+  expect_told(run("flight", "t:bus { device = \"esc9\" }"), 2, "unknown device 'esc9'");
+}
+
+TEST_F(Real, TheDigestRepeatsAndChangesWithOneBitOfOneSensorReading) {
+  const Outcome once = run("flight", kSecond), again = run("flight", kSecond);
+  ASSERT_EQ(once.code, 0) << once.text;
+  EXPECT_EQ(once.run["digest"], again.run["digest"]);
+  // One bit of one byte of the one burst within this millisecond.
+  const Outcome flipped =
+      run("flight", std::string("t:fault { kind = \"spi_flip\", device = \"imu\","
+                                " start = \"500 ms\", duration = \"1 ms\", value = 8 * 14 }") +
+                        kSecond);
+  ASSERT_EQ(flipped.code, 0) << flipped.text;
+  EXPECT_NE(once.run["digest"], flipped.run["digest"]);
+}
+
+}  // namespace
