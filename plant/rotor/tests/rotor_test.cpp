@@ -1,64 +1,148 @@
 #include "plant/rotor/rotor.hpp"
 
-#include <gtest/gtest.h>
-
-#include <fstream>
-#include <sstream>
-
 #include "harness/base/near.hpp"
-#include "plant/rotor/hobbyking_10x4_5.hpp"
-#include "plant/rotor/polar.hpp"
+#include "plant/rotor/tests/test_blades.hpp"
 
 namespace whirl::plant {
 namespace {
 
-std::shared_ptr<const PolarFamily> section(const std::string& file) {
-  std::ifstream in(std::string(WHIRL_DATA) + "/polars/" + file);
-  std::stringstream text;
-  text << in.rdbuf();
-  return std::make_shared<PolarFamily>(read_polar(text.str(), file).value());
-}
-
-std::shared_ptr<const Blade> hobbyking() {
-  static const auto blade =
-      make_blade(hobbyking_10x4_5(section("e63.polar"), section("naca4412.polar"))).value();
-  return blade;
-}
-
-RotorConditions hover(double rpm) {
-  RotorConditions c;
-  c.omega_radps = rpm * 3.14159265358979323846 / 30.0;
-  return c;
+RotorLoads settled(Rotor& rotor, const RotorConditions& c, double seconds = 1.0) {
+  RotorLoads loads;
+  for (double t = 0.0; t < seconds; t += 1e-3) loads = rotor.step(c, 1e-3);
+  return loads;
 }
 
 TEST(Rotor, HobbykingGivesTheStaticThrustOfTheThesis) {
   const Rotor rotor(hobbyking(), 1);
-  for (double rpm = 3000.0; rpm <= 5500.0; rpm += 250.0) {
+  for (double rpm = 3000.0; rpm <= 5500.0; rpm += 125.0) {
     const RotorLoads got = rotor.steady(hover(rpm));
     const double want_N = 1.789e-7 * rpm * rpm - 1.4715e-4 * rpm;
-    EXPECT_TRUE(near(got.thrust_N, want_N, stated(0.03 * want_N, "thesis fit against our blade")))
-        << rpm;
-    EXPECT_GT(got.figure_of_merit, 0.6);
-    EXPECT_LT(got.figure_of_merit, 0.75);
-    EXPECT_TRUE(got.validity.ok());
+    EXPECT_TRUE(near(got.thrust_N, want_N, stated(0.03 * want_N, "the issue's 3 %"))) << rpm;
+    EXPECT_GT(got.figure_of_merit, 0.6) << rpm;
+    EXPECT_LT(got.figure_of_merit, 0.75) << rpm;
+    EXPECT_TRUE(got.validity.ok()) << rpm;
   }
-}
-
-TEST(Rotor, StepSettlesWhereSteadyIs) {
-  Rotor rotor(hobbyking(), -1);
-  const RotorConditions c = hover(4000.0);
-  RotorLoads got;
-  for (int i = 0; i < 2000; ++i) got = rotor.step(c, 1e-3);
-  const RotorLoads want = rotor.steady(c);
-  EXPECT_TRUE(near(got.thrust_N, want.thrust_N, stated(1e-6 * want.thrust_N, "settled")));
-  EXPECT_TRUE(near(got.shaft_torque_Nm, want.shaft_torque_Nm,
-                   stated(1e-6 * want.shaft_torque_Nm, "settled")));
 }
 
 TEST(Rotor, CounterclockwiseRotorYawsTheAirframeClockwise) {
   const RotorLoads loads = Rotor(hobbyking(), 1).steady(hover(4000.0));
   EXPECT_GT(loads.tau_P_Nm.z(), 0.0);
   EXPECT_LT(loads.f_P_N.z(), 0.0);
+  EXPECT_TRUE(near(loads.tau_P_Nm.z(), loads.shaft_torque_Nm, round_off(4, 0.1)));
+}
+
+TEST(Rotor, ThinnerAirCarriesLessAndClimbUnloads) {
+  const Rotor rotor(hobbyking(), 1);
+  RotorConditions c = hover(4500.0);
+  const double sea = rotor.steady(c).thrust_N;
+  c.density_kgpm3 = 1.0;
+  EXPECT_LT(rotor.steady(c).thrust_N,
+            sea / 1.225);  // less than in proportion: Reynolds number falls
+  c = hover(4500.0);
+  c.v_AP_P_mps.z() = -3.0;  // upward
+  EXPECT_LT(rotor.steady(c).thrust_N, sea);
+}
+
+TEST(Rotor, AWindmillGivesPowerBackAndBrakes) {
+  RotorConditions c = hover(2500.0);
+  c.v_AP_P_mps.z() = -20.0;  // climbs faster than its pitch
+  const RotorLoads loads = Rotor(hobbyking(), 1).steady(c);
+  EXPECT_LT(loads.shaft_torque_Nm, 0.0);
+  EXPECT_LT(loads.thrust_N, 0.0);
+  EXPECT_EQ(loads.figure_of_merit, 0.0);
+}
+
+TEST(Rotor, DescentAtTheSpeedOfItsOwnWakeIsFlagged) {
+  const Rotor rotor(hobbyking(), 1);
+  RotorConditions c = hover(4500.0);
+  c.v_AP_P_mps.z() = rotor.steady(c).induced_velocity_mps;
+  EXPECT_TRUE(rotor.steady(c).validity.vortex_ring);
+}
+
+// step() must come to rest where steady() is: that is the balance which the references check.
+TEST(Rotor, StepSettlesWhereSteadyIs) {
+  struct Case {
+    double rpm, vx, vy, vz, p, q;
+  };
+  for (const Case& k :
+       {Case{4000, 0, 0, 0, 0, 0}, Case{5500, 0, 0, -4, 0, 0}, Case{4500, 0, 0, 3, 0, 0},
+        Case{4500, 0, 0, 14, 0, 0}, Case{4500, 5, 0, 0, 0, 0}, Case{4500, 9, -9, -2, 0, 0},
+        Case{5000, 3, 1, 1, 2, -1}, Case{3000, 11, 0, -1, 0, 3}}) {
+    RotorConditions c = hover(k.rpm);
+    c.v_AP_P_mps = {k.vx, k.vy, k.vz};
+    c.w_WP_P_radps = {k.p, k.q, 0.0};
+    Rotor rotor(hobbyking(), -1);
+    const RotorLoads got = settled(rotor, c, 2.0);
+    const RotorLoads want = rotor.steady(c);
+    const Tolerance small = stated(2e-5 * std::abs(want.thrust_N), "two seconds of settling");
+    EXPECT_FALSE(want.validity.not_converged);
+    EXPECT_TRUE(near((got.f_P_N - want.f_P_N).norm(), 0.0, small)) << k.rpm << " " << k.vz;
+    EXPECT_TRUE(near((got.tau_P_Nm - want.tau_P_Nm).norm(), 0.0, small)) << k.rpm << " " << k.vz;
+  }
+}
+
+TEST(Rotor, ThrustOvershootsWhenSpeedStepsUp) {
+  Rotor rotor(hobbyking(), 1);
+  settled(rotor, hover(4000.0));
+  const double first = rotor.step(hover(5000.0), 1e-3).thrust_N;
+  const double last = settled(rotor, hover(5000.0)).thrust_N;
+  EXPECT_GT(first, 1.05 * last);  // the inflow of 4000 rpm is still there
+}
+
+// Pitt and Peters: with the blade's own damping the inflow settles faster than by momentum alone,
+// 0.849 R / (4 u); both in the range of milliseconds for this rotor.
+TEST(Rotor, InflowSettlesWithinItsApparentMass) {
+  Rotor rotor(hobbyking(), 1);
+  settled(rotor, hover(4000.0));
+  const double before = rotor.steady(hover(4000.0)).induced_velocity_mps;
+  const double after = rotor.steady(hover(4100.0)).induced_velocity_mps;
+  const double by_momentum_s = 0.849 * 0.127 / (4.0 * before);
+  double t = 0.0;
+  while (rotor.step(hover(4100.0), 1e-5).induced_velocity_mps <
+         before + (1.0 - std::exp(-1.0)) * (after - before)) {
+    t += 1e-5;
+    ASSERT_LT(t, 0.1);
+  }
+  EXPECT_LT(t, by_momentum_s);
+  EXPECT_GT(t, 0.2 * by_momentum_s);
+}
+
+TEST(Rotor, HalvingTheStepHalvesItsError) {
+  const auto after_10ms = [](int steps) {
+    Rotor rotor(hobbyking(), 1);
+    settled(rotor, hover(4000.0));
+    for (int i = 0; i < steps; ++i) rotor.step(hover(4600.0), 0.010 / steps);
+    return rotor.step(hover(4600.0), 1e-9).thrust_N;
+  };
+  const double exact = after_10ms(2560);
+  const double ratio = (after_10ms(20) - exact) / (after_10ms(40) - exact);
+  EXPECT_GT(ratio, 1.8);
+  EXPECT_LT(ratio, 2.2);
+}
+
+// Cheeseman and Bennett: at the same power 1/(1 - (R/4z)^2) more thrust; at the same speed less.
+TEST(Rotor, GroundCarries) {
+  const Rotor rotor(hobbyking(), 1);
+  const RotorLoads free = rotor.steady(hover(4500.0));
+  double last = free.thrust_N;
+  for (const double heights : {4.0, 2.0, 1.0, 0.6}) {
+    RotorConditions c = hover(4500.0);
+    c.height_m = heights * 0.127;
+    const RotorLoads loads = rotor.steady(c);
+    EXPECT_GT(loads.thrust_N, last) << heights;
+    const double bound = 1.0 / (1.0 - std::pow(0.25 / heights, 2));
+    EXPECT_LT(loads.thrust_N / free.thrust_N, bound) << heights;
+    // The same thrust out of ground effect costs more power.
+    const double same_FM = std::pow(loads.thrust_N / free.thrust_N, 1.5) * free.shaft_power_W;
+    EXPECT_LT(loads.shaft_power_W, same_FM) << heights;
+    last = loads.thrust_N;
+  }
+}
+
+TEST(Rotor, AtRestInStillAirNothingPulls) {
+  const RotorLoads loads = Rotor(hobbyking(), 1).steady(RotorConditions{});
+  EXPECT_EQ(loads.f_P_N.norm(), 0.0);
+  EXPECT_EQ(loads.tau_P_Nm.norm(), 0.0);
 }
 
 }  // namespace

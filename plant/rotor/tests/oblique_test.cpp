@@ -1,0 +1,150 @@
+// The rotor in oblique flow and on a turning body: signs, symmetries and closed forms.
+#include "harness/base/near.hpp"
+#include "plant/rotor/ring_loads.hpp"
+#include "plant/rotor/tests/test_blades.hpp"
+
+namespace whirl::plant {
+namespace {
+
+RotorConditions forward(double vx, double rpm = 4500.0) {
+  RotorConditions c = hover(rpm);
+  c.v_AP_P_mps.x() = vx;
+  return c;
+}
+
+TEST(Oblique, DragOpposesTheMotionAndGrowsWithIt) {
+  const Rotor rotor(hobbyking(), 1);
+  double last = 0.0;
+  for (const double v : {1.0, 2.0, 4.0, 8.0}) {
+    const double drag = -rotor.steady(forward(v)).f_P_N.x();
+    EXPECT_GT(drag, last) << v;
+    last = drag;
+  }
+  EXPECT_GT(rotor.steady(forward(-4.0)).f_P_N.x(), 0.0);
+}
+
+TEST(Oblique, AdvancingSideOfACounterclockwiseRotorIsItsRight) {
+  const RotorLoads ccw = Rotor(hobbyking(), 1).steady(forward(5.0));
+  const RotorLoads cw = Rotor(hobbyking(), -1).steady(forward(5.0));
+  EXPECT_LT(ccw.tau_P_Nm.x(), 0.0);  // more lift on the right rolls it to the left
+  EXPECT_GT(cw.tau_P_Nm.x(), 0.0);
+}
+
+TEST(Oblique, MirroredRotorGivesMirroredLoads) {
+  RotorConditions c = forward(4.0);
+  c.v_AP_P_mps = {4.0, 1.5, -0.5};
+  c.w_WP_P_radps = {0.8, -0.6, 0.3};
+  const RotorLoads a = Rotor(hobbyking(), 1).steady(c);
+  c.v_AP_P_mps.y() *= -1.0;
+  c.w_WP_P_radps.x() *= -1.0;
+  c.w_WP_P_radps.z() *= -1.0;
+  const RotorLoads b = Rotor(hobbyking(), -1).steady(c);
+  const Tolerance small = stated(1e-6 * a.thrust_N, "two separate iterations");
+  EXPECT_TRUE(near(a.f_P_N.x(), b.f_P_N.x(), small));
+  EXPECT_TRUE(near(a.f_P_N.y(), -b.f_P_N.y(), small));
+  EXPECT_TRUE(near(a.f_P_N.z(), b.f_P_N.z(), small));
+  EXPECT_TRUE(near(a.tau_P_Nm.x(), -b.tau_P_Nm.x(), small));
+  EXPECT_TRUE(near(a.tau_P_Nm.y(), b.tau_P_Nm.y(), small));
+  EXPECT_TRUE(near(a.tau_P_Nm.z(), -b.tau_P_Nm.z(), small));
+}
+
+// Twelve azimuths: a turn of the wind by 60 deg must turn the loads by 60 deg and nothing else.
+TEST(Oblique, NoDirectionIsPreferred) {
+  const Rotor rotor(hobbyking(), 1);
+  const RotorLoads a = rotor.steady(forward(6.0));
+  RotorConditions c = forward(0.0);
+  c.v_AP_P_mps = {3.0, 6.0 * std::sqrt(0.75), 0.0};
+  const RotorLoads b = rotor.steady(c);
+  const double C = 0.5, S = std::sqrt(0.75);
+  const Tolerance small = stated(1e-6 * a.thrust_N, "two separate iterations");
+  EXPECT_TRUE(near(b.f_P_N.x(), C * a.f_P_N.x() - S * a.f_P_N.y(), small));
+  EXPECT_TRUE(near(b.f_P_N.y(), S * a.f_P_N.x() + C * a.f_P_N.y(), small));
+  EXPECT_TRUE(near(b.tau_P_Nm.x(), C * a.tau_P_Nm.x() - S * a.tau_P_Nm.y(), small));
+}
+
+TEST(Oblique, BodyRatesAreDamped) {
+  const Rotor rotor(hobbyking(), 1);
+  RotorConditions c = hover(4500.0);
+  c.w_WP_P_radps = {2.0, 0.0, 0.0};
+  EXPECT_LT(rotor.steady(c).tau_P_Nm.x(), 0.0);
+  c.w_WP_P_radps = {0.0, 2.0, 0.0};
+  EXPECT_LT(rotor.steady(c).tau_P_Nm.y(), 0.0);
+}
+
+TEST(Oblique, ForwardFlightSavesInducedPower) {
+  const Rotor rotor(hobbyking(), 1);
+  const RotorLoads still = rotor.steady(forward(0.0));
+  const RotorLoads fast = rotor.steady(forward(8.0));
+  EXPECT_LT(fast.induced_velocity_mps, 0.9 * still.induced_velocity_mps);
+  EXPECT_GT(fast.thrust_N, still.thrust_N);
+}
+
+TEST(Oblique, BeyondAdvanceRatioIsSaid) {
+  const Rotor rotor(hobbyking(), 1);
+  const double tip_mps = hover(4500.0).omega_radps * 0.127;
+  EXPECT_FALSE(rotor.steady(forward(0.29 * tip_mps)).validity.beyond_advance_ratio);
+  EXPECT_TRUE(rotor.steady(forward(0.31 * tip_mps)).validity.beyond_advance_ratio);
+}
+
+// The near-ideal blade: every element loaded as the one at the tip, small angles, straight lift line,
+// cd = cd0 + K cl^2. Thrust: [Bangura2017, eq. 4.75a]. Drag of the disc and torque: the same
+// integrals done by hand (the printed 4.75b, c are garbled), H >= 0.
+struct NearIdeal {
+  static constexpr double R = 0.127, chord = 0.012, theta = 0.09, lambda = 0.05, omega = 500.0;
+  static constexpr double rho = 1.225;
+  StraightSection s{0.1, 5.7, 0.012, 0.02};
+
+  RingLoads numeric(double mu) const {
+    PropellerDescription d;
+    d.diameter_m = 2.0 * R;
+    d.mass_kg = 0.01;
+    d.stall_delay = false;
+    d.stations = {{0.15, chord / R, theta}, {0.5, chord / R, theta}, {1.0, chord / R, theta}};
+    d.sections = {{0.2, s.family()}};
+    Ring ring = make_blade(d).value()->rings[0];
+    ring.r_m = R;
+    ring.dr_m = R;
+    DiscFlow f;
+    f.omega_radps = omega;
+    f.vx_mps = mu * omega * R;
+    f.climb_mps = lambda * omega * R;
+    f.tip_radius_m = R;
+    f.blade_count = 2;
+    return ring_loads(ring, f, 0.0, 0.0);
+  }
+};
+
+TEST(Oblique, NearIdealBladeMeetsItsClosedForms) {
+  const NearIdeal n;
+  const double unit = 0.25 * 2 * n.rho * n.chord * std::pow(n.R, 3) * n.omega * n.omega;
+  for (const double mu : {0.0, 0.05, 0.1, 0.15}) {
+    const RingLoads got = n.numeric(mu);
+    const double thrust = unit * (n.s.cl0 * (2.0 + mu * mu) +
+                                  n.s.slope * (n.theta * (2.0 + mu * mu) - 2.0 * n.lambda));
+    const double a = n.s.cl0 + n.s.slope * n.theta;  // cl (1 + mu s) = a (1 + mu s) - b lambda
+    const double b = n.s.slope;
+    const double drag =
+        2.0 * unit * mu * (n.s.cd0 + n.s.K * a * (a - b * n.lambda) + 0.5 * n.lambda * a);
+    const double cl2 =
+        a * a * (1.0 + 0.5 * mu * mu) - 2.0 * a * b * n.lambda + std::pow(b * n.lambda, 2);
+    const double torque =
+        2.0 * unit * n.R *
+        (n.s.cd0 * (1.0 + 0.5 * mu * mu) + n.s.K * cl2 + n.lambda * (a - b * n.lambda));
+    const auto two_percent = [](double x) {
+      return stated(0.02 * std::abs(x) + 1e-9,
+                    "small angles: phi^2/2 and cd phi against cl, phi < 0.06");
+    };
+    EXPECT_TRUE(near(got.thrust_N, thrust, two_percent(thrust))) << mu;
+    EXPECT_TRUE(near(-got.fx_N, drag, two_percent(drag))) << mu;
+    EXPECT_TRUE(near(got.drive_N * n.R, torque, two_percent(torque))) << mu;
+  }
+}
+
+// Aft of the shaft the skewed wake blows stronger: the nose comes up by more lift in front.
+TEST(Oblique, SkewedWakeLiftsTheNose) {
+  EXPECT_GT(Rotor(hobbyking(), 1).steady(forward(3.0)).tau_P_Nm.y(), 0.0);
+  EXPECT_GT(Rotor(hobbyking(), -1).steady(forward(3.0)).tau_P_Nm.y(), 0.0);
+}
+
+}  // namespace
+}  // namespace whirl::plant
