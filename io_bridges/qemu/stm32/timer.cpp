@@ -108,8 +108,8 @@ void Timer::reset() {
 
 std::uint32_t Timer::read(std::uint32_t offset, unsigned size) {
   sync();
+  // What the counter passed while nobody waited for it concerns nobody now: no settle() here.
   const std::uint32_t word = read_word(offset & ~3u);
-  settle();
   return part_of_word(word, offset, size);
 }
 
@@ -151,7 +151,10 @@ std::uint32_t Timer::read_word(std::uint32_t offset) {
     case CCR4: {
       const int ch = static_cast<int>(offset - CCR1) / 4;
       if (ch >= can_.channels) return 0;
-      if (!is_output(ch)) sr_ &= ~(CC1IF << ch);  // reading a capture takes it
+      if (!is_output(ch) && (sr_ & (CC1IF << ch)) != 0) {  // reading a capture takes it
+        sr_ &= ~(CC1IF << ch);
+        settle();
+      }
       return channel_[static_cast<std::size_t>(ch)].ccr;
     }
     case BDTR:

@@ -1,0 +1,166 @@
+// Images in the manner of other people's drivers, run on the whole STM32F405: each reports what it
+// measured as "name value" lines on USART2. What is expected follows from the settings in the image
+// (dividers, volts on pins, ISO 11898) and the data sheet, never from the models.
+#include <gtest/gtest.h>
+
+#include <map>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "harness/target/virtual_board.hpp"
+
+namespace whirl::board_test {
+namespace {
+
+using Report = std::map<std::string, std::vector<std::uint32_t>>;
+
+constexpr const char* kTerminal =
+    R"({"name":"terminal","type":"serial","bus":"usart2","baud":115200})";
+
+struct ImageRun {
+  Report report;
+  std::string findings, error;
+};
+
+// Runs until the image says that it is done, at most so many virtual milliseconds.
+ImageRun run_image(const std::string& image, const std::string& devices, int milliseconds) {
+  VirtualBoardOptions options;
+  options.board_json =
+      R"({"board":"driver images","mcu":"stm32f405rg","hse_Hz":8000000,"image":")" +
+      std::string(WHIRL_IMAGES) + "/" + image + R"(.elf","devices":[)" + kTerminal + devices + "]}";
+  VirtualBoard board(options);
+  ImageRun run;
+  const auto started = board.start();
+  if (!started) {
+    run.error = started.error().message();
+    return run;
+  }
+  std::string text;
+  const auto take = [&](const io::Batch& batch) {
+    for (io::Reader r(batch.bytes()); r.next();) {
+      const std::string payload(r.payload().begin(), r.payload().end());
+      if (r.header().kind == io::Kind::uart_received) text += payload;
+      if (r.header().kind == io::Kind::finding) run.findings += payload + "\n";
+      if (r.header().kind == io::Kind::cpu_fault) run.error += "the image faulted\n";
+    }
+  };
+  io::Batch happened;
+  for (int k = 1; k <= milliseconds && text.find("\ndone 1\n") == std::string::npos; ++k) {
+    board.run(k * 1'000'000LL, {});
+    const auto state = board.arrive(happened);
+    take(happened);
+    if (!state) {
+      run.error += state.error().message();
+      break;
+    }
+    if (state.value() != TargetState::running) break;
+  }
+  board.stop(happened);
+  std::istringstream lines(text);
+  std::string name;
+  std::uint32_t value = 0;
+  while (lines >> name >> value) run.report[name].push_back(value);
+  if (run.report.count("done") == 0) run.error += "never done; it said:\n" + text + run.findings;
+  return run;
+}
+
+using Values = std::vector<std::uint32_t>;
+
+void expect_between(std::uint32_t low, const Values& got, std::uint32_t high) {
+  ASSERT_EQ(got.size(), 1u);
+  EXPECT_GE(got[0], low);
+  EXPECT_LE(got[0], high);
+}
+
+TEST(DriverImages, HalStyle) {
+  ImageRun run = run_image("hal_style",
+                           R"(,{"name":"v1","type":"volts","bus":"PA1","params":{"volts":1.65}})"
+                           R"(,{"name":"wire","type":"jumper","cs":"PB6","int":"PA8"})",
+                           8000);
+  ASSERT_EQ(run.error, "") << run.findings;
+  Report& got = run.report;
+  EXPECT_EQ(got["failures"], (Values{0, 0}));
+  expect_between(99, got["tim3_updates"], 101);  // 1 kHz for 99 to 100 ms
+  EXPECT_EQ(got["pwm_period_us"], Values{2000});
+  EXPECT_EQ(got["pwm_high_us"], Values{500});
+  EXPECT_EQ(got["adc_poll"], Values{2048});  // half of 3.3 V
+  EXPECT_EQ(got["adc_dma_done"], Values{1});
+  // Half scale, 0.76 V at 25 degrees, 1.21 V reference, half scale: data sheet typical values.
+  EXPECT_EQ(got["adc_dma"], (Values{2048, 943, 1502, 2048}));
+  EXPECT_EQ(got["crc"], Values{0xC704DD7B});
+  EXPECT_EQ(got["rng_differs"], Values{1});
+  EXPECT_EQ(got["rtc_hms"], (Values{0x123458, 0x123500}));  // two seconds later
+  EXPECT_EQ(got["rtc_date"], Values{0x26B121});
+  EXPECT_EQ(run.findings, "");
+}
+
+TEST(DriverImages, SplStyle) {
+  ImageRun run = run_image("spl_style",
+                           R"(,{"name":"v1","type":"volts","bus":"PA1","params":{"volts":0.825}})"
+                           R"(,{"name":"v4","type":"volts","bus":"PA4","params":{"volts":2.475}})"
+                           R"(,{"name":"wire","type":"jumper","cs":"PC0","int":"PA0"})",
+                           1000);
+  ASSERT_EQ(run.error, "") << run.findings;
+  Report& got = run.report;
+  EXPECT_EQ(got["dma_words"], Values{64});
+  expect_between(800, got["adc_eight_us"], 803);  // eight triggers, 100 us apart
+  EXPECT_EQ(got["adc1"], Values{1024});
+  EXPECT_EQ(got["adc2"], Values{3072});
+  // Half of 100 us less a dead time of 400 clocks of 168 MHz: 47.62 %.
+  expect_between(466, got["main_permille"], 486);
+  expect_between(466, got["complement_permille"], 486);
+  EXPECT_EQ(got["shoot_through"], Values{0});
+  EXPECT_EQ(got["moe_after_break"], Values{0});
+  EXPECT_EQ(got["burst_ccr"], (Values{100, 200, 300}));
+  EXPECT_EQ(got["exti_edges"], Values{5});
+  EXPECT_EQ(got["exti_prompt"], Values{1});
+  EXPECT_EQ(got["i2c_af"], Values{1});
+  EXPECT_EQ(got["i2c_free"], Values{1});
+  EXPECT_EQ(got["dac_before"], Values{0});
+  EXPECT_EQ(got["dac_after"], Values{1234});
+}
+
+TEST(DriverImages, Libopencm3StyleLivesThroughBothWatchdogs) {
+  ImageRun run = run_image("libopencm3_style", "", 3000);
+  ASSERT_EQ(run.error, "") << run.findings;
+  Report& got = run.report;
+  EXPECT_EQ(got["power_on"], Values{1});
+  expect_between(100, got["one_shot_ms"], 101);
+  EXPECT_EQ(got["can_init"], Values{1});
+  EXPECT_EQ(got["can_pending"], Values{2});  // 0x120 and 0x121 pass the filter
+  EXPECT_EQ(got["can_sum"], Values{2 * 0x120 * 1000 + 2 * 0x121});
+  EXPECT_EQ(got["iwdg_flag"], Values{1});
+  EXPECT_EQ(got["power_on_again"], Values{0});
+  // 50 ms of LSI, after the report (about 6 ms), the pulse and the CAN frames: 100 + 2 ms.
+  expect_between(150, got["iwdg_alive_ms"], 170);
+  EXPECT_EQ(got["wwdg_flag"], Values{1});
+  EXPECT_EQ(got["wwdg_warnings"], Values{4});
+  // Four runs of 63 counts of 780 us and one count more, after the report.
+  expect_between(197, got["wwdg_alive_ms"], 210);
+}
+
+TEST(DriverImages, ChibiosStyle) {
+  ImageRun run = run_image("chibios_style",
+                           R"(,{"name":"v1","type":"volts","bus":"PA1","params":{"volts":1.1}})"
+                           R"(,{"name":"wire","type":"jumper","cs":"PB0","int":"PB6"})",
+                           8000);
+  ASSERT_EQ(run.error, "") << run.findings;
+  Report& got = run.report;
+  EXPECT_EQ(got["alarms"], Values{200});
+  EXPECT_EQ(got["alarms_us"], Values{100 + 199 * 137 + 199 * 200 / 2});
+  EXPECT_EQ(got["alarm_prompt"], Values{1});
+  // 16 conversions of 492 clocks at 21 MHz: 374.9 us, so 26 buffers in 10 ms.
+  EXPECT_EQ(got["adc_fulls"], Values{26});
+  EXPECT_EQ(got["adc_last_full"], Values{1});  // RM0090: EN cleared by software sets TCIF
+  EXPECT_EQ(got["adc_pin"], Values{1365});     // a third of the scale
+  EXPECT_EQ(got["adc_vref"], Values{1502});
+  EXPECT_EQ(got["adc_overrun"], Values{0});
+  EXPECT_EQ(got["icu_period"], Values{2500});
+  EXPECT_EQ(got["icu_width"], Values{1500});
+  EXPECT_EQ(got["icu_count_right"], Values{1});
+  EXPECT_EQ(got["rtc_alarms"], Values{3});  // in 3.5 s
+}
+
+}  // namespace
+}  // namespace whirl::board_test
