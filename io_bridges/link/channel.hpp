@@ -6,7 +6,7 @@
 //             what is sensed at t and how far to run next
 //   Waiting   a short spin, then a futex; nothing polls while the other side is alive
 //   Limits    a batch beyond the capacity is refused by post() before it is copied
-//   Cost      measured by `link_cost` (tests): a few us when both sides have a core
+//   Cost      printed by link_cost (tests/): a few us when both sides have a core of their own
 #pragma once
 #include <cstddef>
 #include <cstdint>

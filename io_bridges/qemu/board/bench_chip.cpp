@@ -136,6 +136,7 @@ class BenchChip final : public stm32::ChipModel {
     return false;
   }
   const stm32::Clocks& clocks() const override { return clocks_; }
+  void on_clock_change(std::function<void()>) override {}  // they never do
   double sysclk_Hz() const override { return kClock_Hz; }
 
  private:

@@ -14,6 +14,7 @@ namespace whirl::board {
 namespace {
 
 constexpr std::uint32_t kPeripherals = 0x40000000, kPeripherals_size = 0x20000000;
+constexpr double kLeastCycles = 0.8, kMostCycles = 3.0;  // per instruction, of a Cortex-M4
 constexpr std::uint32_t kPage = 0x1000;
 constexpr std::uint32_t kSysTickException = 15, kFirstInterrupt = 16;
 constexpr std::uint32_t kHardFault = 3, kUsageFault = 6, kLockUp = 255;
@@ -72,6 +73,10 @@ Board::Board(Setup setup, io::Channel channel, Emulator& emulator)
       boundary_(events_, [this] { synchronise(); }) {
   events_.set_clock([this] { return emulator_.now(); });
   events_.set_rearm([this](Nanoseconds deadline) { emulator_.arm(deadline); });
+  chip_->on_clock_change([this] {
+    systick_.clocks_changed();
+    cycle_counter_.clocks_changed();
+  });
   chip_->on_reset_request([this](stm32::ResetCause cause) { emulator_.reset_core(cause); });
 }
 
@@ -174,7 +179,22 @@ void Board::refuse(const Error& error) {
   std::abort();  // as in finish()
 }
 
+// Instructions take the same time whatever SYSCLK is: a profile for 168 MHz does not fit 16 MHz.
+void Board::check_profile() {
+  const double cycles =
+      clocks_told_.sysclk_Hz * 1e-9 * static_cast<double>(setup_.config.ns_per_instruction);
+  if (cycles >= kLeastCycles && cycles <= kMostCycles) return;
+  char text[160];
+  std::snprintf(text, sizeof text,
+                "SYSCLK of %.6g MHz does not fit the timing profile: %lld ns per instruction are "
+                "%.3g cycles",
+                clocks_told_.sysclk_Hz * 1e-6,
+                static_cast<long long>(setup_.config.ns_per_instruction), cycles);
+  find({events_.now(), "board", text});
+}
+
 void Board::add_statistics() {
+  check_profile();
   nlohmann::json list = nlohmann::json::array();
   for (const auto& [address, touch] : unanswered_.touched()) {
     list.push_back({{"address", hex(address)},

@@ -86,6 +86,7 @@ class Board final : stm32::InterruptLines, stm32::SystemBus, stm32::FlashArray {
   void obey(const io::Reader& message);
   void report_clocks();
   void report_busy();
+  void check_profile();
   io::CpuFault fault_registers(const Registers& registers);
   void add_statistics();
   [[noreturn]] void finish(io::BoardState state);

@@ -57,15 +57,13 @@ void SysTick::wrap() {
   ++wraps_;
   if ((control_ & kTickInt) != 0) pend_();
   schedule();
-  follow_clock();
 }
 
-void SysTick::follow_clock() {
-  if ((control_ & kEnable) != 0 && frequency_Hz() != anchor_Hz_) start_from(current());
+void SysTick::clocks_changed() {
+  if ((control_ & kEnable) != 0) start_from(current());
 }
 
 std::uint32_t SysTick::read(std::uint32_t offset, unsigned /*size*/) {
-  follow_clock();
   switch (offset) {
     case kCsr: {
       const std::uint32_t value = control_ | (flag_ ? kCountFlag : 0);
@@ -84,7 +82,6 @@ std::uint32_t SysTick::read(std::uint32_t offset, unsigned /*size*/) {
 }
 
 void SysTick::write(std::uint32_t offset, std::uint32_t value, unsigned /*size*/) {
-  follow_clock();
   if (offset == kRvr) {
     const std::uint32_t now = current();
     reload_ = value & 0xFFFFFFu;  // takes effect at the next wrap; until then the count goes on
@@ -128,8 +125,8 @@ void CycleCounter::rebase(std::uint32_t value) {
   base_Hz_ = clocks_.hclk_Hz();
 }
 
-void CycleCounter::follow_clock() {
-  if (clocks_.hclk_Hz() != base_Hz_) rebase(count());
+void CycleCounter::clocks_changed() {
+  rebase(count());
 }
 
 void CycleCounter::set_trace_enabled(bool on) {
@@ -139,13 +136,11 @@ void CycleCounter::set_trace_enabled(bool on) {
 }
 
 std::uint32_t CycleCounter::read(std::uint32_t offset, unsigned /*size*/) {
-  follow_clock();
   if (offset == kDwtCtrl) return kFourComparators | control_;
   return offset == kDwtCyccnt ? count() : 0;
 }
 
 void CycleCounter::write(std::uint32_t offset, std::uint32_t value, unsigned /*size*/) {
-  follow_clock();
   if (offset == kDwtCtrl) {
     const std::uint32_t kept = count();
     control_ = value & 0x0FFFFFFFu;

@@ -23,9 +23,9 @@ class SysTick final : public stm32::Peripheral {
   std::uint32_t read(std::uint32_t offset, unsigned size) override;
   void write(std::uint32_t offset, std::uint32_t value, unsigned size) override;
   void reset() override;
+  void clocks_changed();
 
  private:
-  void follow_clock();  // at each access and wrap: RCC tells nobody
   double frequency_Hz() const;
   std::uint32_t current() const;
   void start_from(std::uint32_t value);  // counts down from there, now
@@ -53,13 +53,13 @@ class CycleCounter final : public stm32::Peripheral {
   std::uint32_t read(std::uint32_t offset, unsigned size) override;
   void write(std::uint32_t offset, std::uint32_t value, unsigned size) override;
   void reset() override;
+  void clocks_changed();
   void set_trace_enabled(bool on);  // DEMCR.TRCENA
 
  private:
   bool counting() const { return trace_ && (control_ & 1u) != 0; }
   std::uint32_t count() const;
   void rebase(std::uint32_t value);
-  void follow_clock();
 
   io::EventQueue& events_;
   const stm32::Clocks& clocks_;

@@ -8,8 +8,8 @@
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
-#include <iterator>
 #include <optional>
+#include <sstream>
 
 #include "harness/base/digest.hpp"
 
@@ -168,7 +168,10 @@ std::string Image::describe(std::uint32_t address) const {
 Result<Image> load_image(const std::string& path, const Part& part) {
   std::ifstream stream(path, std::ios::binary);
   if (!stream) return bad(path, "cannot be read", "is the path right, and has it been built?");
-  const Bytes file{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  std::stringstream whole;
+  whole << stream.rdbuf();
+  const std::string text = whole.str();
+  const Bytes file(text.begin(), text.end());
   const auto head = check_head(path, file, part);
   if (!head) return head.error();
   auto segments = read_segments(path, file, head.value(), part);

@@ -57,6 +57,8 @@ class ChipModel {
   // Volts at an analog input, asked for at each sampling instant.
   virtual bool set_analog(std::string_view pin, std::function<double(Nanoseconds)> volts) = 0;
   virtual const Clocks& clocks() const = 0;
+  // Told after each change of a clock, for what is clocked outside of the chip model (SysTick).
+  virtual void on_clock_change(std::function<void()> changed) = 0;
   virtual double sysclk_Hz() const = 0;  // what the firmware has set up now
 };
 

@@ -50,6 +50,9 @@ class Part : public ChipModel {
   bool join_uart(int number, io::UartPeer& peer) override;
   bool set_analog(std::string_view pin, std::function<double(Nanoseconds)> volts) override;
   const Clocks& clocks() const override { return rcc_; }
+  void on_clock_change(std::function<void()> changed) override {
+    rcc_.on_change(std::move(changed));
+  }
   double sysclk_Hz() const override { return rcc_.sysclk_Hz(); }
 
  protected:
