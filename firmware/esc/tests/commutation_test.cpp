@@ -1,0 +1,171 @@
+#include "firmware/esc/core/commutation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "harness/base/near.hpp"
+
+namespace fw::esc {
+namespace {
+
+using whirl::near;
+using whirl::stated;
+
+constexpr double kPi = std::numbers::pi;
+constexpr int kBus_counts = 2640;  // 16.4 V
+
+// A 950 Kv motor with 7 pole pairs and a 10 x 4.5 propeller, written here from the physics: trapezoidal
+// back-EMF with 120 degree flats, two phases in series, current without lag, no reversal (diodes).
+// Phase A's flat begins where step 0 ought to begin. The floating phase is shown every 50 us.
+class TestMotor {
+ public:
+  void run(Commutation& commutation, double voltage_V, double duration_s) {
+    const auto end = ticks_ + static_cast<std::uint32_t>(duration_s / kTick_s);
+    for (; ticks_ < end; ++ticks_) {
+      turn(voltage_V);
+      if (pending_ && static_cast<Ticks>(ticks_) == due_) {
+        pending_ = false;
+        bridge_ = commutation.step();
+        note_error();
+        commutation.on_commutated(static_cast<Ticks>(ticks_));
+      }
+      if (ticks_ % 100 == 0) {
+        take(commutation.on_sample(static_cast<Ticks>(ticks_), floating_counts(), kBus_counts));
+      }
+    }
+  }
+  void take(const Commutation::Order& order) {
+    if (!order.commutate) return;
+    const auto next = static_cast<Ticks>(ticks_ + 1);
+    const bool past = static_cast<Ticks>(order.at - next) > 0x8000;
+    due_ = past ? next : order.at;
+    pending_ = true;
+  }
+  void seize() { speed = 0.0, seized_ = true; }
+
+  double speed = 0.0;  // mechanical, rad/s
+  double angle = 0.0;  // electrical
+  double noise_counts = 0.0;
+  double load_Nm = 0.0;
+  double worst_error_deg = 0.0;
+  double current_A = 0.0;
+
+ private:
+  static constexpr double kTick_s = 0.5e-6, kKt = 0.01005, kR = 0.16, kJ = 3.752e-5;
+
+  // Phase 0, 1, 2: +1 from 0 to 120 degrees, -1 from 180 to 300, linear between.
+  double shape(int phase) const {
+    const double degrees = (angle - phase * 2.0 * kPi / 3.0) * 180.0 / kPi;
+    const double x = degrees - 360.0 * std::floor(degrees / 360.0);
+    if (x < 120.0) return 1.0;
+    if (x < 180.0) return 1.0 - (x - 120.0) / 30.0;
+    if (x < 300.0) return -1.0;
+    return -1.0 + (x - 300.0) / 30.0;
+  }
+  void turn(double voltage_V) {
+    static constexpr int kHigh[] = {0, 0, 1, 1, 2, 2}, kLow[] = {1, 2, 2, 0, 0, 1};
+    const double pull = 0.5 * (shape(kHigh[bridge_]) - shape(kLow[bridge_]));
+    current_A = std::max(0.0, (voltage_V - kKt * speed * pull) / kR);
+    const double friction_Nm = speed > 1.0 ? 0.01005 : 0.0;
+    const double drag_Nm = 2.32e-7 * speed * speed + friction_Nm + load_Nm;
+    speed += kTick_s / kJ * (kKt * pull * current_A - drag_Nm);
+    if (seized_) speed = 0.0;
+    angle += 7.0 * speed * kTick_s;
+  }
+  int floating_counts() const {
+    static constexpr int kFloating[] = {2, 1, 0, 2, 1, 0};
+    const double emf_V = 0.5 * kKt * speed * shape(kFloating[bridge_]);
+    const double noise = noise_counts * std::sin(12.9898 * static_cast<double>(ticks_));
+    return static_cast<int>(std::lround(kBus_counts / 2.0 + emf_V / 6.2e-3 + noise));
+  }
+  void note_error() {
+    const double error = std::remainder(angle - bridge_ * kPi / 3.0, 2.0 * kPi) * 180.0 / kPi;
+    worst_error_deg = std::max(worst_error_deg, std::abs(error));
+  }
+
+  std::uint32_t ticks_ = 0;
+  bool pending_ = false, seized_ = false;
+  Ticks due_ = 0;
+  int bridge_ = 0;
+};
+
+struct Turning {
+  Commutation commutation;
+  TestMotor motor;
+  explicit Turning(double load_Nm = 0.0, double noise_counts = 0.0, double off_rad = 0.1)
+      : commutation([] {
+          CommutationConfig config;
+          config.advance_share = 0;
+          return config;
+        }()) {
+    motor.load_Nm = load_Nm;
+    motor.noise_counts = noise_counts;
+    motor.angle = 2.0 * kPi / 3.0 - off_rad;  // where step 0's field holds the rotor
+    motor.take(commutation.start(0));
+    motor.run(commutation, 2.0, 0.4);
+  }
+};
+
+TEST(Commutation, StartsFromAlignmentAtTwoVolts) {
+  Turning t;
+  EXPECT_TRUE(t.commutation.in_sync());
+  EXPECT_GT(t.motor.speed, 120.0);
+  EXPECT_TRUE(
+      near(t.commutation.speed_radps(), t.motor.speed, stated(0.02 * t.motor.speed, "ticks")));
+}
+
+TEST(Commutation, CommutatesWithinFiveDegreesAtEverySpeed) {
+  Turning t;
+  for (double voltage_V : {2.0, 4.0, 6.0, 8.0, 10.0}) {
+    t.motor.run(t.commutation, voltage_V, 0.5);
+    t.motor.worst_error_deg = 0.0;
+    t.motor.run(t.commutation, voltage_V, 0.2);
+    EXPECT_LT(t.motor.worst_error_deg, 5.0) << voltage_V;
+    EXPECT_TRUE(near(t.commutation.speed_radps(), t.motor.speed,
+                     stated(0.02 * t.motor.speed, "50 us samples in a sector of 150 us or more")));
+  }
+}
+
+TEST(Commutation, StaysInSyncThroughAStepAtTwentyAmperes) {
+  Turning t;
+  t.motor.run(t.commutation, 5.0, 0.5);
+  t.motor.worst_error_deg = 0.0;
+  t.motor.run(t.commutation, 8.0, 0.2);  // 19 A at first: as fast as the limit lets it turn
+  EXPECT_LT(t.motor.worst_error_deg, 15.0);
+  EXPECT_TRUE(t.commutation.in_sync());
+}
+
+TEST(Commutation, ToleratesNoiseOfTheSamples) {
+  Turning t(0.0, 4.0);  // an LSB or two of noise is what this board shows
+  t.motor.run(t.commutation, 5.0, 0.5);
+  t.motor.worst_error_deg = 0.0;
+  t.motor.run(t.commutation, 5.0, 0.5);
+  EXPECT_LT(t.motor.worst_error_deg, 12.0);
+  EXPECT_TRUE(t.commutation.in_sync());
+}
+
+TEST(Commutation, StartsUnderLoad) {
+  Turning t(0.02);
+  EXPECT_TRUE(t.commutation.in_sync());
+}
+
+TEST(Commutation, LosesSyncWhenTheRotorIsSeizedAndSaysSo) {
+  Turning t;
+  ASSERT_TRUE(t.commutation.in_sync());
+  t.motor.seize();
+  t.motor.run(t.commutation, 2.0, 0.15);
+  EXPECT_FALSE(t.commutation.in_sync());
+  EXPECT_EQ(t.commutation.speed_radps(), 0.0f);
+  EXPECT_GT(t.commutation.bad_detections(), 0u);
+}
+
+TEST(Commutation, StoppedItOrdersNothing) {
+  Commutation commutation(CommutationConfig{});
+  for (Ticks t = 0; t < 60'000; t = static_cast<Ticks>(t + 100)) {
+    EXPECT_FALSE(commutation.on_sample(t, 1000, kBus_counts).commutate);
+  }
+}
+
+}  // namespace
+}  // namespace fw::esc
