@@ -17,6 +17,7 @@ enum class [[nodiscard]] Status : std::uint8_t{
 struct Faults {                        // never decremented by firmware
   std::uint32_t imu_samples_lost = 0;  // ticks of the fallback timer while the IMU should run
   std::uint32_t imu_frozen = 0;        // the same 14 bytes for longer than noise allows
+  std::uint32_t imu_saturated = 0;     // a rate at its rail; the sample was not used
   std::uint32_t imu_reconfigured = 0;  // a register had lost its setting
   std::uint32_t esc_no_answer = 0;     // transactions that failed, retries included
   std::uint32_t esc_bad_status = 0;    // status reads with a wrong CRC

@@ -39,6 +39,14 @@ struct ImuBurst {
   std::array<std::uint8_t, 14> bytes{};
 
   bool operator==(const ImuBurst&) const = default;
+  // A rate at a rail is no measurement: integrating it would turn the attitude by anything.
+  bool rate_saturated() const {
+    for (unsigned at = 8; at < 14; at += 2) {
+      const unsigned raw = static_cast<unsigned>(bytes[at]) << 8 | bytes[at + 1];
+      if (raw == 0x7FFF || raw == 0x8000) return true;
+    }
+    return false;
+  }
   ImuReading decode() const {
     constexpr float kMps2_per_count = 9.80665f / 2048.0f;
     constexpr float kRadps_per_count = 2000.0f / 32768.0f * 0.017453292520f;

@@ -86,6 +86,10 @@ __attribute__((noinline)) void imu_task() {
   last = burst;
   if (same == kFrozen_samples) ++faults.imu_frozen;
   flight().set_imu_frozen(same >= kFrozen_samples);
+  if (burst.rate_saturated()) {
+    ++faults.imu_saturated;
+    return flight().on_imu_missing();
+  }
   const ImuReading r = burst.decode();
   const float* a = r.acceleration_mps2;
   const float* w = r.rate_radps;
@@ -189,11 +193,12 @@ void show_state() {
 }
 
 const char* boot_text() {
+  const hal::ResetCause cause = hal::take_reset_cause();
   if (fw_fault_record.magic == FaultRecord::kMagic) {
     fw_fault_record.magic = ~FaultRecord::kMagic;  // told once; the registers stay
     return "boot after a fault, see fw_fault_record";
   }
-  switch (hal::take_reset_cause()) {
+  switch (cause) {
     case hal::ResetCause::power:
       return "boot: power";
     case hal::ResetCause::pin:
@@ -213,6 +218,14 @@ void start_leds() {
   hal::LedBlue::output(false, true);
 }
 
+// Without the crystal no baud rate and no period is right. The ESCs never see a set-point, so the
+// motors never arm; the amber LED says that something is wrong.
+[[noreturn]] void stay_on_ground() {
+  hw::RCC::AHB1ENR::set(hw::RCC::GPIOBEN);
+  hal::LedAmber::output(false, false);
+  for (;;) hal::wait_for_interrupt();
+}
+
 }  // namespace
 
 }  // namespace fw
@@ -220,8 +233,7 @@ void start_leds() {
 extern "C" void fw_main() {
   using namespace fw;
   health.boot_text = boot_text();
-  const Status clocks = hal::start_clocks();
-  if (clocks != Status::ok) health.boot_text = "boot: no crystal, no flight";
+  if (hal::start_clocks() != Status::ok) stay_on_ground();
   hal::start_time_base();
   hal::spi1.init();  // switches on the clocks of all ports in use
   start_leds();

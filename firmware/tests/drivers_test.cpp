@@ -119,6 +119,21 @@ TEST(Mpu6000Driver, ScalesABurst) {
   EXPECT_EQ(spi.too_fast, 0);
 }
 
+TEST(Mpu6000Driver, KnowsARateAtItsRailAndLetsAccelerationClip) {
+  ImuBurst burst;
+  EXPECT_FALSE(burst.rate_saturated());
+  burst.bytes[0] = 0x7F;  // acceleration x at its rail: a hard landing, not a broken part
+  burst.bytes[1] = 0xFF;
+  EXPECT_FALSE(burst.rate_saturated());
+  burst.bytes[12] = 0x80;  // rate z, negative rail
+  EXPECT_TRUE(burst.rate_saturated());
+  burst.bytes[13] = 0x01;  // one count inside
+  EXPECT_FALSE(burst.rate_saturated());
+  burst.bytes[8] = 0x7F;
+  burst.bytes[9] = 0xFF;
+  EXPECT_TRUE(burst.rate_saturated());
+}
+
 TEST(Mpu6000Driver, NoticesALostSettingInFlightAndRestoresIt) {
   FakeSpi spi;
   Mpu6000<FakeSpi> imu(spi);

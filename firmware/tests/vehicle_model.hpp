@@ -35,7 +35,7 @@ class VehicleModel {
   // One millisecond: physics, sensors, and the tasks that are due.
   void step(Flight& flight);
   void run(Flight& flight, double seconds) {
-    for (int i = 0; i < static_cast<int>(seconds * 1000.0 + 0.5); ++i) step(flight);
+    for (long i = std::lround(seconds * 1000.0); i > 0; --i) step(flight);
   }
 
   Eigen::Vector3d p_W_{0, 0, -kFoot_m}, v_W_{0, 0, 0}, w_B_{0, 0, 0}, wind_W_{0, 0, 0};

@@ -84,6 +84,13 @@ flight_plan("a radio that falls silent makes the image land by itself", function
   t:within("6 s", function(s) return s.told_armed == 0 end, "disarmed")
 end)
 
+flight_plan("a rate at its rail for 10 ms is not believed", function(t)
+  hover(t)
+  t:fault { kind = "sensor_saturated", device = "imu", axis = "gyro_x", duration = "10 ms" }
+  t:wait "500 ms"
+  flies_on(t)
+end)
+
 flight_plan("an IMU that leaves the bus stops the motors", function(t)
   hover(t)
   t:fault { kind = "spi_silent", device = "imu" }
