@@ -51,9 +51,19 @@ void Commutation::note_sector(Ticks length) {
   sector_ = static_cast<Ticks>(mixed < config_.shortest_sector ? config_.shortest_sector : mixed);
 }
 
+void Commutation::lose() {
+  state_ = State::starting;
+  ++bad_detections_;
+  good_ = missed_ = 0;
+}
+
 Commutation::Order Commutation::crossed(Ticks at) {
   if (crossing_known_) {
-    note_sector(since(at, crossed_at_));
+    const Ticks length = since(at, crossed_at_);
+    const bool odd = length > 2u * sector_ || 2u * length < sector_;
+    if (state_ == State::running && odd && ++missed_ >= kInARow / 2) lose();
+    if (!odd) missed_ = 0;
+    note_sector(length);
     if (good_ < kInARow && ++good_ == kInARow) state_ = State::running;
   } else {
     // The first crossing of a start lies half a sector after its commutation.
@@ -62,7 +72,6 @@ Commutation::Order Commutation::crossed(Ticks at) {
   }
   crossing_known_ = true;
   crossed_at_ = at;
-  missed_ = 0;
   const Ticks half = static_cast<Ticks>(sector_ / 2);
   return order(static_cast<Ticks>(at + half - share_of(sector_, config_.advance_share)));
 }
@@ -106,7 +115,9 @@ Commutation::Order Commutation::on_sample(Ticks now, int floating_counts, int bu
     return crossed(static_cast<Ticks>(now - back));
   } else if (side < -config_.start_clear_counts &&
              (state_ == State::starting || elapsed >= sector_ / 2)) {
-    return crossed(now);  // it had crossed before we could look: catch up
+    // It had crossed before we could look: believe the expected moment, if there is one.
+    const auto expected = static_cast<Ticks>(commutated_at_ + sector_ / 2);
+    return crossed(state_ == State::running ? expected : now);
   }
   // No crossing where one and a half sectors have passed: go on blindly, but not for ever.
   const Ticks patience = static_cast<Ticks>(sector_ < 0x5000 ? sector_ + sector_ / 2 : sector_);
@@ -114,7 +125,7 @@ Commutation::Order Commutation::on_sample(Ticks now, int floating_counts, int bu
   ++bad_detections_;
   good_ = 0;
   crossing_known_ = false;
-  if (state_ == State::running && ++missed_ >= kInARow) state_ = State::starting;
+  if (state_ == State::running && ++missed_ >= kInARow) lose();
   return order(now);
 }
 

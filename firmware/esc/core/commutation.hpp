@@ -23,7 +23,7 @@ struct CommutationConfig {
   Ticks shortest_sector = 180;     // 90 us: beyond 13,000 rpm with 7 pole pairs
   Ticks start_blank = 300;         // while starting, sectors are only guessed: 150 us
   int start_clear_counts = 10;     // doubled counts off the middle that noise alone does not reach
-  std::uint8_t blank_share = 64;   // of 256: share of a sector that is not looked at
+  std::uint8_t blank_share = 32;   // of 256: share of a sector that is not looked at
   std::uint8_t advance_share = 8;  // of 256: commutate earlier by this share of a sector
 };
 
@@ -57,6 +57,7 @@ class Commutation {
   std::uint8_t previous_step() const { return static_cast<std::uint8_t>((step_ + 5) % 6); }
   Order overtaken(Ticks now, int side, int bus_counts);
   Order crossed(Ticks at);
+  void lose();
   void note_sector(Ticks length);
   Order order(Ticks at);
 

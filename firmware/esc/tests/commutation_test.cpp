@@ -117,7 +117,7 @@ TEST(Commutation, StartsFromAlignmentAtTwoVolts) {
 
 TEST(Commutation, CommutatesWithinFiveDegreesAtEverySpeed) {
   Turning t;
-  for (double voltage_V : {2.0, 4.0, 6.0, 8.0, 10.0}) {
+  for (double voltage_V : {2.0, 4.0, 6.0, 8.0, 10.0, 12.0}) {
     t.motor.run(t.commutation, voltage_V, 0.5);
     t.motor.worst_error_deg = 0.0;
     t.motor.run(t.commutation, voltage_V, 0.2);
