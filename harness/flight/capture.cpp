@@ -14,25 +14,31 @@ Eigen::Vector3d roll_pitch_yaw_rad(const Eigen::Quaterniond& q_WB) {
 }
 
 Capture::Capture(const CaptureParams& params, std::uint64_t seed)
-    : params_(params), position_(seed, "capture.position"), angle_(seed, "capture.angle") {
+    : params_(params), cameras_(params.cameras, seed) {
   WHIRL_CHECK(params.rate_Hz > 0.0, params.rate_Hz);
 }
 
-std::optional<CapturedPose> Capture::look(std::int64_t t_ns, const Eigen::Vector3d& p_WB_W_m,
-                                          const Eigen::Quaterniond& q_WB) {
-  const auto due_ns = std::llround(static_cast<double>(frame_) * 1e9 / params_.rate_Hz);
+bool Capture::occluded(std::int64_t t_ns) {
+  const auto now = std::find_if(occlusions_.begin(), occlusions_.end(), [t_ns](const Occlusion& o) {
+    return t_ns >= o.start_ns && t_ns < o.end_ns;
+  });
+  if (now == occlusions_.end()) return false;
+  now->acted = true;
+  return true;
+}
+
+std::optional<CapturedPose> Capture::look(std::int64_t t_ns, const plant::Truth& truth) {
+  // The cameras go on drawing their errors while occluded: a fault does not shift later ones.
+  const auto frame = cameras_.step(static_cast<double>(t_ns) * 1e-9, truth);
+  if (frame && !occluded(t_ns)) newest_ = frame;
+  const auto due_ns = std::llround(static_cast<double>(asked_) * 1e9 / params_.rate_Hz);
   if (t_ns < due_ns) return std::nullopt;
-  ++frame_;
-  CapturedPose pose{t_ns, t_ns + params_.latency_ns, p_WB_W_m, roll_pitch_yaw_rad(q_WB)};
-  for (int i = 0; i < 3; ++i) {  // drawn also when occluded: the stream keeps its place
-    pose.p_WB_W_m[i] += params_.position_noise_m * position_.normal();
-    pose.roll_pitch_yaw_rad[i] += params_.angle_noise_rad * angle_.normal();
-  }
-  for (Occlusion& occlusion : occlusions_) {
-    if (t_ns < occlusion.start_ns || t_ns >= occlusion.end_ns) continue;
-    occlusion.acted = true;
-    return std::nullopt;
-  }
+  ++asked_;
+  if (!newest_) return std::nullopt;
+  const std::int64_t exposed_ns = std::llround(newest_->taken_s * 1e9);
+  const CapturedPose pose{exposed_ns, exposed_ns + params_.latency_ns, newest_->p_WB_W_m,
+                          roll_pitch_yaw_rad(newest_->q_WB)};
+  newest_.reset();
   return pose;
 }
 

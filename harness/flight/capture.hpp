@@ -1,24 +1,23 @@
-// The motion-capture system: the pose of the vehicle as cameras find it.
+// The motion-capture system as the radio sees it: the cameras' newest pose, passed on at the radio's
+// own rate and late.
 //
 //   In       true pose, frames W and B (plant/frames.hpp)
-//   Out      a pose with white noise, at most one per period, late by latency_ns; none while it is
-//            occluded
-//   Left out marker swaps, slow drift of the calibration
+//   Out      at most one pose per radio period, latency_ns after its exposure; none while it is
+//            occluded or out of the room (plant/sensors/motion_capture.hpp)
 #pragma once
 #include <Eigen/Geometry>
 #include <cstdint>
 #include <optional>
 #include <vector>
 
-#include "harness/base/random.hpp"
+#include "plant/sensors/motion_capture.hpp"
 
 namespace whirl::flight {
 
 struct CaptureParams {
-  double rate_Hz = 40.0;
+  plant::MotionCaptureParams cameras;
+  double rate_Hz = 40.0;                // to the vehicle
   std::int64_t latency_ns = 8'000'000;  // exposure to the radio's input
-  double position_noise_m = 0.001;      // one sigma, each axis
-  double angle_noise_rad = 0.002;
 };
 
 struct CapturedPose {
@@ -42,15 +41,17 @@ class Capture {
   void occlude(const Occlusion& occlusion) { occlusions_.push_back(occlusion); }
   const std::vector<Occlusion>& occlusions() const { return occlusions_; }
 
-  // Asked at each step; gives a pose when one is due at t_ns and the cameras see the vehicle.
-  std::optional<CapturedPose> look(std::int64_t t_ns, const Eigen::Vector3d& p_WB_W_m,
-                                   const Eigen::Quaterniond& q_WB);
+  // Asked at each step; gives a pose when the radio wants one and the cameras have a new one.
+  std::optional<CapturedPose> look(std::int64_t t_ns, const plant::Truth& truth);
 
  private:
+  bool occluded(std::int64_t t_ns);
+
   CaptureParams params_;
+  plant::MotionCapture cameras_;
   std::vector<Occlusion> occlusions_;
-  std::int64_t frame_ = 0;
-  RandomStream position_, angle_;
+  std::optional<plant::CaptureFrame> newest_;  // not yet passed on
+  std::int64_t asked_ = 0;                     // radio periods so far
 };
 
 }  // namespace whirl::flight

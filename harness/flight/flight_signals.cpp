@@ -81,7 +81,7 @@ void FlightWorld::name_telemetry_signals() {
   add_signal("told_current", D::current, "", [=] { return told().current_A; });
   add_signal("told_load", D::ratio, "processor load", [=] { return told().load; });
   add_signal("heartbeat_age", D::time, "", [=] { return told().heartbeat_age_s; });
-  add_signal("command_result", D::none, "of the last COMMAND_ACK, -1 before the first",
+  add_signal("command_result", D::none, "of the last COMMAND_ACK; -1 waiting for it, -2 never came",
              [this] { return static_cast<double>(station_.last_result()); });
   add_signal("command_pending", D::none, "1: a command waits for its answer",
              [this] { return station_.command_pending() ? 1.0 : 0.0; });

@@ -103,7 +103,8 @@ void FlightWorld::tell(std::int64_t t_ns, io::Batch& sensed) {
     sensed.add(io::Kind::uart_frame, kRadioPort, at_ns, frame.data(),
                static_cast<std::uint32_t>(frame.size()));
   };
-  if (const auto pose = capture_.look(t_ns, s.p_WB_W_m, s.q_WB)) station_.send_pose(*pose, send);
+  const plant::Truth seen{.p_WB_W_m = s.p_WB_W_m, .v_WB_W_mps = s.v_WB_W_mps, .q_WB = s.q_WB};
+  if (const auto pose = capture_.look(t_ns, seen)) station_.send_pose(*pose, send);
   station_.step(t_ns, send);
 }
 

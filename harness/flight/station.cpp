@@ -38,6 +38,7 @@ void Station::command(std::uint16_t command, const std::array<float, 7>& param) 
   pending.message.target_system = kVehicle;
   pending.message.target_component = kVehicle;
   commands_.push_back(pending);
+  last_result_ = kWaiting;
 }
 
 void Station::step(std::int64_t t_ns, const Send& send) {
@@ -57,7 +58,7 @@ void Station::step(std::int64_t t_ns, const Send& send) {
   if (commands_.empty() || t_ns < commands_.front().next_ns) return;
   Pending& first = commands_.front();
   if (first.tries == kTries) {
-    ++unanswered_;
+    last_result_ = kUnanswered;
     commands_.pop_front();
     return;
   }

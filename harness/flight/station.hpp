@@ -53,8 +53,9 @@ class Station {
 
   Telemetry telemetry(std::int64_t now_ns) const;
   bool command_pending() const { return !commands_.empty(); }
-  int last_result() const { return last_result_; }  // of COMMAND_ACK; -1 before the first
-  std::uint64_t unanswered() const { return unanswered_; }
+  // Of the last COMMAND_ACK since a command was given; or one of the two below.
+  int last_result() const { return last_result_; }
+  static constexpr int kWaiting = -1, kUnanswered = -2;        // given up after 20 tries
   const std::string& last_text() const { return last_text_; }  // of STATUSTEXT
 
  private:
@@ -71,8 +72,7 @@ class Station {
   std::optional<Target> target_;
   std::int64_t next_target_ns_ = 0;
   std::deque<Pending> commands_;
-  int last_result_ = -1;
-  std::uint64_t unanswered_ = 0;
+  int last_result_ = kWaiting;
   Telemetry telemetry_;
   std::string last_text_;
   std::int64_t heard_ns_ = 0, heartbeat_ns_ = -1;

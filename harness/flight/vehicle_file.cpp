@@ -89,10 +89,13 @@ void read_esc(const Table& t, EscParams& e) {
 void read_capture(const Table& t, CaptureParams& c) {
   c.rate_Hz = t.quantity_or("rate", Dimension::frequency, c.rate_Hz, above(0.0));
   c.latency_ns = t.duration_ns_or("latency", c.latency_ns);
-  c.position_noise_m =
-      t.quantity_or("position_noise", Dimension::length, c.position_noise_m, at_least(0.0));
-  c.angle_noise_rad =
-      t.quantity_or("angle_noise", Dimension::angle, c.angle_noise_rad, at_least(0.0));
+  plant::MotionCaptureParams& cameras = c.cameras;
+  cameras.period_s =
+      1.0 / t.quantity_or("camera_rate", Dimension::frequency, 200.0, between(1.0, 1000.0));
+  cameras.position_noise_m =
+      t.quantity_or("position_noise", Dimension::length, cameras.position_noise_m, at_least(0.0));
+  cameras.attitude_noise_rad =
+      t.quantity_or("angle_noise", Dimension::angle, cameras.attitude_noise_rad, at_least(0.0));
 }
 
 }  // namespace

@@ -52,6 +52,17 @@ TEST(Station, RepeatsACommandWithRisingConfirmationUntilItIsAcknowledged) {
   EXPECT_FALSE(air.station.command_pending());
 }
 
+TEST(Station, GivesUpAfterTwentyTriesAndSaysSo) {
+  Air air;
+  air.station.command(400, {1.0f});
+  air.run(0, 5900);
+  EXPECT_EQ(air.station.last_result(), -1);
+  air.run(5900, 7000);
+  EXPECT_EQ(air.sent.size(), 20u);
+  EXPECT_EQ(air.station.last_result(), -2);
+  EXPECT_FALSE(air.station.command_pending());
+}
+
 TEST(Station, AnAnswerToAnotherCommandDoesNotCount) {
   Air air;
   air.station.command(400, {1.0f});
@@ -125,27 +136,39 @@ TEST(Capture, LooksFortyTimesASecondAndSendsLate) {
   Capture capture({}, 1);
   std::vector<CapturedPose> poses;
   for (int ms = 0; ms < 1000; ++ms) {
-    const auto pose = capture.look(ms * kMs, {1, 2, -3}, Eigen::Quaterniond::Identity());
+    const auto pose = capture.look(ms * kMs, {.p_WB_W_m = {1.0, 1.5, -2.0}});
     if (pose) poses.push_back(*pose);
   }
   ASSERT_EQ(poses.size(), 40u);
   EXPECT_EQ(poses[1].exposed_ns, 25 * kMs);
   EXPECT_EQ(poses[1].sent_ns, 33 * kMs);
-  EXPECT_TRUE(near(poses[1].p_WB_W_m.z(), -3.0, stated(0.006, "6 sigma")));
-  EXPECT_NE(poses[1].p_WB_W_m.z(), -3.0);
+  EXPECT_TRUE(near(poses[1].p_WB_W_m.z(), -2.0, stated(0.002, "6 sigma")));
+  EXPECT_NE(poses[1].p_WB_W_m.z(), -2.0);
+}
+
+TEST(Capture, OutsideOfTheRoomNothingIsSeen) {
+  Capture capture({}, 1);
+  EXPECT_TRUE(capture.look(0, {.p_WB_W_m = {2.4, 0.0, -1.0}}));
+  EXPECT_FALSE(capture.look(25 * kMs, {.p_WB_W_m = {2.6, 0.0, -1.0}}));
 }
 
 TEST(Capture, AnOcclusionHidesItsWindowOnly) {
   Capture capture({}, 1), open({}, 1);
   capture.occlude({7, 200 * kMs, 400 * kMs});
+  int alike = 0, poses = 0;
   for (int ms = 0; ms < 1000; ++ms) {
-    const auto seen = capture.look(ms * kMs, {0, 0, 0}, Eigen::Quaterniond::Identity());
-    const auto there = open.look(ms * kMs, {0, 0, 0}, Eigen::Quaterniond::Identity());
-    const bool hidden = ms >= 200 && ms < 400;
-    EXPECT_EQ(seen.has_value(), there.has_value() && !hidden) << ms;
-    if (!seen) continue;
-    EXPECT_EQ(seen->p_WB_W_m, there->p_WB_W_m);  // the noise keeps its place
+    const auto seen = capture.look(ms * kMs, {});
+    const auto there = open.look(ms * kMs, {});
+    const bool hidden = there && there->exposed_ns >= 200 * kMs && there->exposed_ns < 400 * kMs;
+    if (seen && there && seen->exposed_ns == there->exposed_ns) {
+      EXPECT_FALSE(hidden) << ms;
+      EXPECT_EQ(seen->p_WB_W_m, there->p_WB_W_m);  // the noise keeps its place
+      ++alike;
+    }
+    poses += seen ? 1 : 0;
   }
+  EXPECT_EQ(alike, 32);  // 1 s at 40 Hz less 0.2 s
+  EXPECT_EQ(poses, 33);  // and the camera frame just before the occlusion
   EXPECT_TRUE(capture.occlusions()[0].acted);
 }
 
