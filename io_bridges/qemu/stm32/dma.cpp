@@ -22,7 +22,7 @@ constexpr std::uint32_t DMDIS = 1u << 2, FEIE = 1u << 7;
 enum Direction : std::uint32_t { from_peripheral = 0, to_peripheral = 1, memory_to_memory = 2 };
 
 constexpr unsigned kFlagShift[4] = {0, 6, 16, 22};
-constexpr int kCyclesPerItem = 8;
+constexpr int kBurst = 16, kCyclesPerBurst = 8 * kBurst;
 
 std::uint32_t direction(std::uint32_t cr) {
   return (cr >> 6) & 3;
@@ -60,12 +60,15 @@ bool Dma::requested(const Stream& s) {
 
 void Dma::arm(int n) {
   Stream& s = streams_[static_cast<std::size_t>(n)];
-  s.requested = requested(s);
-  if (wants_service(s)) wake();
+  const std::uint32_t bit = 1u << n;
+  const bool ready = (s.cr & EN) != 0 && requested(s);
+  ready_ = ready ? ready_ | bit : ready_ & ~bit;
+  if (ready) wake(false);
 }
 
 void Dma::reset() {
   service_.cancel();
+  ready_ = 0;
   for (int n = 0; n < kStreams; ++n) {
     Stream& s = streams_[static_cast<std::size_t>(n)];
     const auto requests = s.requests;
@@ -181,9 +184,9 @@ void Dma::start_block(Stream& s) {
   s.memory_left = s.reload * peripheral_size(s.cr);
 }
 
-void Dma::stop(Stream& s) {
-  s.cr &= ~EN;
-  s.requested = false;
+void Dma::stop(int n) {
+  streams_[static_cast<std::size_t>(n)].cr &= ~EN;
+  ready_ &= ~(1u << n);
 }
 
 // The rest of the FIFO goes to memory, then TCIF tells that the stream has stopped (10.3.15).
@@ -191,40 +194,46 @@ void Dma::disable_by_software(int n) {
   Stream& s = streams_[static_cast<std::size_t>(n)];
   if (direction(s.cr) != to_peripheral) drain_fifo(s, true);
   s.fifo_used = 0;
-  stop(s);
+  stop(n);
   raise(n, TCIF);
 }
 
-bool Dma::wants_service(const Stream& s) const {
-  return (s.cr & EN) != 0 && s.requested;
-}
-
-void Dma::wake() {
-  if (service_.pending()) return;
+// At this very instant, or after a burst when the bus has been busy for as long.
+void Dma::wake(bool after_burst) {
+  if (serving_ || service_.pending()) return;
   const double hclk_Hz = chip_.clocks.hclk_Hz();
-  service_.in(hclk_Hz > 0.0 ? std::llround(kCyclesPerItem * 1e9 / hclk_Hz) : 1000);
+  const bool waits = after_burst && hclk_Hz > 0.0;
+  service_.in(waits ? std::llround(kCyclesPerBurst * 1e9 / hclk_Hz) : 0);
 }
 
 int Dma::pick() const {
   int best = -1;
   std::uint32_t best_priority = 0;
-  for (int n = 0; n < kStreams; ++n) {
-    const Stream& s = streams_[static_cast<std::size_t>(n)];
-    if (!wants_service(s)) continue;
-    const std::uint32_t priority = (s.cr >> 16) & 3;
-    if (best < 0 || priority > best_priority) {
-      best = n;
-      best_priority = priority;
-    }
+  for (std::uint32_t left = ready_; left != 0; left &= left - 1) {
+    const int n = __builtin_ctz(left);
+    const std::uint32_t priority = (streams_[static_cast<std::size_t>(n)].cr >> 16) & 3;
+    if (best >= 0 && priority <= best_priority) continue;
+    best = n;
+    best_priority = priority;
   }
   return best;
 }
 
 void Dma::service() {
-  const int n = pick();
-  if (n < 0) return;
-  move(n);
-  if (pick() >= 0) wake();
+  serving_ = true;  // what is raised meanwhile is seen by the loop
+  const bool done = serve_burst();
+  serving_ = false;
+  if (!done) wake(true);
+}
+
+// False: the burst is full and more is wanted.
+bool Dma::serve_burst() {
+  for (int i = 0; i < kBurst; ++i) {
+    const int n = pick();
+    if (n < 0) return true;
+    move(n);
+  }
+  return ready_ == 0;
 }
 
 void Dma::move(int n) {
@@ -322,7 +331,7 @@ void Dma::item_done(int n) {
     if (request->level()) request->served();
     if (s.ndtr == 1) request->last_but_one();
   }
-  s.requested = requested(s);
+  if (!requested(s)) ready_ &= ~(1u << n);
   if (s.ndtr == s.reload / 2 && s.reload > 1) raise(n, HTIF);
   if (s.ndtr == 0) block_done(n);
 }
@@ -334,7 +343,7 @@ void Dma::block_done(int n) {
     if ((s.cr & DBM) != 0) s.cr ^= CT;
     start_block(s);
   } else {
-    stop(s);
+    stop(n);
     for (DmaRequest* request : s.requests[(s.cr >> 25) & 7]) {
       if (request != nullptr) request->transfer_complete();
     }
@@ -344,7 +353,7 @@ void Dma::block_done(int n) {
 
 void Dma::fail(int n) {
   Stream& s = streams_[static_cast<std::size_t>(n)];
-  stop(s);
+  stop(n);
   s.fifo_used = 0;
   raise(n, TEIF);
 }

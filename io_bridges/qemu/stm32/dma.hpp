@@ -1,8 +1,8 @@
 // DMA1, DMA2 of the STM32F405: eight streams, each with eight request channels.
 //
 //   Source    RM0090 chapter 10
-//   Timing    the controller moves one item per 8 HCLK cycles, the first that long after the
-//             request; the software priority (PL), then the lower stream number wins
+//   Timing    a request is served at its instant, by software priority (PL), then by the lower
+//             stream number; a run of requests at 8 HCLK cycles per item, in bursts of 16
 //   FIFO      threshold, packing and unpacking (PSIZE != MSIZE), flush at the end or on disable;
 //             bursts are moved item by item
 //   Findings  EN set with flags of the last transfer still up, PFCTRL, memory-to-memory on DMA1
@@ -34,7 +34,6 @@ class Dma final : public WordBlock {
     std::uint32_t memory_left = 0;  // bytes still to be moved on the memory side
     std::array<std::uint8_t, 16> fifo{};
     unsigned fifo_used = 0;
-    bool requested = false;
   };
 
   std::uint32_t read_word(std::uint32_t offset) override;
@@ -42,12 +41,12 @@ class Dma final : public WordBlock {
   void write_cr(int n, std::uint32_t value);
   void enable(int n);
   void disable_by_software(int n);
-  void stop(Stream& s);
+  void stop(int n);
   void arm(int n);
   static bool requested(const Stream& s);
-  bool wants_service(const Stream& s) const;
-  void wake();
+  void wake(bool after_burst);
   void service();
+  bool serve_burst();
   int pick() const;
   void move(int n);
   void move_peripheral_to_memory(int n);
@@ -68,7 +67,9 @@ class Dma final : public WordBlock {
   std::array<int, kStreams> irqs_;
   bool memory_to_memory_;
   std::array<Stream, kStreams> streams_;
+  std::uint32_t ready_ = 0;  // streams that are enabled and requested
   io::Event service_;
+  bool serving_ = false;
   std::uint32_t reported_ = 0;
 };
 

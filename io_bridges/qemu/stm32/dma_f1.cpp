@@ -9,7 +9,7 @@ namespace {
 constexpr std::uint32_t EN = 1u << 0, TCIE = 1u << 1, HTIE = 1u << 2, TEIE = 1u << 3, DIR = 1u << 4,
                         CIRC = 1u << 5, PINC = 1u << 6, MINC = 1u << 7, MEM2MEM = 1u << 14;
 constexpr std::uint32_t GIF = 1, TCIF = 2, HTIF = 4, TEIF = 8;
-constexpr int kCyclesPerItem = 8;
+constexpr int kBurst = 16, kCyclesPerBurst = 8 * kBurst;
 
 unsigned peripheral_size(std::uint32_t ccr) {
   return 1u << std::min((ccr >> 8) & 3, 2u);
@@ -30,7 +30,7 @@ void DmaF1::connect(int channel, DmaRequest& request) {
   Channel& c = channels_[static_cast<std::size_t>(channel - 1)];
   c.requests.push_back(&request);
   request.on_change([this, &c](bool) {
-    if (wants_service(c)) wake();
+    if (wants_service(c)) wake(false);
   });
 }
 
@@ -103,7 +103,7 @@ void DmaF1::write_ccr(Channel& c, std::uint32_t value) {
     c.reload = c.cndtr;
     c.peripheral = c.cpar;
     c.memory = c.cmar;
-    if (wants_service(c)) wake();
+    if (wants_service(c)) wake(false);
   }
   update_irq(c);
 }
@@ -114,10 +114,11 @@ bool DmaF1::wants_service(const Channel& c) {
                                                [](const DmaRequest* r) { return r->level(); });
 }
 
-void DmaF1::wake() {
-  if (service_.pending()) return;
+void DmaF1::wake(bool after_burst) {
+  if (serving_ || service_.pending()) return;
   const double hclk_Hz = chip_.clocks.hclk_Hz();
-  service_.in(hclk_Hz > 0.0 ? std::llround(kCyclesPerItem * 1e9 / hclk_Hz) : 1000);
+  const bool waits = after_burst && hclk_Hz > 0.0;
+  service_.in(waits ? std::llround(kCyclesPerBurst * 1e9 / hclk_Hz) : 0);
 }
 
 DmaF1::Channel* DmaF1::pick() {
@@ -130,16 +131,26 @@ DmaF1::Channel* DmaF1::pick() {
 }
 
 void DmaF1::service() {
-  Channel* c = pick();
-  if (c == nullptr) return;
-  if (move(*c)) {
-    item_done(*c);
-  } else {
-    c->ccr &= ~EN;
-    c->flags |= TEIF | GIF;
-    update_irq(*c);
+  serving_ = true;  // what is raised meanwhile is seen by the loop
+  const bool done = serve_burst();
+  serving_ = false;
+  if (!done) wake(true);
+}
+
+// False: the burst is full and more is wanted.
+bool DmaF1::serve_burst() {
+  for (int i = 0; i < kBurst; ++i) {
+    Channel* c = pick();
+    if (c == nullptr) return true;
+    if (move(*c)) {
+      item_done(*c);
+    } else {
+      c->ccr &= ~EN;
+      c->flags |= TEIF | GIF;
+      update_irq(*c);
+    }
   }
-  if (pick() != nullptr) wake();
+  return pick() == nullptr;
 }
 
 bool DmaF1::move(Channel& c) {

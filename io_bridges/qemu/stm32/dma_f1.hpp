@@ -1,8 +1,8 @@
 // DMA1 of the STM32F103: seven channels, their requests OR-ed.
 //
 //   Source    RM0008 chapter 13
-//   Timing    one item per 8 HCLK cycles, the first that long after the request; PL, then the lower
-//             channel wins
+//   Timing    a request is served at its instant, by PL, then by the lower channel; a run of requests
+//             at 8 HCLK cycles per item, in bursts of 16
 //   Sizes     PSIZE and MSIZE may differ: the value is zero-extended or cut (table 76)
 #pragma once
 #include <array>
@@ -33,8 +33,9 @@ class DmaF1 final : public WordBlock {
   void write_word(std::uint32_t offset, std::uint32_t value) override;
   void write_ccr(Channel& channel, std::uint32_t value);
   static bool wants_service(const Channel& channel);
-  void wake();
+  void wake(bool after_burst);
   void service();
+  bool serve_burst();
   Channel* pick();
   bool move(Channel& channel);
   void item_done(Channel& channel);
@@ -44,6 +45,7 @@ class DmaF1 final : public WordBlock {
   int first_irq_;
   std::array<Channel, kChannels> channels_;
   io::Event service_;
+  bool serving_ = false;
 };
 
 }  // namespace whirl::stm32
