@@ -131,6 +131,17 @@ TEST(AveragedMotor, DiodeCurrentInLightLoadIsThePulseTrainsMean) {
   EXPECT_TRUE(near(motor.current_A(), want, stated(1e-3 * want, "1 mohm is left")));
 }
 
+// Ripple of 1.75 A about a mean of 1.6 A never runs dry: the mean voltage rules, diode drop included.
+TEST(AveragedMotor, DiodeCurrentThatNeverRunsDryFollowsTheMeanVoltage) {
+  MotorParams params = turnigy();
+  params.inertia_kgm2 = 1.0;  // holds its speed
+  AveragedMotor motor(params);
+  motor.set_speed(403.0);
+  for (int k = 0; k < 100; ++k) motor.step({.bus_V = 16.0, .duty = 0.3, .diode = true}, {}, 1e-4);
+  const double want = (0.3 * 16.0 - 0.7 * 0.7 - 0.01005 * 403.0) / 0.16;
+  EXPECT_TRUE(near(motor.current_A(), want, stated(1e-3, "speed moves by 1 mrad/s")));
+}
+
 TEST(AveragedMotor, WarmWindingHasMoreResistance) {
   MotorParams params = turnigy();
   params.heat_capacity_JpK = 0.03;  // a thousand times faster than it happens

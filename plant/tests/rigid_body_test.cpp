@@ -117,6 +117,8 @@ TEST(RigidBody, RotorThatSpinsUpTurnsTheBodyTheOtherWay) {
   f.spin_end_B_Nms = {0.0, 0.0, -0.016};
   const BodyState s = step_free({}, m, f, kStep_s);
   EXPECT_TRUE(near(s.w_WB_B_radps.z(), 0.016 / 0.02, round_off(20, 0.8)));
+  const Vector3d alpha = angular_acceleration_B({}, m, f, kStep_s);
+  EXPECT_TRUE(near(alpha.z(), 0.016 / 0.02 / kStep_s, round_off(20, 800.0)));
 }
 
 TEST(RigidBody, ConstantTorqueGivesItsAngularMomentum) {

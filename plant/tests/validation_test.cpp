@@ -41,6 +41,9 @@ TEST(Validation, BatteryMeetsItsReferences) {
   expect_within(battery_proofs(hobbyking()));
 }
 
+TEST(Validation, FlightMeetsItsReferences) {
+  expect_within(flight_proofs(hobbyking()));
+}
 TEST(Validation, AirframeMeetsItsReferences) {
   expect_within(airframe_proofs());
 }

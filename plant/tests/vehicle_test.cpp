@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "harness/base/near.hpp"
+#include "harness/base/random.hpp"
 #include "plant/observe.hpp"
 #include "plant/tests/quadratic_rotor.hpp"
 
@@ -188,6 +189,55 @@ TEST(Vehicle, SameSeedSameBits) {
   };
   EXPECT_EQ(end_of(1), end_of(1));
   EXPECT_NE(end_of(1), end_of(2));
+}
+
+TEST(Vehicle, PushActsWhileItLasts) {
+  Vehicle v = hovering();
+  v.push({0.0, 0.9, 0.0}, 0.050);
+  run(v, 0.1);
+  EXPECT_TRUE(near(v.state().v_WB_W_mps.y(), 0.05, stated(0.002, "1 m/s^2 for 50 ms, some drag")));
+}
+
+// Rotor by rotor: under a roll rate the right disc goes down into its air, the left one up.
+TEST(Vehicle, EachRotorMeetsItsOwnAir) {
+  std::array<double, 4> climb{};
+  RotorSet rotors;
+  for (int i = 0; i < 4; ++i) {
+    rotors[i] = [&climb, i](const RotorConditions& c, double) {
+      climb[i] = -c.v_AP_P_mps.z();
+      return RotorLoads{};
+    };
+  }
+  Vehicle v(hp_quad(), rotors, 1);
+  v.add_jet({.north_m = 0.25, .radius_m = 0.1, .edge_m = 0.02, .upward_mps = 2.0});
+  v.place({0, 0, -5}, Eigen::Quaterniond::Identity(), Vector3d::Zero(), {1.0, 0.0, 0.0});
+  v.step(kStep_s);
+  EXPECT_TRUE(near(climb[0], -2.0, round_off(16, 2.0)));  // only the front one is over the jet
+  EXPECT_TRUE(near(climb[1], -0.25, round_off(16, 1.0)));
+  EXPECT_TRUE(near(climb[2], 0.0, round_off(16, 1.0)));
+  EXPECT_TRUE(near(climb[3], 0.25, round_off(16, 1.0)));
+}
+
+TEST(Vehicle, StaysFiniteUnderAbsurdCommandsStatesAndWinds) {
+  RandomStream random(11, "absurd");
+  VehicleParams params = hp_quad();
+  params.air.dryden.wind_at_6m_mps = 20.0;
+  auto any = [&](double most) { return most * (2.0 * random.uniform() - 1.0); };
+  for (int run = 0; run < 200; ++run) {
+    Vehicle v = quad(params, run);
+    v.place({any(5), any(5), any(3)}, Eigen::Quaterniond(any(1), any(1), any(1), any(1)),
+            {any(20), any(20), any(20)}, {any(50), any(50), any(50)});
+    for (int i = 0; i < 4; ++i) v.set_motor_speed(i, 900.0 * random.uniform());
+    for (int k = 0; k < 200; ++k) {
+      for (int i = 0; i < 4; ++i) {
+        v.command(i, {any(2), random.bits() % 2 ? Freewheel::diode : Freewheel::synchronous});
+      }
+      v.step(kStep_s);
+    }
+    ASSERT_TRUE(v.state().p_WB_W_m.allFinite() && v.state().w_WB_B_radps.allFinite()) << run;
+    ASSERT_TRUE(std::isfinite(v.state().bus_voltage_V + v.state().battery_current_A)) << run;
+    ASSERT_GE(v.state().bus_voltage_V, 0.0);
+  }
 }
 
 TEST(Vehicle, SensorsSeeItsStateAndFeelTheWind) {

@@ -42,5 +42,6 @@ std::vector<Proof> motor_proofs(const std::shared_ptr<const Blade>& blade);
 std::vector<Proof> battery_proofs(const std::shared_ptr<const Blade>& blade);
 std::vector<Proof> airframe_proofs();
 std::vector<Proof> sensor_proofs();
+std::vector<Proof> flight_proofs(const std::shared_ptr<const Blade>& blade);
 
 }  // namespace whirl::plant
