@@ -191,6 +191,21 @@ TEST(Vehicle, SameSeedSameBits) {
   EXPECT_NE(end_of(1), end_of(2));
 }
 
+// What the step holds (loads, wind) costs first order: halving it halves the error of a flight.
+TEST(Vehicle, FlightConvergesAsTheStepIsHalved) {
+  auto flown = [](double dt_s) {
+    Vehicle v = hovering();
+    for (int i = 0; i < 4; ++i) v.command(i, {0.30 + 0.01 * i, Freewheel::synchronous});
+    for (int k = 0; k < std::lround(0.4 / dt_s); ++k) v.step(dt_s);
+    return v.state();
+  };
+  const VehicleState exact = flown(6.25e-5), fine = flown(5e-4), coarse = flown(1e-3);
+  const double off_fine = (fine.p_WB_W_m - exact.p_WB_W_m).norm();
+  const double off_coarse = (coarse.p_WB_W_m - exact.p_WB_W_m).norm();
+  EXPECT_TRUE(near(off_coarse, 0.0, stated(2e-3, "2 mm of 0.4 s of falling about")));
+  EXPECT_TRUE(near(off_coarse / off_fine, 2.14, stated(0.3, "(16 - 1) / (8 - 1): first order")));
+}
+
 TEST(Vehicle, PushActsWhileItLasts) {
   Vehicle v = hovering();
   v.push({0.0, 0.9, 0.0}, 0.050);
