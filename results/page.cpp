@@ -49,16 +49,6 @@ ordered_json curve(const TruthLog& truth, std::size_t column) {
   return out;
 }
 
-// Inside a script element only "</" could end it too soon.
-std::string safe_in_script(const std::string& text) {
-  std::string out;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    out += text[i];
-    if (text[i] == '<' && i + 1 < text.size() && text[i + 1] == '/') out += '\\';
-  }
-  return out;
-}
-
 }  // namespace
 
 std::string page_html(const Report& report, const TruthLog& truth) {
@@ -68,11 +58,7 @@ std::string page_html(const Report& report, const TruthLog& truth) {
   data["signals"] = ordered_json::array();
   for (std::size_t i = 0; i < truth.columns().size(); ++i)
     data["signals"].push_back(curve(truth, i));
-  std::string page = kPageText;
-  const std::string mark = "%DATA%";
-  const auto at = page.find(mark);
-  WHIRL_CHECK(at != std::string::npos);
-  return page.replace(at, mark.size(), safe_in_script(data.dump()));
+  return fill_page(kRunPage, data.dump());
 }
 
 }  // namespace whirl::results

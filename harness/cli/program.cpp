@@ -4,6 +4,7 @@
 #include "harness/cli/composition.hpp"
 #include "harness/cli/doctor.hpp"
 #include "harness/cli/history_command.hpp"
+#include "harness/cli/page_command.hpp"
 #include "harness/cli/run_command.hpp"
 
 #ifndef WHIRL_VERSION
@@ -20,6 +21,8 @@ constexpr const char* kExamples = R"(Examples:
   whirl run test_plans/flight/hover.lua --seed 7 --twice
   whirl run test_plans/flight/hover.lua --gdb  then: gdb-multiarch build/firmware/flight.elf
   whirl list                                   what plans there are
+  whirl sweep test_plans/vehicles/hp_quad.lua  motor, propeller and hover point in figures and curves
+  whirl validate                               the plant over its reference points
   whirl history hover                          how the margins went, run by run
   whirl doctor                                 what is missing on this machine
 
@@ -63,6 +66,16 @@ int run_program(int argc, char** argv, const Composition& composition) {
   past->add_option("--expectation", history.expectation, "only names that contain this");
   past->add_option("--last", history.last, "so many runs")->check(CLI::Range(1, 1000));
 
+  SweepOptions sweep;
+  auto* sweeps = app.add_subcommand(
+      "sweep", "thrust, torque, power and current of a propeller or vehicle file");
+  sweeps->add_option("file", sweep.file, "a propeller or a vehicle (Lua)")->required();
+  sweeps->add_option("--speed", sweep.speed, "of the sweeps over inflow and advance: \"4500 rpm\"");
+  sweeps->add_option("--top-speed", sweep.top_speed, "end of the static sweep (default 6000 rpm)");
+  sweeps->add_option("--voltage", sweep.voltage, "of the bus (default: the full pack): \"16.4 V\"");
+
+  auto* validate = app.add_subcommand("validate", "the plant against its references");
+
   auto* doctor = app.add_subcommand("doctor", "check tools and versions");
 
   try {
@@ -73,6 +86,8 @@ int run_program(int argc, char** argv, const Composition& composition) {
   if (seed_option->count() > 0) options.seed = seed;
   if (*list) return list_command(options, composition);
   if (*past) return history_command(history, composition.results);
+  if (*sweeps) return sweep_command(sweep, composition);
+  if (*validate) return validate_command(composition);
   if (*doctor) return doctor_command(composition.root);
   return run_command(options, composition);
 }

@@ -246,6 +246,18 @@ TEST(Program, BadUsageIsExitCodeTwo) {
   EXPECT_EQ(whirl(root, {"--version"}).code, 0);
 }
 
+TEST(Program, SweepsRefuseWhatTheyCannotRead) {
+  FakeRoot root;
+  root.write("neither.lua", "return { kind = \"boat\" }");
+  const std::string file = root.path() + "/neither.lua";
+  EXPECT_EQ(whirl(root, {"sweep", "nowhere.lua"}).code, 2);
+  EXPECT_NE(whirl(root, {"sweep", file}).err.find("neither a vehicle nor a propeller"),
+            std::string::npos);
+  EXPECT_NE(whirl(root, {"sweep", file, "--speed", "5 V"}).err.find("--speed: '5 V' is a voltage"),
+            std::string::npos);
+  EXPECT_EQ(whirl(root, {"validate"}).code, 2);  // this root has no reference data
+}
+
 TEST(Program, TheSamePlanAndSeedGiveTheSameDigestAndTwiceMakesItAVerdict) {
   const std::string body = "t:wait \"1 s\" t:expect(1):at_most(2)";
   const Ran once = run_plan(plan_text(body)), again = run_plan(plan_text(body));

@@ -1,0 +1,20 @@
+// whirl sweep and whirl validate: figures on the terminal, curves on a page.
+#pragma once
+#include <string>
+
+#include "harness/cli/composition.hpp"
+
+namespace whirl::cli {
+
+struct SweepOptions {
+  std::string file;   // a vehicle or a propeller
+  std::string speed;  // "4500 rpm"; empty: three quarters of the top
+  std::string top_speed = "6000 rpm";
+  std::string voltage;  // of the bus; empty: the full pack
+};
+int sweep_command(const SweepOptions& options, const Composition& composition);
+
+// Exit code 1 if a figure is beyond its limit.
+int validate_command(const Composition& composition);
+
+}  // namespace whirl::cli

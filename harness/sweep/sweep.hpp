@@ -1,0 +1,40 @@
+// Steady behaviour of a propeller or of a vehicle's drive, over one thing at a time: what a user
+// compares with his own motor and propeller before he believes a plan.
+//
+//   Propeller  over speed (static), axial inflow, advance ratio: thrust, torque, power, figure of merit
+//   Vehicle    the same, and over motor voltage: speed, thrust, currents; and its hover point
+//   Model      the plant's own rotor and motor, run until they are steady; standard air at sea level
+#pragma once
+#include <memory>
+#include <vector>
+
+#include "harness/base/result.hpp"
+#include "harness/flight/vehicle_file.hpp"
+#include "plant/rotor/blade.hpp"
+#include "results/charts.hpp"
+
+namespace whirl::sweep {
+
+struct Options {
+  double speed_radps = 0.0;  // of the sweeps over inflow and advance; 0: three quarters of the top
+  double top_speed_radps = 628;  // 6000 rpm
+  double bus_V = 0.0;            // 0: the full pack
+};
+
+std::vector<results::Chart> propeller_sweep(const std::shared_ptr<const plant::Blade>& blade,
+                                            const Options& options);
+std::vector<results::Chart> vehicle_sweep(const flight::FlightParams& vehicle,
+                                          const Options& options);
+
+// One point of a vehicle's drive: motor and propeller at a constant mean voltage of the motor.
+struct DrivePoint {
+  double voltage_V = 0, speed_radps = 0, thrust_N = 0, torque_Nm = 0;
+  double winding_A = 0, bus_A = 0, shaft_W = 0, electrical_W = 0;
+  double copper_W = 0, no_load_W = 0;
+};
+DrivePoint drive_point(const flight::FlightParams& vehicle, double voltage_V, double bus_V);
+// The voltage at which it lifts thrust_N, by bisection; an Error where no voltage up to bus_V does.
+Result<DrivePoint> drive_for_thrust(const flight::FlightParams& vehicle, double thrust_N,
+                                    double bus_V);
+
+}  // namespace whirl::sweep

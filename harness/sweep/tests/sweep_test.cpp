@@ -1,0 +1,63 @@
+#include "harness/sweep/sweep.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include "harness/base/near.hpp"
+#include "plant/rotor/rotor.hpp"
+
+namespace whirl::sweep {
+namespace {
+
+flight::FlightParams quad() {
+  const auto params =
+      flight::read_vehicle(std::string(WHIRL_ROOT) + "/test_plans/vehicles/hp_quad.lua");
+  EXPECT_TRUE(params.ok()) << (params.ok() ? "" : params.error().message());
+  return params.value();
+}
+
+TEST(Sweep, ElectricalPowerIsShaftPowerAndTheNamedLosses) {
+  for (double voltage_V : {3.0, 6.0, 12.0}) {
+    const DrivePoint p = drive_point(quad(), voltage_V, 16.4);
+    EXPECT_TRUE(near(p.electrical_W, p.shaft_W + p.copper_W + p.no_load_W,
+                     stated(1e-3 * p.electrical_W, "speed has settled to 1e-7 of itself a piece")));
+  }
+}
+
+// A lossless chopper: bus current = duty x winding current.
+TEST(Sweep, BusCurrentIsDutyTimesWindingCurrent) {
+  const DrivePoint p = drive_point(quad(), 8.2, 16.4);
+  EXPECT_TRUE(near(p.bus_A, 0.5 * p.winding_A, stated(1e-6, "the steady state of a chopper")));
+}
+
+// Back-EMF, resistance: V = Ke w + R i, with the datasheet's Kv and the thesis's 0.16 ohm.
+TEST(Sweep, TheMotorsVoltageEquationHolds) {
+  const DrivePoint p = drive_point(quad(), 6.0, 16.4);
+  const double ke = 60.0 / (2.0 * std::numbers::pi * 950.0);
+  EXPECT_TRUE(near(p.voltage_V, ke * p.speed_radps + 0.16 * p.winding_A,
+                   stated(1e-4, "steady to 1e-7 of the speed")));
+}
+
+// [Bangura2017]: 3950 rpm at 0.9 kg by its static thrust fit, 1.25 to 1.45 A of bus current.
+TEST(Sweep, TheReferenceVehicleHoversWhereTheThesisSays) {
+  const auto hover = drive_for_thrust(quad(), 0.9 * 9.80665 / 4.0, 16.4);
+  ASSERT_TRUE(hover.ok());
+  EXPECT_TRUE(near(hover.value().speed_radps * 30.0 / std::numbers::pi, 3950.0,
+                   stated(80.0, "2 % of the fit of the static thrust")));
+  EXPECT_TRUE(near(hover.value().bus_A, 1.35, stated(0.10, "1.25 to 1.45 A")));
+}
+
+TEST(Sweep, WhatNoVoltageLiftsIsAnError) {
+  EXPECT_FALSE(drive_for_thrust(quad(), 100.0, 16.4).ok());
+}
+
+TEST(Sweep, NoStaticPointIsBetterThanAnIdealRotor) {
+  for (const results::Chart& chart : propeller_sweep(quad().blade, {})) {
+    if (chart.title != "Figure of merit") continue;
+    ASSERT_EQ(chart.curves[0].y.size(), 37u);
+    for (double merit : chart.curves[0].y) EXPECT_TRUE(merit > 0.3 && merit < 0.85) << merit;
+  }
+}
+
+}  // namespace
+}  // namespace whirl::sweep

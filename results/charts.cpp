@@ -1,0 +1,74 @@
+#include "results/charts.hpp"
+
+#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "results/page_text.hpp"
+
+namespace whirl::results {
+namespace {
+
+using nlohmann::ordered_json;
+
+ordered_json number(double x) {
+  return std::isfinite(x) ? ordered_json(x) : ordered_json(nullptr);
+}
+
+ordered_json numbers(const std::vector<double>& values) {
+  ordered_json out = ordered_json::array();
+  for (double v : values) out.push_back(number(v));
+  return out;
+}
+
+ordered_json chart_json(const Chart& chart) {
+  ordered_json out = {{"group", chart.group},     {"title", chart.title},
+                      {"x_label", chart.x_label}, {"y_label", chart.y_label},
+                      {"source", chart.source},   {"note", chart.note}};
+  out["curves"] = out["figures"] = ordered_json::array();
+  for (const ChartCurve& c : chart.curves) {
+    out["curves"].push_back(
+        {{"name", c.name}, {"x", numbers(c.x)}, {"y", numbers(c.y)}, {"marks", c.marks}});
+  }
+  for (const ChartFigure& f : chart.figures) {
+    out["figures"].push_back({{"name", f.name},
+                              {"measured", number(f.measured)},
+                              {"limit", number(f.limit)},
+                              {"unit", f.unit},
+                              {"ok", f.ok}});
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string charts_html(const std::string& title, const std::string& about,
+                        const std::vector<Chart>& charts) {
+  ordered_json data = {{"title", title}, {"about", about}};
+  data["charts"] = ordered_json::array();
+  for (const Chart& chart : charts) data["charts"].push_back(chart_json(chart));
+  return fill_page(kChartsPage, data.dump());
+}
+
+std::string figures_text(const std::vector<Chart>& charts) {
+  std::string text, shown;
+  char line[256];
+  for (const Chart& chart : charts) {
+    for (const ChartFigure& f : chart.figures) {
+      if (shown != chart.title) text += chart.title + "\n";
+      shown = chart.title;
+      const char* verdict = std::isinf(f.limit) ? "    " : f.ok ? "ok  " : "FAIL";
+      std::snprintf(line, sizeof line, "  %s %-58s %10.4g %-8s", verdict, f.name.c_str(),
+                    f.measured, f.unit.c_str());
+      text += line;
+      if (!std::isinf(f.limit)) {
+        std::snprintf(line, sizeof line, " limit %.4g", f.limit);
+        text += line;
+      }
+      text += "\n";
+    }
+  }
+  return text;
+}
+
+}  // namespace whirl::results

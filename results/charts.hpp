@@ -1,0 +1,33 @@
+// A page of charts, and the same as a table for the terminal: validation and sweeps.
+#pragma once
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace whirl::results {
+
+struct ChartCurve {
+  std::string name;
+  std::vector<double> x, y;
+  bool marks = false;  // points of a reference instead of a line
+};
+
+struct ChartFigure {
+  std::string name;
+  double measured = 0.0;
+  double limit = std::numeric_limits<double>::infinity();  // infinite: only reported
+  std::string unit;
+  bool ok = true;
+};
+
+struct Chart {
+  std::string group, title, x_label, y_label, source, note;
+  std::vector<ChartCurve> curves;
+  std::vector<ChartFigure> figures;
+};
+
+std::string charts_html(const std::string& title, const std::string& about,
+                        const std::vector<Chart>& charts);
+std::string figures_text(const std::vector<Chart>& charts);  // a line per figure
+
+}  // namespace whirl::results
