@@ -34,7 +34,7 @@ Result<Setup> read_setup(std::string_view board_json) {
   const Part* part = find_part(config.value().mcu);
   if (part == nullptr) {
     return Error{ErrorKind::bad_input, config.value().board,
-                 "unknown mcu '" + config.value().mcu + "'", "use stm32f405rg"};
+                 "unknown mcu '" + config.value().mcu + "'", "use stm32f405rg or stm32f103cb"};
   }
   auto image = load_image(config.value().image, *part);
   if (!image) return image.error();

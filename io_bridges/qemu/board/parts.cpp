@@ -10,6 +10,7 @@ constexpr Part kParts[] = {
         .mcu = "stm32f405rg",
         .qemu_machine = "netduinoplus2",
         .flash = {0x08000000, 1024 * kKiB},
+        .machine_flash = {0x08000000, 1024 * kKiB},
         .sram = {0x20000000, 128 * kKiB},
         .machine_sram = {0x20000000, 192 * kKiB},
         .ccm = {0x10000000, 64 * kKiB},
@@ -19,7 +20,26 @@ constexpr Part kParts[] = {
         .flash_size_base = 0x1FFF7A22,
         .idcode = 0x10076413,  // DEV_ID 0x413, REV_ID 0x1007 (RM0090 38.6.1)
         .priority_bits = 4,
+        .interrupts = 82,
         .sysclk_maximum_Hz = 168e6,
+        .elf_machine = 40,
+    },
+    {
+        .mcu = "stm32f103cb",
+        .qemu_machine = "stm32vldiscovery",  // a Cortex-M3 that takes bus faults
+        .flash = {0x08000000, 128 * kKiB},
+        .machine_flash = {0x08000000, 128 * kKiB},
+        .sram = {0x20000000, 20 * kKiB},
+        .machine_sram = {0x20000000, 8 * kKiB},
+        .ccm = {},
+        .system_rom = {0x1FFFF000, 4 * kKiB},
+        .otp_base = 0,
+        .uid_base = 0x1FFFF7E8,
+        .flash_size_base = 0x1FFFF7E0,
+        .idcode = 0x20036410,  // DEV_ID 0x410, REV_ID 0x2003
+        .priority_bits = 4,
+        .interrupts = 43,
+        .sysclk_maximum_Hz = 72e6,
         .elf_machine = 40,
     },
     // For tests of the virtual board itself: see bench_chip.hpp.
@@ -27,6 +47,7 @@ constexpr Part kParts[] = {
         .mcu = "bench_m4",
         .qemu_machine = "netduinoplus2",
         .flash = {0x08000000, 1024 * kKiB},
+        .machine_flash = {0x08000000, 1024 * kKiB},
         .sram = {0x20000000, 128 * kKiB},
         .machine_sram = {0x20000000, 192 * kKiB},
         .ccm = {0x10000000, 64 * kKiB},
@@ -36,6 +57,7 @@ constexpr Part kParts[] = {
         .flash_size_base = 0x1FFF7A22,
         .idcode = 0x10076413,  // DEV_ID 0x413, REV_ID 0x1007 (RM0090 38.6.1)
         .priority_bits = 4,
+        .interrupts = 82,
         .sysclk_maximum_Hz = 168e6,
         .elf_machine = 40,
     },

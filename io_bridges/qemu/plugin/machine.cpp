@@ -16,7 +16,6 @@ namespace {
 
 // Over the machine (0), under nothing: gaps first, then blocks.
 constexpr int kGaps = 5, kBlocks = 10, kMemories = 10;
-constexpr int kInterrupts = 82;  // of the F405; the machine wires 96
 constexpr int kSysTickException = 15;
 constexpr int kCoreRegisters = 16;
 constexpr int kRounds = 64;  // of a sleep before other work of the CPU's thread gets a turn
@@ -107,7 +106,7 @@ Result<Done> Machine::build(const std::string& versions) {
   const auto devices = board_.build_devices();
   if (!devices) return devices.error();
   cpu_ = api_.qemu_get_cpu(0);
-  for (int irq = 0; irq < kInterrupts; ++irq) {
+  for (int irq = 0; irq < board_.part().interrupts; ++irq) {
     interrupts_.push_back(api_.qdev_get_gpio_in(core, irq));
   }
   register_text_ = api_.g_byte_array_new();
@@ -159,6 +158,13 @@ void Machine::map_ram(MemoryRegion* parent, const char* name, const board::Memor
   api_.memory_region_add_subregion_overlap(parent, block.base, &region, kMemories);
 }
 
+void Machine::bar(MemoryRegion* parent, std::uint32_t base, std::uint32_t size) {
+  if (size == 0) return;
+  MemoryRegion& barred = new_region();
+  api_.memory_region_init_io(&barred, nullptr, &kBarred, nullptr, "whirl.no_memory", size);
+  api_.memory_region_add_subregion_overlap(parent, base, &barred, kMemories);
+}
+
 void Machine::map_memories() {
   const board::Part& part = board_.part();
   MemoryRegion* system = api_.get_system_memory();
@@ -177,13 +183,13 @@ void Machine::map_memories() {
   api_.memory_region_add_subregion_overlap(system, part.system_rom.base, &rom, kMemories);
   map_ram(core_memory_, "whirl.ccm", part.ccm);
 
-  const std::uint32_t end = part.sram.base + part.sram.size;
-  const std::uint32_t machine_end = part.machine_sram.base + part.machine_sram.size;
-  if (machine_end > end) {
-    MemoryRegion& barred = new_region();
-    api_.memory_region_init_io(&barred, nullptr, &kBarred, nullptr, "whirl.no_memory",
-                               machine_end - end);
-    api_.memory_region_add_subregion_overlap(system, end, &barred, kMemories);
+  const std::uint32_t beyond = part.machine_flash.size - part.flash.size;
+  bar(system, part.flash.base + part.flash.size, beyond);
+  bar(system, part.flash.size, beyond);  // its alias at 0
+  if (part.machine_sram.size < part.sram.size) {
+    map_ram(system, "whirl.sram", part.sram);
+  } else {
+    bar(system, part.sram.base + part.sram.size, part.machine_sram.size - part.sram.size);
   }
 
   map_block(system, board_.unanswered_region(), kGaps);

@@ -15,20 +15,26 @@ namespace {
 
 using Report = std::map<std::string, std::vector<std::uint32_t>>;
 
-constexpr const char* kTerminal =
-    R"({"name":"terminal","type":"serial","bus":"usart2","baud":115200})";
+struct PartUnderTest {
+  const char *mcu, *hse_Hz, *terminal;
+};
+constexpr PartUnderTest kF405 = {"stm32f405rg", "8000000", "usart2"};
+constexpr PartUnderTest kF103 = {"stm32f103cb", "12000000", "usart1"};
 
 struct ImageRun {
   Report report;
   std::string findings, error;
+  int faults = 0;
 };
 
 // Runs until the image says that it is done, at most so many virtual milliseconds.
-ImageRun run_image(const std::string& image, const std::string& devices, int milliseconds) {
+ImageRun run_image(const std::string& image, const std::string& devices, int milliseconds,
+                   const PartUnderTest& part = kF405) {
   VirtualBoardOptions options;
-  options.board_json =
-      R"({"board":"driver images","mcu":"stm32f405rg","hse_Hz":8000000,"image":")" +
-      std::string(WHIRL_IMAGES) + "/" + image + R"(.elf","devices":[)" + kTerminal + devices + "]}";
+  options.board_json = std::string(R"({"board":"driver images","mcu":")") + part.mcu +
+                       R"(","hse_Hz":)" + part.hse_Hz + R"(,"image":")" + WHIRL_IMAGES + "/" +
+                       image + R"(.elf","devices":[{"name":"terminal","type":"serial","bus":")" +
+                       part.terminal + R"(","baud":115200})" + devices + "]}";
   VirtualBoard board(options);
   ImageRun run;
   const auto started = board.start();
@@ -42,7 +48,7 @@ ImageRun run_image(const std::string& image, const std::string& devices, int mil
       const std::string payload(r.payload().begin(), r.payload().end());
       if (r.header().kind == io::Kind::uart_received) text += payload;
       if (r.header().kind == io::Kind::finding) run.findings += payload + "\n";
-      if (r.header().kind == io::Kind::cpu_fault) run.error += "the image faulted\n";
+      if (r.header().kind == io::Kind::cpu_fault) ++run.faults;
     }
   };
   io::Batch happened;
@@ -79,6 +85,7 @@ TEST(DriverImages, HalStyle) {
                            R"(,{"name":"wire","type":"jumper","cs":"PB6","int":"PA8"})",
                            8000);
   ASSERT_EQ(run.error, "") << run.findings;
+  EXPECT_EQ(run.faults, 0) << run.findings;
   Report& got = run.report;
   EXPECT_EQ(got["failures"], (Values{0, 0}));
   expect_between(99, got["tim3_updates"], 101);  // 1 kHz for 99 to 100 ms
@@ -102,6 +109,7 @@ TEST(DriverImages, SplStyle) {
                            R"(,{"name":"wire","type":"jumper","cs":"PC0","int":"PA0"})",
                            1000);
   ASSERT_EQ(run.error, "") << run.findings;
+  EXPECT_EQ(run.faults, 0) << run.findings;
   Report& got = run.report;
   EXPECT_EQ(got["dma_words"], Values{64});
   expect_between(800, got["adc_eight_us"], 803);  // eight triggers, 100 us apart
@@ -124,6 +132,7 @@ TEST(DriverImages, SplStyle) {
 TEST(DriverImages, Libopencm3StyleLivesThroughBothWatchdogs) {
   ImageRun run = run_image("libopencm3_style", "", 3000);
   ASSERT_EQ(run.error, "") << run.findings;
+  EXPECT_EQ(run.faults, 0) << run.findings;
   Report& got = run.report;
   EXPECT_EQ(got["power_on"], Values{1});
   expect_between(100, got["one_shot_ms"], 101);
@@ -146,6 +155,7 @@ TEST(DriverImages, ChibiosStyle) {
                            R"(,{"name":"wire","type":"jumper","cs":"PB0","int":"PB6"})",
                            8000);
   ASSERT_EQ(run.error, "") << run.findings;
+  EXPECT_EQ(run.faults, 0) << run.findings;
   Report& got = run.report;
   EXPECT_EQ(got["alarms"], Values{200});
   EXPECT_EQ(got["alarms_us"], Values{100 + 199 * 137 + 199 * 200 / 2});
@@ -160,6 +170,50 @@ TEST(DriverImages, ChibiosStyle) {
   EXPECT_EQ(got["icu_width"], Values{1500});
   EXPECT_EQ(got["icu_count_right"], Values{1});
   EXPECT_EQ(got["rtc_alarms"], Values{3});  // in 3.5 s
+}
+
+TEST(DriverImages, EscStyleOnTheF103) {
+  ImageRun run = run_image("esc_style",
+                           R"(,{"name":"v1","type":"volts","bus":"PA1","params":{"volts":0.55}})"
+                           R"(,{"name":"v2","type":"volts","bus":"PA2","params":{"volts":1.1}})"
+                           R"(,{"name":"v3","type":"volts","bus":"PA3","params":{"volts":1.65}})"
+                           R"(,{"name":"v4","type":"volts","bus":"PA4","params":{"volts":2.2}})"
+                           R"(,{"name":"a","type":"jumper","cs":"PB6","int":"PA8"})"
+                           R"(,{"name":"b","type":"jumper","cs":"PB12","int":"PB13"})",
+                           1000, kF103);
+  ASSERT_EQ(run.error, "") << run.findings;
+  EXPECT_EQ(run.faults, 2);  // its two reads beyond the memories
+  Report& got = run.report;
+  EXPECT_EQ(got["bit_band_set"], Values{1});
+  EXPECT_EQ(got["bit_band_read"], Values{1});
+  EXPECT_EQ(got["bit_band_clear"], Values{0});
+  EXPECT_EQ(got["pwm_period"], Values{3600});  // 20 kHz of 72 MHz
+  EXPECT_EQ(got["pwm_high"], Values{900});
+  EXPECT_EQ(got["forced_low"], Values{0});
+  EXPECT_EQ(got["forced_high"], Values{1});
+  EXPECT_EQ(got["calibration_right"], Values{1});
+  // Ten buffers of 32 conversions of 41 clocks of 12 MHz: 78720 cycles of 72 MHz.
+  expect_between(786, got["ten_buffers_cycles"], 788);
+  EXPECT_EQ(got["half_before_full"], Values{1});
+  EXPECT_EQ(got["adc1_first"], Values{683});    // 1/6 of 4096, rounded
+  EXPECT_EQ(got["adc2_first"], Values{1365});   // 1/3
+  EXPECT_EQ(got["adc1_second"], Values{2048});  // 1/2
+  EXPECT_EQ(got["adc2_second"], Values{2731});  // 2/3
+  EXPECT_EQ(got["injected"], Values{10});       // every 100 us
+  EXPECT_EQ(got["injected_mean"], Values{683});
+  EXPECT_EQ(got["injected_partner"], Values{1365});
+  EXPECT_EQ(got["exti_prompt"], Values{1});
+  EXPECT_EQ(got["exti_edges"], Values{2});
+  EXPECT_EQ(got["flash_erased"], Values{1});
+  EXPECT_EQ(got["flash_word"], Values{0x56781234});
+  EXPECT_EQ(got["inside_flash"], Values{0});
+  EXPECT_EQ(got["beyond_flash"], Values{1});
+  EXPECT_EQ(got["inside_sram"], Values{0});
+  EXPECT_EQ(got["beyond_sram"], Values{1});
+  EXPECT_EQ(got["backup"], Values{0x5AA5});
+  EXPECT_EQ(got["flash_KiB"], Values{128});
+  EXPECT_EQ(got["device_id"], Values{0x410});
+  EXPECT_EQ(got["can_init"], Values{1});
 }
 
 }  // namespace
