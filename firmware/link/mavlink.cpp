@@ -89,8 +89,7 @@ bool Parser::end_frame() {
 
 std::span<const std::uint8_t> Message::frame(std::uint8_t system, std::uint8_t component,
                                              std::uint8_t sequence) {
-  std::uint8_t length = length_;
-  while (length > 1 && bytes_[10u + length - 1] == 0) --length;
+  while (length_ > 1 && bytes_[10u + length_ - 1] == 0) --length_;
   const std::array<std::uint8_t, 10> header{kStart,
                                             length,
                                             0,
@@ -103,7 +102,7 @@ std::span<const std::uint8_t> Message::frame(std::uint8_t system, std::uint8_t c
                                             static_cast<std::uint8_t>(id_ >> 16)};
   std::memcpy(bytes_.data(), header.data(), header.size());
   std::uint16_t crc = kCrcStart;
-  const std::size_t end = 10u + length;
+  const std::size_t end = 10u + length_;
   for (std::size_t i = 1; i < end; ++i) crc = crc_add(crc, bytes_[i]);
   crc = crc_add(crc, static_cast<std::uint8_t>(crc_extra(id_)));
   bytes_[end] = static_cast<std::uint8_t>(crc);

@@ -75,7 +75,7 @@ class Message {
     std::memcpy(bytes_.data() + 10 + offset, &value, sizeof value);
     return *this;
   }
-  // Valid as long as the message.
+  // Valid as long as the message; no field may be put after it.
   std::span<const std::uint8_t> frame(std::uint8_t system, std::uint8_t component,
                                       std::uint8_t sequence);
 

@@ -113,6 +113,50 @@ TEST(Flight, CutsTheMotorsWhenTheImuDies) {
   EXPECT_EQ(hover.flight.setpoints(), (std::array<std::uint16_t, 4>{}));
 }
 
+TEST(Flight, CutsTheMotorsWhenTheImuFreezes) {
+  Hovering hover({});
+  hover.flight.set_imu_frozen(true);
+  hover.vehicle.run(hover.flight, 0.01);
+  EXPECT_EQ(hover.flight.state(), FlightState::disarmed);
+  EXPECT_EQ(hover.flight.last_reason(), Reason::imu_frozen);
+}
+
+// Weak on one side for good: no control can hold that, and the rotors must not go on in the grass.
+TEST(Flight, CutsTheMotorsWhenTippedOver) {
+  Hovering hover({});
+  hover.vehicle.esc_on_[1] = false;
+  for (int i = 0; i < 3000 && hover.flight.state() != FlightState::disarmed; ++i) {
+    hover.vehicle.step(hover.flight);
+    hover.flight.on_esc_answered(1);  // it answers, but its motor has stopped
+  }
+  EXPECT_EQ(hover.flight.state(), FlightState::disarmed);
+  EXPECT_EQ(hover.flight.last_reason(), Reason::tipped_over);
+}
+
+TEST(Reference, ReachesAHeightWithinItsSpeedAndWithoutOvershoot) {
+  Reference reference;
+  reference.start(Vector3::Zero(), 0.0f);
+  float fastest = 0.0f, hardest = 0.0f, highest = 0.0f;
+  for (int i = 0; i < 400; ++i) {
+    reference.step({0, 0, -3.0f}, 0.0f, 0.025f);
+    fastest = std::max(fastest, -reference.v_W_mps().z());
+    hardest = std::max(hardest, std::abs(reference.a_W_mps2().z()));
+    highest = std::max(highest, -reference.p_W_m().z());
+  }
+  EXPECT_LT(fastest, 0.51f);
+  EXPECT_GT(fastest, 0.45f);
+  EXPECT_LE(hardest, 0.801f);
+  EXPECT_LT(highest, 3.005f);
+  EXPECT_NEAR(reference.p_W_m().z(), -3.0, 0.01);
+}
+
+TEST(Reference, TurnsTheShortWayAtALimitedRate) {
+  Reference reference;
+  reference.start(Vector3::Zero(), 3.0f);
+  for (int i = 0; i < 4; ++i) reference.step(Vector3::Zero(), -3.0f, 0.025f);
+  EXPECT_NEAR(reference.yaw_rad(), 3.06, 1e-3);  // 0.1 s at 0.6 rad/s, on towards pi
+}
+
 TEST(Flight, GivesUpWhenAnEscFallsSilent) {
   Hovering hover({});
   hover.vehicle.esc_on_[1] = false;

@@ -59,27 +59,37 @@ TEST(Mavlink, FindsTheNextFrameAfterNoise) {
   EXPECT_EQ(complete_frames(parser, bytes), 2);
 }
 
-TEST(Mavlink, DropsFramesWithUnknownIncompatibilityFlags) {
+// The heartbeat with other incompatibility flags, and the CRC that goes with them.
+std::vector<std::uint8_t> heartbeat_with_flags(std::uint8_t flags) {
   std::vector<std::uint8_t> bytes = kHeartbeatFrame;
-  bytes[2] = 0x02;
-  Parser parser;
-  EXPECT_EQ(complete_frames(parser, bytes), 0);
-  EXPECT_EQ(complete_frames(parser, kHeartbeatFrame), 1);
-}
-
-TEST(Mavlink, SkipsTheSignatureOfASignedFrame) {
-  // The CRC of the signed heartbeat differs by the flag: computed with the published CRC steps.
-  std::vector<std::uint8_t> bytes = kHeartbeatFrame;
-  bytes[2] = 0x01;
+  bytes[2] = flags;
   std::uint16_t crc = 0xFFFF;
   for (std::size_t i = 1; i < 19; ++i) crc = crc_add(crc, bytes[i]);
   crc = crc_add(crc, 50);
   bytes[19] = static_cast<std::uint8_t>(crc);
   bytes[20] = static_cast<std::uint8_t>(crc >> 8);
+  return bytes;
+}
+
+TEST(Mavlink, DropsFramesWithUnknownIncompatibilityFlags) {
+  Parser parser;
+  EXPECT_EQ(complete_frames(parser, heartbeat_with_flags(0x02)), 0);
+  EXPECT_EQ(complete_frames(parser, heartbeat_with_flags(0x00)), 1);
+}
+
+TEST(Mavlink, SkipsTheSignatureOfASignedFrame) {
+  std::vector<std::uint8_t> bytes = heartbeat_with_flags(0x01);
   bytes.resize(bytes.size() + 13, 0xFD);  // a signature that looks like frame starts
   bytes.insert(bytes.end(), kArmFrame.begin(), kArmFrame.end());
   Parser parser;
   EXPECT_EQ(complete_frames(parser, bytes), 2);
+}
+
+// Trailing zeros are not sent, but one byte of payload always is.
+TEST(Mavlink, CutsTrailingZerosDownToOneByte) {
+  Message m(kLocalPositionNed, 28);
+  EXPECT_EQ(m.frame(1, 1, 0).size(), 12u + 1u);
+  EXPECT_EQ(m.frame(1, 1, 0)[1], 1);
 }
 
 // CRC-16/MCRF4XX check value over "123456789": 0x6F91.
