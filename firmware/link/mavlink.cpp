@@ -91,7 +91,7 @@ std::span<const std::uint8_t> Message::frame(std::uint8_t system, std::uint8_t c
                                              std::uint8_t sequence) {
   while (length_ > 1 && bytes_[10u + length_ - 1] == 0) --length_;
   const std::array<std::uint8_t, 10> header{kStart,
-                                            length,
+                                            length_,
                                             0,
                                             0,
                                             sequence,
