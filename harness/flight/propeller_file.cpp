@@ -6,6 +6,7 @@
 #include "harness/lua/sandbox.hpp"
 #include "harness/lua/table.hpp"
 #include "plant/rotor/polar.hpp"
+#include "plant/rotor/twist_fit.hpp"
 
 namespace whirl::flight {
 namespace {
@@ -42,6 +43,12 @@ Result<std::shared_ptr<const plant::Blade>> read_propeller(const std::string& pa
     d.stations.push_back({s.number("r", lua::between(0.0, 1.0)), s.number("c", lua::above(0.0)),
                           s.number("beta") * std::numbers::pi / 180.0});
   }
+  if (t.has("static")) {
+    for (const lua::Table& s : t.tables("static")) {
+      d.static_points.push_back({s.number("rpm", lua::above(0.0)) * std::numbers::pi / 30.0,
+                                 s.number("CT", lua::above(0.0))});
+    }
+  }
   std::vector<std::pair<double, std::string>> polars;
   for (const lua::Table& p : t.tables("polars")) polars.emplace_back(p.number("r"), p.text("file"));
   if (const auto good = t.finish(); !good) return good.error();
@@ -50,7 +57,7 @@ Result<std::shared_ptr<const plant::Blade>> read_propeller(const std::string& pa
     if (!polar) return polar.error();
     d.sections.push_back({r, polar.value()});
   }
-  return plant::make_blade(d);
+  return plant::make_fitted_blade(std::move(d));
 }
 
 }  // namespace whirl::flight

@@ -29,6 +29,11 @@ struct SectionStation {
   std::shared_ptr<const PolarFamily> polar;
 };
 
+struct StaticPoint {
+  double omega_radps = 0.0;
+  double thrust_coefficient = 0.0;  // T / (rho n^2 D^4)
+};
+
 struct PropellerDescription {
   std::string place;  // "hk_10x4.5.lua", repeated in errors
   std::string name;
@@ -38,6 +43,7 @@ struct PropellerDescription {
   std::vector<SectionStation> sections;
   double mass_kg = 0.0;                     // whole propeller
   double tip_twist_correction_rad = 0.0;    // added in proportion to r/R; stated in the file
+  std::vector<StaticPoint> static_points;   // for make_fitted_blade(), which finds that correction
   double flap_stiffness_Nm_per_rad = 60.0;  // root spring of one blade; stiff plastic by default
   double induced_factor = 1.15;             // over the ideal ring with Prandtl's losses [Leishman]
   bool stall_delay = true;                  // rotational augmentation of the inboard sections

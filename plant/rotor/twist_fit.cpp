@@ -56,4 +56,13 @@ Result<double> fit_tip_twist_rad(PropellerDescription d, const std::vector<Stati
   return 0.5 * (lo + hi);
 }
 
+Result<std::shared_ptr<const Blade>> make_fitted_blade(PropellerDescription d) {
+  if (!d.static_points.empty()) {
+    const auto twist = fit_tip_twist_rad(d, d.static_points);
+    if (!twist) return twist.error();
+    d.tip_twist_correction_rad = twist.value();
+  }
+  return make_blade(d);
+}
+
 }  // namespace whirl::plant

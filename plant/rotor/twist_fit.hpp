@@ -5,20 +5,19 @@
 //          to be foretold.
 //   Valid  correction within +-8 deg; the error says when static thrust cannot be met with that.
 #pragma once
+#include <memory>
 #include <vector>
 
 #include "plant/rotor/blade.hpp"
 
 namespace whirl::plant {
 
-struct StaticPoint {
-  double omega_radps = 0.0;
-  double thrust_coefficient = 0.0;  // T / (rho n^2 D^4)
-};
-
 // Bisection on the summed thrust coefficient; description.tip_twist_correction_rad is ignored.
 Result<double> fit_tip_twist_rad(PropellerDescription description,
                                  const std::vector<StaticPoint>& points);
+
+// The blade of a description; where it brings static points, with the twist that they ask for.
+Result<std::shared_ptr<const Blade>> make_fitted_blade(PropellerDescription description);
 
 struct PropellerCoefficients {
   double CT = 0.0;  // T / (rho n^2 D^4)

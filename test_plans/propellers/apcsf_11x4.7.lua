@@ -1,6 +1,7 @@
 -- APC slow fly 11x4.7. Chord and angle: UIUC Propeller Database, volume 1 (Brandt, Selig et al.), taken
--- there from photographs. Sections chosen once for the family. The twist correction (added in
--- proportion to r) is fitted on this propeller's static thrust alone. Mass is an estimate.
+-- there from photographs. Sections chosen once for the family. `static`: measured thrust
+-- coefficients at rest; one twist in proportion to r is fitted on them (here +3.9 deg at the tip).
+-- Mass is an estimate.
 -- Columns: r and c over the tip radius, beta in degrees against the disc.
 return {
   kind = "propeller",
@@ -8,7 +9,12 @@ return {
   blades = 2,
   diameter = "11 in",
   mass = "14 g",
-  tip_twist_correction = "3.9 deg",
+  static = {
+    { rpm = 2018, CT = 0.1005 },
+    { rpm = 3144, CT = 0.1074 },
+    { rpm = 4290, CT = 0.1151 },
+    { rpm = 5450, CT = 0.1230 },
+  },
   polars = { { r = 0.2, file = "bw3.polar" }, { r = 0.6, file = "naca6409.polar" }, { r = 1.0, file = "naca4412.polar" } },
   stations = {
     { r = 0.15, c = 0.112, beta = 19.64 },

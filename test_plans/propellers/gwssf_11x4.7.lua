@@ -1,6 +1,7 @@
 -- GWS slow fly 11x4.7. Chord and angle: UIUC Propeller Database, volume 1 (Brandt, Selig et al.), taken
--- there from photographs. Sections chosen once for the family. The twist correction (added in
--- proportion to r) is fitted on this propeller's static thrust alone. Mass is an estimate.
+-- there from photographs. Sections chosen once for the family. `static`: measured thrust
+-- coefficients at rest; one twist in proportion to r is fitted on them (here +0.8 deg at the tip).
+-- Mass is an estimate.
 -- Columns: r and c over the tip radius, beta in degrees against the disc.
 return {
   kind = "propeller",
@@ -8,7 +9,12 @@ return {
   blades = 2,
   diameter = "11 in",
   mass = "9 g",
-  tip_twist_correction = "0.8 deg",
+  static = {
+    { rpm = 2290, CT = 0.1034 },
+    { rpm = 3414, CT = 0.1140 },
+    { rpm = 4513, CT = 0.1198 },
+    { rpm = 5657, CT = 0.1234 },
+  },
   polars = { { r = 0.2, file = "bw3.polar" }, { r = 0.9, file = "e63.polar" } },
   stations = {
     { r = 0.15, c = 0.103, beta = 17.31 },

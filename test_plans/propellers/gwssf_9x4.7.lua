@@ -1,6 +1,7 @@
 -- GWS slow fly 9x4.7. Chord and angle: UIUC Propeller Database, volume 1 (Brandt, Selig et al.), taken
--- there from photographs. Sections chosen once for the family. The twist correction (added in
--- proportion to r) is fitted on this propeller's static thrust alone. Mass is an estimate.
+-- there from photographs. Sections chosen once for the family. `static`: measured thrust
+-- coefficients at rest; one twist in proportion to r is fitted on them (here -0.3 deg at the tip).
+-- Mass is an estimate.
 -- Columns: r and c over the tip radius, beta in degrees against the disc.
 return {
   kind = "propeller",
@@ -8,7 +9,12 @@ return {
   blades = 2,
   diameter = "9 in",
   mass = "6 g",
-  tip_twist_correction = "-0.3 deg",
+  static = {
+    { rpm = 2973, CT = 0.1131 },
+    { rpm = 4071, CT = 0.1173 },
+    { rpm = 5175, CT = 0.1201 },
+    { rpm = 6268, CT = 0.1196 },
+  },
   polars = { { r = 0.2, file = "bw3.polar" }, { r = 0.9, file = "e63.polar" } },
   stations = {
     { r = 0.15, c = 0.086, beta = 31.66 },

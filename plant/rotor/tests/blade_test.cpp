@@ -100,6 +100,10 @@ TEST(Blade, TwistFitFindsTheTwistThatMadeTheThrust) {
     points.push_back({w, propeller_coefficients(blade, w, 0.0).CT});
   }
   EXPECT_TRUE(near(fit_tip_twist_rad(d, points).value(), 1.7 * kDeg, stated(1e-4, "bisection")));
+  d.tip_twist_correction_rad = 0.0;
+  d.static_points = points;
+  EXPECT_TRUE(near(propeller_coefficients(make_fitted_blade(d).value(), 450.0, 0.0).CT,
+                   points[1].thrust_coefficient, stated(1e-4, "bisection")));
   points[0].thrust_coefficient = 5.0;
   EXPECT_FALSE(fit_tip_twist_rad(d, points).ok());
   EXPECT_FALSE(fit_tip_twist_rad(d, {}).ok());
