@@ -56,6 +56,8 @@ class ChipModel {
   virtual bool join_uart(int number, io::UartPeer& peer) = 0;  // USARTn or UARTn
   // Volts at an analog input, asked for at each sampling instant.
   virtual bool set_analog(std::string_view pin, std::function<double(Nanoseconds)> volts) = 0;
+  virtual void set_vdd(double /*volts*/) {
+  }  // the supply's level for PWR's detector; 3.3 V at first
   virtual const Clocks& clocks() const = 0;
   // Told after each change of a clock, for what is clocked outside of the chip model (SysTick).
   virtual void on_clock_change(std::function<void()> changed) = 0;

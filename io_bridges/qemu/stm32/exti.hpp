@@ -4,6 +4,7 @@
 //   Lines    0-15 pins of the port that EXTICR selects, 16 PVD, 17 RTC alarm, 18 OTG FS wake-up,
 //            19 Ethernet, 20 OTG HS, 21 tamper, 22 RTC wake-up: set_line()
 //   Pending  follows the edge detector whatever IMR says; SWIER acts on unmasked lines only
+//   Events   (EMR) reach on_event(); nobody wakes a WFE from there yet
 #pragma once
 #include <array>
 #include <cstdint>

@@ -58,8 +58,7 @@ void I2c::acked(bool ack, Nanoseconds) {
   if (!ack) {
     sr1_ |= AF;
     sr1_ &= ~TXE;
-    nacked_ = true;
-    dr_full_ = false;
+    nacked_ = true;  // what waits in DR is forgotten by the next start()
   } else if (dr_full_) {
     load_slave_shift();
   } else {

@@ -285,7 +285,7 @@ void Spi::update() {
                    ((cr2_ & RXNEIE) != 0 && (s & RXNE) != 0) ||
                    ((cr2_ & ERRIE) != 0 && (s & (OVR | MODF | CRCERR)) != 0);
   chip_.interrupts.set(irq_, irq);
-  tx_request_.set((cr2_ & TXDMAEN) != 0 && (cr1_ & SPE) != 0 && (s & TXE) != 0);
+  tx_request_.set((cr2_ & TXDMAEN) != 0 && (s & TXE) != 0);
   rx_request_.set((cr2_ & RXDMAEN) != 0 && (s & RXNE) != 0);
 }
 

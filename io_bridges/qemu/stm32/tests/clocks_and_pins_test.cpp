@@ -130,6 +130,21 @@ TEST(Pwr, VosIsReadyAndTheDetectorSeesNoDip) {
   EXPECT_EQ(bench.get(kPwr + 4) & 4, 0u);
 }
 
+TEST(Pwr, ADipBelowTheThresholdShowsInPvdoAndOnExtiLine16) {
+  ChipBench bench;
+  bench.set_bits(kRcc + 0x40, 1u << 28);
+  bench.put(kPwr, 0x40F0);  // PVDE, 2.7 V
+  bench.put(kExti, 1u << 16);
+  bench.put(kExti + 8, 1u << 16);  // rising: VDD falls below
+  bench.chip().set_vdd(2.9);
+  EXPECT_FALSE(bench.irq(1));
+  bench.chip().set_vdd(2.5);
+  EXPECT_EQ(bench.get(kPwr + 4) & 4, 4u);
+  EXPECT_TRUE(bench.irq(1));
+  bench.chip().set_vdd(3.3);
+  EXPECT_EQ(bench.get(kPwr + 4) & 4, 0u);
+}
+
 struct PinBench : ChipBench {
   PinBench() {
     set_bits(kRcc + 0x30, 0x1FF);

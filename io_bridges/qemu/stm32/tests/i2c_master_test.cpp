@@ -33,6 +33,8 @@ TEST(I2cMaster, WriteHasTxeAndBtfAsSeparateMoments) {
 TEST(I2cMaster, SbNeedsSr1ReadBeforeTheAddress) {
   I2cBench bench;
   bench.set_bits(kCr1, START);
+  bench.run(kBit_ns / 2);
+  EXPECT_EQ(bench.get(kSr2) & 1, 1u);  // master half a bit after START on a free bus
   bench.run(10 * kBit_ns);
   bench.put(kDr, 0xA0);  // SR1 was not read since SB came up
   bench.run(20 * kBit_ns);
@@ -63,6 +65,7 @@ TEST(I2cMaster, ARefusedByteGivesAfWithoutBtf) {
   bench.file.refuse_at = 1;
   bench.point_at(0x10);
   bench.put(kDr, 1);
+  bench.wait(kSr1, TXE, TXE);
   bench.put(kDr, 2);
   bench.wait(kSr1, AF, AF);
   EXPECT_EQ(bench.get(kSr1) & BTF, 0u);
