@@ -5,16 +5,21 @@ set(CMAKE_EXECUTABLE_SUFFIX .elf)
 set(CMAKE_CXX_EXTENSIONS OFF)
 set(CMAKE_CXX_FLAGS_RELEASE "-O2 -g -DNDEBUG")
 
-add_library(fw_options INTERFACE)
-target_compile_features(fw_options INTERFACE cxx_std_20)
-target_include_directories(fw_options INTERFACE ${PROJECT_SOURCE_DIR})
-target_include_directories(fw_options SYSTEM INTERFACE ${FW_EIGEN})
-set(FW_CPU -mcpu=cortex-m4 -mthumb -mfpu=fpv4-sp-d16 -mfloat-abi=hard)
-target_compile_options(fw_options INTERFACE ${FW_CPU} -fno-exceptions -fno-rtti
+add_library(fw_language INTERFACE)
+target_compile_features(fw_language INTERFACE cxx_std_20)
+target_include_directories(fw_language INTERFACE ${PROJECT_SOURCE_DIR})
+target_include_directories(fw_language SYSTEM INTERFACE ${FW_EIGEN})
+target_compile_options(fw_language INTERFACE -fno-exceptions -fno-rtti
   -fno-threadsafe-statics -fno-use-cxa-atexit -fno-unwind-tables -fno-asynchronous-unwind-tables
   -fno-math-errno -ffunction-sections -fdata-sections -Wall -Wextra -Wpedantic -Wshadow
   -Wdouble-promotion -Wfloat-conversion -Werror)
-target_compile_definitions(fw_options INTERFACE EIGEN_NO_IO EIGEN_NO_MALLOC)
+target_compile_definitions(fw_language INTERFACE EIGEN_NO_IO EIGEN_NO_MALLOC)
+
+# The flight part: STM32F405RG.
+set(FW_CPU -mcpu=cortex-m4 -mthumb -mfpu=fpv4-sp-d16 -mfloat-abi=hard)
+add_library(fw_options INTERFACE)
+target_link_libraries(fw_options INTERFACE fw_language)
+target_compile_options(fw_options INTERFACE ${FW_CPU})
 
 # fw_image(name SOURCES ... FLASH kib RAM kib): links, prints its size and checks it against the
 # budget and the list of symbols that may not be in it.
@@ -39,3 +44,4 @@ fw_image(flight FLASH 128 RAM 16 FOLDER . SOURCES
 foreach(image hardfault silent sleeper)
   fw_image(${image} FLASH 4 RAM 1 FOLDER images SOURCES images/${image}.cpp)
 endforeach()
+include(esc/image.cmake)

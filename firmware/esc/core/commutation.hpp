@@ -35,7 +35,7 @@ class Commutation {
     Ticks at = 0;
   };
 
-  explicit Commutation(const CommutationConfig& config) : config_(config) {}
+  constexpr explicit Commutation(const CommutationConfig& config) : config_(config) {}
 
   void stop();
   // The rotor has been aligned to step 0's field: the first commutation comes at once.

@@ -31,13 +31,29 @@ void Core::on_setpoint(std::uint16_t v) {
   supervisor_.on_setpoint(v, sensed_.bus_voltage_V, at_rest());
 }
 
-void Core::command(Mode mode, float value) {
+bool Core::command(Mode mode, float value) {
   const Range range = range_of(mode);
   const bool stop = !(value > 0.0f);
-  if (!stop && mode != calibration_.mode && !set_mode(mode)) return;
+  if (!stop && mode != calibration_.mode && !set_mode(mode)) return false;
   supervisor_.on_setpoint(stop ? 0 : 1, sensed_.bus_voltage_V, at_rest());
   command_given_ = !stop;
   command_value_ = clamped(value, range.min, range.max);
+  return true;
+}
+
+void Core::arm_by_hand() {
+  for (unsigned i = 0; i < SupervisorLimits{}.zeros_to_arm; ++i) on_setpoint(0);
+}
+
+bool Core::recalibrate(const Calibration& calibration) {
+  if (!at_rest() || drive_.energised) return false;
+  const Mode mode = calibration_.mode;
+  calibration_ = calibration;
+  calibration_.mode = mode;
+  estimator_ = ThrustEstimator(calibration_, kPeriod_s);
+  speed_control_ =
+      SpeedController(calibration.motor, calibration.free_air, SpeedGains{}, kPeriod_s);
+  return true;
 }
 
 bool Core::set_mode(Mode mode) {

@@ -46,8 +46,10 @@ class Core {
 
   // A valid set-point 0..2047 from the bus, or a value in the unit of `mode` from the command line.
   void on_setpoint(std::uint16_t v);
-  void command(Mode mode, float value);
+  bool command(Mode mode, float value);  // false: the mode cannot be changed now
+  void arm_by_hand();                    // as 25 zeros would
   Drive tick(const Sensed& sensed);
+  bool recalibrate(const Calibration& calibration);  // false: refused while the motor turns
   bool set_mode(Mode mode);  // false: refused (turning, or a mode that a propeller has no use for)
   void latch(Latched fault) { supervisor_.latch(fault); }
   void watch(bool on) { supervisor_.watch(on); }
@@ -55,7 +57,9 @@ class Core {
   std::uint8_t flags() const;
   Mode mode() const { return calibration_.mode; }
   float bus_current_A() const { return bus_current_A_; }  // filtered
+  float bus_voltage_V() const { return sensed_.bus_voltage_V; }
   float speed_radps() const { return sensed_.speed_radps; }
+  bool at_rest() const { return sensed_.speed_radps < 10.0f; }
   float wanted_speed_radps() const { return wanted_radps_; }
   const ThrustEstimator& estimator() const { return estimator_; }
   const Supervisor& supervisor() const { return supervisor_; }
@@ -71,7 +75,6 @@ class Core {
   Drive drive_for_phase(float value);
   Drive regulate(float value);
   void guard(const Sensed& sensed);
-  bool at_rest() const { return sensed_.speed_radps < 10.0f; }
 
   Calibration calibration_;
   Supervisor supervisor_;

@@ -1,0 +1,18 @@
+# The motor controller's image: build/firmware/esc.elf for the STM32F103CB (Cortex-M3, soft float).
+# Budgets are the figures that the thesis gives for its own image.
+set(ESC_CPU -mcpu=cortex-m3 -mthumb)
+add_executable(esc
+  esc/image/main.cpp esc/image/startup.cpp esc/image/clock.cpp esc/image/bridge.cpp
+  esc/image/sampling.cpp esc/image/motor_drive.cpp esc/image/i2c_slave.cpp esc/image/serial.cpp
+  esc/image/commands.cpp esc/image/settings.cpp hal/fault_handler.cpp
+  esc/core/commutation.cpp esc/core/core.cpp esc/core/filters.cpp esc/core/thrust_estimator.cpp
+  esc/core/thrust_model.cpp)
+target_link_libraries(esc PRIVATE fw_language)
+target_compile_options(esc PRIVATE ${ESC_CPU})
+set(ESC_SCRIPT ${PROJECT_SOURCE_DIR}/firmware/esc/image/stm32f103cb.ld)
+target_link_options(esc PRIVATE ${ESC_CPU} -nostartfiles --specs=nano.specs -T${ESC_SCRIPT}
+  -Wl,--gc-sections -Wl,--fatal-warnings -Wl,-Map=${CMAKE_BINARY_DIR}/esc.map)
+set_target_properties(esc PROPERTIES LINK_DEPENDS ${ESC_SCRIPT}
+                      RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR})
+add_custom_command(TARGET esc POST_BUILD VERBATIM
+  COMMAND sh ${PROJECT_SOURCE_DIR}/firmware/gates/check_image.sh $<TARGET_FILE:esc> 56 10)

@@ -1,0 +1,116 @@
+#include "firmware/esc/image/bridge.hpp"
+
+#include "firmware/esc/image/registers.hpp"
+
+namespace fw::esc::bridge {
+namespace {
+
+using namespace f103;
+
+struct Pattern {
+  std::uint8_t high, low, floating;
+};
+constexpr Pattern kPatterns[6] = {{0, 1, 2}, {0, 2, 1}, {1, 2, 0}, {1, 0, 2}, {2, 0, 1}, {2, 1, 0}};
+
+constexpr std::uint32_t kUpperEnable[3] = {TIM4::CC1E, TIM4::CC2E, TIM4::CC3E};
+constexpr std::uint32_t kAllUpper = TIM4::CC1E | TIM4::CC2E | TIM4::CC3E;
+
+std::uint32_t duty_counts = 0;
+
+void lower_off() {
+  GPIOA::BSRR::write(bit(7 + 16));
+  GPIOB::BSRR::write(bit(0 + 16) | bit(1 + 16));
+}
+
+void lower_on(std::uint8_t phase) {
+  if (phase == 0) {
+    GPIOB::BSRR::write(bit(0 + 16) | bit(1 + 16));
+    GPIOA::BSRR::write(bit(7));
+  } else {
+    GPIOA::BSRR::write(bit(7 + 16));
+    GPIOB::BSRR::write(phase == 1 ? bit(0) | bit(1 + 16) : bit(1) | bit(0 + 16));
+  }
+}
+
+// A disabled channel lets go of its pin's level: the pin is low by the port's own output then.
+void upper_only(std::uint8_t phase) {
+  TIM4::CCER::write(kUpperEnable[phase] | TIM4::CC4E);
+}
+
+}  // namespace
+
+void start() {
+  RCC::APB1ENR::set(RCC::TIM2EN | RCC::TIM4EN);
+  lower_off();
+  GPIOA::configure(7, kOutput);
+  GPIOB::configure(0, kOutput);
+  GPIOB::configure(1, kOutput);
+  TIM4::PSC::write(0);
+  TIM4::ARR::write(kPeriod - 1);
+  TIM4::CCMR1::write(TIM4::OC1M_PWM1 | TIM4::OC1PE | TIM4::OC2M_PWM1 | TIM4::OC2PE);
+  TIM4::CCMR2::write(TIM4::OC3M_PWM1 | TIM4::OC3PE | TIM4::OC4M_PWM2 | TIM4::OC4PE);
+  TIM4::CR2::write(TIM4::MMS_OC4REF);
+  TIM4::CCER::write(TIM4::CC4E);
+  set_duty(0.0f);
+  TIM4::EGR::write(TIM4::UG);
+  TIM4::CR1::write(TIM4::ARPE | TIM4::CEN);
+  for (unsigned pin : {6u, 7u, 8u}) GPIOB::configure(pin, kAlternate);
+
+  TIM2::PSC::write(kTimer_Hz / 2'000'000 - 1);
+  TIM2::ARR::write(0xFFFF);
+  TIM2::EGR::write(TIM2::UG);
+  TIM2::SR::write(0);
+  TIM2::CR1::write(TIM2::CEN);
+  Nvic<Irq::TIM2_Global>::enable(kPriorityCommutation);
+}
+
+void off() {
+  TIM4::CCER::write(TIM4::CC4E);
+  lower_off();
+  set_duty(0.0f);
+}
+
+void apply(std::uint8_t step) {
+  const Pattern pattern = kPatterns[step];
+  // Never both switches of a leg: what goes off goes off before anything goes on.
+  upper_only(pattern.high);
+  lower_on(pattern.low);
+}
+
+void set_duty(float share) {
+  const float counts = share * static_cast<float>(kPeriod);
+  duty_counts = counts <= 0.0f ? 0u : static_cast<std::uint32_t>(counts);
+  if (duty_counts > kPeriod) duty_counts = kPeriod;
+  TIM4::CCR1::write(duty_counts);
+  TIM4::CCR2::write(duty_counts);
+  TIM4::CCR3::write(duty_counts);
+  const std::uint32_t on = duty_counts < kShortest_on ? kShortest_on : duty_counts;
+  TIM4::CCR4::write(on - kSample_before_end);
+}
+
+float duty() {
+  return static_cast<float>(duty_counts) / static_cast<float>(kPeriod);
+}
+
+std::uint8_t floating_phase(std::uint8_t step) {
+  return kPatterns[step].floating;
+}
+
+Ticks now() {
+  return static_cast<Ticks>(TIM2::CNT::read());
+}
+
+void interrupt_at(Ticks at) {
+  TIM2::CCR1::write(at);
+  TIM2::SR::write(0);
+  TIM2::DIER::write(TIM2::CC1IE);
+  const auto left = static_cast<Ticks>(at - now());
+  if (left == 0 || left > 0x8000) TIM2::EGR::write(TIM2::CC1G);
+}
+
+void acknowledge_interrupt() {
+  TIM2::DIER::write(0);
+  TIM2::SR::write(0);
+}
+
+}  // namespace fw::esc::bridge

@@ -1,0 +1,148 @@
+#include "firmware/esc/image/i2c_slave.hpp"
+
+#include <array>
+
+#include "firmware/esc/core/core.hpp"
+#include "firmware/esc/image/registers.hpp"
+#include "firmware/hal/interrupts.hpp"
+
+namespace fw::esc::i2c_slave {
+namespace {
+
+using namespace f103;
+
+constexpr std::uint32_t kPclk1_MHz = 36;
+constexpr std::size_t kStatusBytes = 6;
+
+struct Wire {
+  std::uint8_t address = 0;
+  std::array<std::uint8_t, 4> received{};
+  std::uint8_t received_count = 0;  // saturates at its size: one more than a set-point has
+  bool transmitting = false;
+  std::array<std::uint8_t, kStatusBytes> sending{};
+  std::uint8_t sent = 0;
+  std::array<std::uint8_t, kStatusBytes> next{};  // prepared by publish()
+  std::uint16_t setpoint = 0;
+  bool fresh = false;
+  bool write_rejected = false;  // since the last read
+  std::uint32_t rejected = 0;
+};
+constinit Wire wire;
+
+std::uint8_t crc8(std::uint8_t crc, std::uint8_t byte) {
+  crc = static_cast<std::uint8_t>(crc ^ byte);
+  for (int i = 0; i < 8; ++i) {
+    crc = static_cast<std::uint8_t>((crc & 0x80) != 0 ? (crc << 1) ^ 0x07 : crc << 1);
+  }
+  return crc;
+}
+
+void judge_write() {
+  const auto& bytes = wire.received;
+  std::uint8_t crc = crc8(0, static_cast<std::uint8_t>(wire.address << 1));
+  crc = crc8(crc8(crc, bytes[0]), bytes[1]);
+  if (wire.received_count == 3 && bytes[1] <= 7 && bytes[2] == crc) {
+    wire.setpoint = static_cast<std::uint16_t>(bytes[0] << 3 | bytes[1]);
+    wire.fresh = true;
+  } else if (wire.received_count > 0) {
+    ++wire.rejected;
+    wire.write_rejected = true;
+  }
+  wire.received_count = 0;
+}
+
+void begin_status() {
+  wire.sending = wire.next;
+  if (wire.write_rejected) wire.sending[4] |= flag_write_rejected;
+  wire.write_rejected = false;
+  std::uint8_t crc = crc8(0, static_cast<std::uint8_t>(wire.address << 1 | 1));
+  for (std::size_t i = 0; i + 1 < kStatusBytes; ++i) crc = crc8(crc, wire.sending[i]);
+  wire.sending[kStatusBytes - 1] = crc;
+  wire.sent = 0;
+}
+
+void send_next() {
+  const std::uint8_t byte = wire.sent < kStatusBytes ? wire.sending[wire.sent++] : 0xFF;
+  I2C2::DR::write(byte);
+}
+
+void on_event() {
+  const std::uint32_t sr1 = I2C2::SR1::read();
+  if ((sr1 & I2C2::ADDR) != 0) {
+    if (!wire.transmitting) judge_write();  // a repeated START ends a write, too
+    wire.transmitting = (I2C2::SR2::read() & I2C2::TRA) != 0;
+    if (wire.transmitting) begin_status();
+  }
+  if ((sr1 & I2C2::RXNE) != 0) {
+    const auto byte = static_cast<std::uint8_t>(I2C2::DR::read());
+    if (wire.received_count < wire.received.size()) wire.received[wire.received_count++] = byte;
+  }
+  if (wire.transmitting && (I2C2::SR1::read() & I2C2::TXE) != 0) send_next();
+  if ((sr1 & I2C2::STOPF) != 0) {
+    I2C2::CR1::set(I2C2::PE);  // SR1 has been read: a write to CR1 clears STOPF
+    judge_write();
+    wire.transmitting = false;
+  }
+}
+
+void on_error() {
+  const std::uint32_t sr1 = I2C2::SR1::read();
+  I2C2::SR1::write(~(sr1 & (I2C2::AF | I2C2::BERR | I2C2::ARLO | I2C2::OVR)) & 0xFFFFu);
+  if ((sr1 & I2C2::AF) != 0) wire.transmitting = false;  // the master has read enough
+  if ((sr1 & (I2C2::BERR | I2C2::ARLO)) != 0) {
+    wire.received_count = 0;
+    wire.transmitting = false;
+  }
+}
+
+}  // namespace
+
+void start(std::uint8_t address_7bit) {
+  wire.address = address_7bit;
+  publish({});
+  RCC::APB1ENR::set(RCC::I2C2EN);
+  GPIOB::configure(10, kAlternateOpenDrain);
+  GPIOB::configure(11, kAlternateOpenDrain);
+  I2C2::CR1::write(I2C2::SWRST);
+  I2C2::CR1::write(0);
+  I2C2::CR2::write(kPclk1_MHz | I2C2::ITEVTEN | I2C2::ITBUFEN | I2C2::ITERREN);
+  I2C2::CCR::write(1u << 15 | 30);  // as a slave only the filters matter; fast mode
+  I2C2::TRISE::write(12);
+  I2C2::OAR1::write(bit(14) | static_cast<std::uint32_t>(address_7bit) << 1);
+  I2C2::CR1::write(I2C2::PE);
+  I2C2::CR1::write(I2C2::PE | I2C2::ACK);
+  Nvic<Irq::I2C2_EV>::enable(kPriorityI2c);
+  Nvic<Irq::I2C2_ER>::enable(kPriorityI2c);
+}
+
+void publish(const Status& status) {
+  const hal::InterruptLock lock;
+  const auto current = static_cast<std::uint16_t>(status.current_mA);
+  wire.next = {static_cast<std::uint8_t>(current),
+               static_cast<std::uint8_t>(current >> 8),
+               static_cast<std::uint8_t>(status.speed_rpm),
+               static_cast<std::uint8_t>(status.speed_rpm >> 8),
+               status.flags,
+               0};
+}
+
+bool take_setpoint(std::uint16_t& v) {
+  const hal::InterruptLock lock;
+  const bool fresh = wire.fresh;
+  v = wire.setpoint;
+  wire.fresh = false;
+  return fresh;
+}
+
+std::uint32_t rejected() {
+  return wire.rejected;
+}
+
+}  // namespace fw::esc::i2c_slave
+
+extern "C" void i2c2_ev_handler() {
+  fw::esc::i2c_slave::on_event();
+}
+extern "C" void i2c2_er_handler() {
+  fw::esc::i2c_slave::on_error();
+}

@@ -1,0 +1,22 @@
+// I2C2 as a slave: set-points in, status out, all in the interrupt; nothing is stretched longer than
+// the interrupt takes.
+//
+//   Bytes   ESC protocol: write hi, lo, crc; read current, speed, flags, crc, then 0xFF
+#pragma once
+#include <cstdint>
+
+namespace fw::esc::i2c_slave {
+
+struct Status {
+  std::int16_t current_mA = 0;
+  std::uint16_t speed_rpm = 0;
+  std::uint8_t flags = 0;
+};
+
+void start(std::uint8_t address_7bit);
+void publish(const Status& status);
+// A valid set-point that has come in since the last call.
+bool take_setpoint(std::uint16_t& v);
+std::uint32_t rejected();
+
+}  // namespace fw::esc::i2c_slave

@@ -1,0 +1,97 @@
+// The image of the motor controller: three interrupts that matter and a control tick of 1 kHz.
+//
+//   TIM2     commutation, most urgent
+//   ADC1_2   20 kHz: floating phase, bus, shunt; finds zero crossings, trips on over-current
+//   SysTick  1 kHz: the control core; feeds the watchdog
+//   Main     the command line, otherwise asleep
+#include "firmware/esc/core/core.hpp"
+#include "firmware/esc/image/bridge.hpp"
+#include "firmware/esc/image/clock.hpp"
+#include "firmware/esc/image/commands.hpp"
+#include "firmware/esc/image/i2c_slave.hpp"
+#include "firmware/esc/image/motor_drive.hpp"
+#include "firmware/esc/image/registers.hpp"
+#include "firmware/esc/image/sampling.hpp"
+#include "firmware/esc/image/serial.hpp"
+#include "firmware/esc/image/settings.hpp"
+#include "firmware/hal/interrupts.hpp"
+
+namespace {
+
+using namespace fw;
+using namespace fw::esc;
+
+// Built by fw_main, in place: start-up runs no constructors.
+alignas(Core) unsigned char core_memory[sizeof(Core)];
+Core* core = nullptr;
+Settings stored;
+MotorDrive drive;
+ZeroCurrent zero;
+
+void start_tick() {
+  using namespace f103;
+  SysTick::SHPR3::replace(0xFFu << 24, kPriorityControl << 28);
+  SysTick::LOAD::write(72'000 - 1);
+  SysTick::VAL::write(0);
+  SysTick::CTRL::write(SysTick::CLKSOURCE | SysTick::TICKINT | SysTick::ENABLE);
+}
+
+}  // namespace
+
+namespace fw::esc {
+
+__attribute__((noinline)) void control_task() {
+  std::uint16_t v = 0;
+  if (i2c_slave::take_setpoint(v)) core->on_setpoint(v);
+  Sensed sensed = drive.sense();
+  if (drive.tripped()) core->latch(Latched::over_current);
+  if (!drive.energised() && core->at_rest()) zero.note(sensed.bus_current_A);
+  sensed.bus_current_A -= zero.offset_A();
+  const Drive wanted = core->tick(sensed);
+  drive.follow(wanted);
+  i2c_slave::publish({static_cast<std::int16_t>(1000.0f * core->bus_current_A()),
+                      static_cast<std::uint16_t>(core->speed_radps() / kRadps_per_rpm),
+                      core->flags()});
+}
+
+__attribute__((noinline)) void sampling_task() {
+  drive.on_sample(sampling::take());
+}
+
+__attribute__((noinline)) void commutation_task() {
+  drive.on_commutation();
+}
+
+}  // namespace fw::esc
+
+extern "C" void systick_handler() {
+  fw::esc::control_task();
+  fw::f103::IWDG::KR::write(fw::f103::IWDG::RELOAD);
+}
+extern "C" void adc1_2_handler() {
+  fw::esc::sampling_task();
+}
+extern "C" void tim2_handler() {
+  fw::esc::commutation_task();
+}
+
+extern "C" void fw_main() {
+  start_clock();
+  settings::load(stored);
+  core = new (core_memory) Core(stored.calibration);
+  bridge::start();
+  sampling::start();
+  serial::start();
+  i2c_slave::start(static_cast<std::uint8_t>(0x28 + stored.motor_number));
+  start_watchdog();
+  start_tick();
+  for (;;) {
+    const std::string_view line = serial::take_line();
+    if (!line.empty()) {
+      const hal::InterruptLock lock;  // the core belongs to the tick
+      execute(line, *core, stored);
+    } else {
+      __asm volatile("wfi");
+    }
+  }
+}

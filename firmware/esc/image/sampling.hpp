@@ -1,0 +1,22 @@
+// The converters: floating phase and bus voltage on ADC1, the shunt on ADC2, at once and in step with
+// the PWM; one interrupt per PWM period.
+//
+//   Scale   phases and bus through 1.5/11.5 dividers at 3.3 V and 12 bits: 6.177 mV per count;
+//           shunt 0.5 mohm x 50.9: 31.66 mA per count
+#pragma once
+#include <cstdint>
+
+namespace fw::esc::sampling {
+
+inline constexpr float kVolts_per_count = 3.3f / 4096.0f * 11.5f / 1.5f;
+inline constexpr float kAmperes_per_count = 3.3f / 4096.0f / (0.5e-3f * 50.9f);
+
+struct Sample {
+  int floating, bus, shunt;  // counts
+};
+
+void start();
+void select_floating(std::uint8_t phase);  // for the next trigger
+Sample take();                             // in the interrupt: reads and clears
+
+}  // namespace fw::esc::sampling
