@@ -158,11 +158,12 @@ void Machine::map_ram(MemoryRegion* parent, const char* name, const board::Memor
   api_.memory_region_add_subregion_overlap(parent, block.base, &region, kMemories);
 }
 
-void Machine::bar(MemoryRegion* parent, std::uint32_t base, std::uint32_t size) {
-  if (size == 0) return;
-  MemoryRegion& barred = new_region();
-  api_.memory_region_init_io(&barred, nullptr, &kBarred, nullptr, "whirl.no_memory", size);
-  api_.memory_region_add_subregion_overlap(parent, base, &barred, kMemories);
+// The machine has memory here, the part has not: a bus fault.
+void Machine::bar(std::uint32_t from, std::uint32_t to) {
+  if (to <= from) return;
+  MemoryRegion& region = new_region();
+  api_.memory_region_init_io(&region, nullptr, &kBarred, nullptr, "whirl.no_memory", to - from);
+  api_.memory_region_add_subregion_overlap(api_.get_system_memory(), from, &region, kMemories);
 }
 
 void Machine::map_memories() {
@@ -181,16 +182,12 @@ void Machine::map_memories() {
   api_.memory_region_init_rom_device_nomigrate(&rom, nullptr, &kBarred, nullptr, "whirl.system_rom",
                                                part.system_rom.size, nullptr);
   api_.memory_region_add_subregion_overlap(system, part.system_rom.base, &rom, kMemories);
+  map_ram(system, "whirl.sram", part.sram);
   map_ram(core_memory_, "whirl.ccm", part.ccm);
 
-  const std::uint32_t beyond = part.machine_flash.size - part.flash.size;
-  bar(system, part.flash.base + part.flash.size, beyond);
-  bar(system, part.flash.size, beyond);  // its alias at 0
-  if (part.machine_sram.size < part.sram.size) {
-    map_ram(system, "whirl.sram", part.sram);
-  } else {
-    bar(system, part.sram.base + part.sram.size, part.machine_sram.size - part.sram.size);
-  }
+  bar(part.sram.base + part.sram.size, part.machine_sram.base + part.machine_sram.size);
+  bar(part.flash.base + part.flash.size, part.machine_flash.base + part.machine_flash.size);
+  bar(part.flash.size, part.machine_flash.size);  // its alias at 0
 
   map_block(system, board_.unanswered_region(), kGaps);
   for (const stm32::Region& block : board_.regions()) map_block(system, block, kBlocks);
@@ -207,8 +204,6 @@ void Machine::load_image() {
   }
   const std::vector<std::uint8_t> rom = board_.system_rom();
   write_cells(part.system_rom.base, rom.data(), rom.size());
-  const std::vector<std::uint8_t> noise(part.sram.size, kUntouched);
-  write_bus(part.sram.base, noise.data(), noise.size());
 }
 
 void Machine::arm(io::Nanoseconds deadline) {

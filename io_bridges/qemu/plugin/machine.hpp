@@ -78,7 +78,7 @@ class Machine final : public board::Emulator {
   MemoryRegion& new_region();
   void map_block(MemoryRegion* parent, const stm32::Region& block, int priority);
   void map_ram(MemoryRegion* parent, const char* name, const board::MemoryBlock& block);
-  void bar(MemoryRegion* parent, std::uint32_t base, std::uint32_t size);
+  void bar(std::uint32_t from, std::uint32_t to);
   void map_memories();
   void load_image();
   // What reaches the core from outside, and must not before QEMU's clock is right.

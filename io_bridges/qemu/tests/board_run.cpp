@@ -14,9 +14,9 @@ VirtualBoardOptions options_for(const BoardSetup& setup) {
   std::string watch;
   for (const std::string& name : setup.watch) watch += (watch.empty() ? "\"" : ",\"") + name + "\"";
   VirtualBoardOptions options;
-  options.board_json = R"({"board":"bench","mcu":"bench_m4","image":")" + setup.image +
-                       R"(","gdb_port":)" + std::to_string(setup.gdb_port) + R"(,"watch":[)" +
-                       watch + "]}";
+  options.board_json = R"({"board":"bench","hse_Hz":8000000,"mcu":")" + setup.mcu +
+                       R"(","image":")" + setup.image + R"(","gdb_port":)" +
+                       std::to_string(setup.gdb_port) + R"(,"watch":[)" + watch + "]}";
   options.silence_s = setup.silence_s;
   return options;
 }

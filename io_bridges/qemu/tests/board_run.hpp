@@ -15,6 +15,7 @@ struct BoardSetup {
   std::vector<std::string> watch;
   int gdb_port = 0;
   int silence_s = 30;
+  std::string mcu = "bench_m4";
 };
 VirtualBoardOptions options_for(const BoardSetup& setup);
 

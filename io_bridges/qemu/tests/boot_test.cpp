@@ -74,5 +74,32 @@ TEST(Memory, RegistersThatNobodyAnswersAreNamedOnceWithWhoTouchedThem) {
   EXPECT_EQ(run.said(), std::vector<std::uint32_t>{0});
 }
 
+io::CpuFault facts_of(const std::string& name, const std::string& mcu) {
+  BoardSetup setup{image(name), {}};
+  setup.mcu = mcu;
+  const BoardRun run = run_for(setup, 2);
+  EXPECT_EQ(run.error.what, "");
+  const auto faults = run.of(io::Kind::cpu_fault);
+  return faults.empty() ? io::CpuFault{} : faults[0]->as<io::CpuFault>();
+}
+
+TEST(Parts, F405IsWhatItsManualSays) {
+  const io::CpuFault facts = facts_of("f405", "stm32f405rg");
+  EXPECT_EQ(facts.bfar, 0x20020000u);                // 128 KiB of SRAM (RM0090 2.3.1)
+  EXPECT_EQ(facts.r[4], 1024u);                      // flash size (RM0090 39.2)
+  EXPECT_EQ(facts.r[5] & 0xFE000000u, 0x14000000u);  // SFTRSTF and PINRSTF (RM0090 7.3.21)
+  EXPECT_EQ(facts.r[6], 1u << 5);                    // bit-band (RM0090 2.3.3)
+  EXPECT_EQ(facts.r[8] & 0xFFFu, 0x413u);            // DEV_ID (RM0090 38.6.1), kept in CCM
+}
+
+TEST(Parts, F103IsWhatItsManualSays) {
+  const io::CpuFault facts = facts_of("f103", "stm32f103cb");
+  EXPECT_EQ(facts.bfar, 0x08020000u);                // 128 KiB of flash
+  EXPECT_EQ(facts.r[4], 128u);                       // its size (RM0008 30.1)
+  EXPECT_EQ(facts.r[5] & 0xFE000000u, 0x0C000000u);  // PORRSTF and PINRSTF (RM0008 7.3.10)
+  EXPECT_EQ(facts.r[6], 0x600Du);                    // the end of 20 KiB of SRAM
+  EXPECT_EQ(facts.r[7] & 0xFFFu, 0x410u);            // DEV_ID (RM0008 31.6.1)
+}
+
 }  // namespace
 }  // namespace whirl::board_test

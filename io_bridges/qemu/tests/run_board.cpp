@@ -13,7 +13,9 @@ namespace {
 void show(const whirl::io::Batch& batch) {
   for (whirl::io::Reader r(batch.bytes()); r.next();) {
     const auto text = r.payload();
-    if (std::getenv("KINDS")) std::printf("%12lld kind %d port %d size %u\n", static_cast<long long>(r.header().t_ns), static_cast<int>(r.header().kind), r.header().port, r.header().size);
+    if (std::getenv("KINDS"))
+      std::printf("%12lld kind %d port %d size %u\n", static_cast<long long>(r.header().t_ns),
+                  static_cast<int>(r.header().kind), r.header().port, r.header().size);
     if (r.header().kind == whirl::io::Kind::finding ||
         r.header().kind == whirl::io::Kind::statistics) {
       std::printf("%12lld ns  %.*s\n", static_cast<long long>(r.header().t_ns),

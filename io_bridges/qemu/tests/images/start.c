@@ -14,7 +14,9 @@ __attribute__((weak, alias("stuck"))) void systick_handler(void);
 __attribute__((weak, alias("stuck"))) void hard_fault_handler(void);
 
 void reset_handler(void) {
+#ifdef __ARM_FP
   REG(0xE000ED88) |= 0xFu << 20; /* CPACR: the FPU on */
+#endif
   main();
   stuck();
 }
