@@ -1,6 +1,7 @@
 #include "io_bridges/qemu/board/board.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -159,7 +160,10 @@ void Board::report_clocks() {
   const stm32::Clocks& clocks = chip_->clocks();
   const io::ClockSetup now{chip_->sysclk_Hz(), clocks.hclk_Hz(), clocks.pclk1_Hz(),
                            clocks.pclk2_Hz()};
-  if (std::memcmp(&now, &clocks_told_, sizeof now) == 0) return;
+  const auto all = [](const io::ClockSetup& c) {
+    return std::array{c.sysclk_Hz, c.hclk_Hz, c.pclk1_Hz, c.pclk2_Hz};
+  };
+  if (all(now) == all(clocks_told_)) return;
   clocks_told_ = now;
   happened_.add(io::Kind::clock_setup, 0, events_.now(), now);
 }

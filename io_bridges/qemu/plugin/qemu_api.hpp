@@ -128,6 +128,7 @@ constexpr unsigned kWord = 2;     // MO_32, little endian
   F(g_byte_array_set_size, GByteArray*, (GByteArray*, unsigned))
 
 struct Api {
+// NOLINTNEXTLINE(bugprone-macro-parentheses): types and parameter lists
 #define WHIRL_DECLARE(name, result, parameters) result(*name) parameters = nullptr;
   WHIRL_QEMU_FUNCTIONS(WHIRL_DECLARE)
 #undef WHIRL_DECLARE

@@ -12,6 +12,7 @@ namespace {
 TEST(Time, TwentyRunsUnderLoadGiveTheSameBytes) {
   std::atomic<bool> stop{false};
   std::vector<std::thread> load;
+  load.reserve(3);
   for (int i = 0; i < 3; ++i) {
     load.emplace_back([&stop] {
       while (!stop.load(std::memory_order_relaxed)) {

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+//
+// The memories and register blocks of the part, over those of QEMU's machine.
+#include <cstdlib>
+#include <cstring>
+
+#include "io_bridges/qemu/board/post_mortem.hpp"
+#include "io_bridges/qemu/plugin/machine.hpp"
+
+namespace whirl::qemu {
+namespace {
+
+// Over the machine (0), under nothing: gaps first, then blocks.
+constexpr int kGaps = 5, kBlocks = 10, kMemories = 10;
+constexpr std::size_t kHostPage = 4096;
+using board::kUntouched;  // RAM is not 0 at power-up; the stack watch counts on it
+
+bool nobody_answers(void*, hwaddr, unsigned, bool, Attributes) {
+  return false;
+}
+std::uint64_t read_nothing(void*, hwaddr, unsigned) {
+  return 0;
+}
+void write_nothing(void*, hwaddr, std::uint64_t, unsigned) {}
+
+const RegionOps kBarred = {read_nothing, write_nothing, nullptr,
+                           nullptr,      kLittleEndian, {1, 4, true, nobody_answers},
+                           {1, 4, true}};
+
+std::uint64_t read_flash(void*, hwaddr, unsigned) {
+  return 0;
+}  // never called: reads go to memory
+
+std::uint32_t store_into_flash(void* self, hwaddr offset, std::uint64_t value, unsigned size,
+                               Attributes) {
+  auto& board = *static_cast<board::Board*>(self);
+  const auto address = board.part().flash.base + static_cast<std::uint32_t>(offset);
+  return board.flash_store(address, size, static_cast<std::uint32_t>(value)) ? kOk : kBusError;
+}
+
+const RegionOps kFlashOps = {read_flash,       nullptr,       nullptr,
+                             store_into_flash, kLittleEndian, {1, 4, false, nullptr},
+                             {1, 4, false}};
+
+}  // namespace
+
+std::uint64_t Machine::read_window(void* window, hwaddr offset, unsigned size) {
+  auto& [machine, block] = *static_cast<Window*>(window);
+  machine->anchor();
+  return block->read(static_cast<std::uint32_t>(offset), size);
+}
+
+void Machine::write_window(void* window, hwaddr offset, std::uint64_t value, unsigned size) {
+  auto& [machine, block] = *static_cast<Window*>(window);
+  machine->anchor();
+  block->write(static_cast<std::uint32_t>(offset), static_cast<std::uint32_t>(value), size);
+}
+
+MemoryRegion& Machine::new_region() {
+  regions_.push_back(std::make_unique<MemoryRegion>());
+  return *regions_.back();
+}
+
+void Machine::map_block(MemoryRegion* parent, const stm32::Region& block, int priority) {
+  // Aligned accesses of 1, 2 and 4 bytes reach the block as they are.
+  static const RegionOps kOps = {read_window,   write_window,           nullptr,      nullptr,
+                                 kLittleEndian, {1, 4, false, nullptr}, {1, 4, false}};
+  MemoryRegion& region = new_region();
+  windows_.push_back(std::make_unique<Window>(Window{this, block.block}));
+  api_.memory_region_init_io(&region, nullptr, &kOps, windows_.back().get(), block.block->name(),
+                             block.size);
+  api_.memory_region_add_subregion_overlap(parent, block.base, &region, priority);
+}
+
+void Machine::map_ram(MemoryRegion* parent, const char* name, const board::MemoryBlock& block) {
+  if (block.size == 0) return;
+  void* memory = std::aligned_alloc(kHostPage, block.size);  // lives as long as the process
+  std::memset(memory, kUntouched, block.size);
+  MemoryRegion& region = new_region();
+  api_.memory_region_init_ram_ptr(&region, nullptr, name, block.size, memory);
+  api_.memory_region_add_subregion_overlap(parent, block.base, &region, kMemories);
+}
+
+// The machine has memory here, the part has not: a bus fault.
+void Machine::bar(std::uint32_t from, std::uint32_t to) {
+  if (to <= from) return;
+  MemoryRegion& region = new_region();
+  api_.memory_region_init_io(&region, nullptr, &kBarred, nullptr, "whirl.no_memory", to - from);
+  api_.memory_region_add_subregion_overlap(api_.get_system_memory(), from, &region, kMemories);
+}
+
+void Machine::map_memories() {
+  const board::Part& part = board_.part();
+  MemoryRegion* system = api_.get_system_memory();
+
+  MemoryRegion& flash = new_region();
+  api_.memory_region_init_rom_device_nomigrate(&flash, nullptr, &kFlashOps, &board_, "whirl.flash",
+                                               part.flash.size, nullptr);
+  api_.memory_region_add_subregion_overlap(system, part.flash.base, &flash, kMemories);
+  MemoryRegion& alias = new_region();
+  api_.memory_region_init_alias(&alias, nullptr, "whirl.boot", &flash, 0, part.flash.size);
+  api_.memory_region_add_subregion_overlap(system, 0, &alias, kMemories);
+
+  MemoryRegion& rom = new_region();
+  api_.memory_region_init_rom_device_nomigrate(&rom, nullptr, &kBarred, nullptr, "whirl.system_rom",
+                                               part.system_rom.size, nullptr);
+  api_.memory_region_add_subregion_overlap(system, part.system_rom.base, &rom, kMemories);
+  map_ram(system, "whirl.sram", part.sram);
+  map_ram(core_memory_, "whirl.ccm", part.ccm);
+
+  bar(part.sram.base + part.sram.size, part.machine_sram.base + part.machine_sram.size);
+  bar(part.flash.base + part.flash.size, part.machine_flash.base + part.machine_flash.size);
+  bar(part.flash.size, part.machine_flash.size);  // its alias at 0
+
+  map_block(system, board_.unanswered_region(), kGaps);
+  for (const stm32::Region& block : board_.regions()) map_block(system, block, kBlocks);
+  for (const stm32::Region& block : board_.core_regions()) map_block(core_memory_, block, kBlocks);
+  system_control_->map(core_memory_, new_region());
+}
+
+void Machine::load_image() {
+  const board::Part& part = board_.part();
+  const std::vector<std::uint8_t> blank(part.flash.size, 0xFF);
+  write_cells(part.flash.base, blank.data(), blank.size());
+  for (const board::Segment& segment : board_.image().segments()) {
+    write_cells(segment.address, segment.bytes.data(), segment.bytes.size());
+  }
+  const std::vector<std::uint8_t> rom = board_.system_rom();
+  write_cells(part.system_rom.base, rom.data(), rom.size());
+}
+
+}  // namespace whirl::qemu
