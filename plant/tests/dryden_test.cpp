@@ -96,6 +96,18 @@ TEST(Dryden, VelocitySpectraAreTheStandards) {
   }
 }
 
+// q is the slope of the downdraft along the path, r the negative slope of the side gust.
+TEST(Dryden, RatesHaveTheStandardsSigns) {
+  double pitch = 0.0, yaw = 0.0;
+  const Record& rec = record();
+  for (std::size_t k = 1; k < rec.w.size(); ++k) {
+    pitch += rec.q[k] * (rec.w[k] - rec.w[k - 1]);
+    yaw += rec.r[k] * (rec.v[k] - rec.v[k - 1]);
+  }
+  EXPECT_GT(pitch, 0.0);
+  EXPECT_LT(yaw, 0.0);
+}
+
 TEST(Dryden, RateSpectraAreTheStandards) {
   const double b = 0.5, V = kAirspeed_mps;
   auto roll = [&](double w) {

@@ -50,6 +50,7 @@ TEST(Barometer, NoiseHasItsDensity) {
   p.noise_density_Pa = 0.12;
   Barometer baro(p, 2);
   std::vector<double> x;
+  x.reserve(400000);
   for (int k = 0; k < 400000; ++k) x.push_back(baro.sample_Pa(0.01, {}));
   EXPECT_TRUE(near(allan_deviation(x, 0.01, 1.0) / 0.12, 1.0, stated(0.1, "issue")));
 }
