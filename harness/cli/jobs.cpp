@@ -33,6 +33,7 @@ pid_t start(const PlanChoice& plan, const RunOptions& options, std::FILE* output
   dup2(fileno(output), STDERR_FILENO);
   std::vector<std::string> words = arguments(plan, options);
   std::vector<char*> argv;
+  argv.reserve(words.size() + 1);
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
   execv("/proc/self/exe", argv.data());

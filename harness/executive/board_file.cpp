@@ -1,6 +1,7 @@
 #include "harness/executive/board_file.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "harness/lua/table.hpp"
@@ -97,7 +98,7 @@ Result<Board> read_board(const std::string& path) {
   board.lse_Hz = t.quantity_or("lse", Dimension::frequency, 0.0, lua::at_least(0.0));
   const double instruction_s =
       t.quantity_or("instruction", Dimension::time, 8e-9, lua::between(1e-9, 1e-6));
-  board.ns_per_instruction = static_cast<int>(instruction_s * 1e9 + 0.5);
+  board.ns_per_instruction = static_cast<int>(std::lround(instruction_s * 1e9));
   for (const lua::Table& entry : t.tables("devices")) board.devices.push_back(read_device(entry));
   json pins = json::array();
   for (const lua::Table& entry : t.tables("pins")) {

@@ -94,7 +94,7 @@ Script& Script::of(lua_State* L) {
 }
 
 Script::Script(PlanFile& file, const Plan& plan, Stage& stage)
-    : file_(file), plan_(plan), stage_(stage) {
+    : file_(file), stage_(stage) {
   lua_State* L = file_.sandbox().state();
   lua_pushlightuserdata(L, this);
   lua_setfield(L, LUA_REGISTRYINDEX, kOwnerKey);

@@ -118,7 +118,6 @@ class Script {
   void judge_faults();
 
   PlanFile& file_;
-  const Plan& plan_;
   Stage& stage_;
   lua_State* thread_ = nullptr;
   std::int64_t wake_ns_ = 0;
