@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <complex>
 #include <functional>
 #include <vector>
 
@@ -16,18 +15,33 @@ constexpr double kAirspeed_mps = 10.0, kHeight_m = 30.48, kStep_s = 0.01;  // 10
 
 using Spectrum = std::function<double(double w_radps)>;
 
-// One-sided density per rad/s at one frequency: segments under a Hann window, averaged.
+constexpr int kSegment = 8192;
+
+const std::vector<double>& hann() {
+  static const std::vector<double> window = [] {
+    std::vector<double> w(kSegment);
+    for (int k = 0; k < kSegment; ++k) w[k] = 0.5 - 0.5 * std::cos(2.0 * M_PI * k / kSegment);
+    return w;
+  }();
+  return window;
+}
+
+// One-sided density per rad/s at one frequency: segments under a Hann window, by Goertzel's
+// recurrence, averaged.
 double density(const std::vector<double>& x, double w_radps) {
-  const int n = 8192;
-  const std::complex<double> turn = std::polar(1.0, -w_radps * kStep_s);
+  const std::vector<double>& window = hann();
+  const double turn = 2.0 * std::cos(w_radps * kStep_s);
   double sum = 0.0;
   int count = 0;
-  for (std::size_t start = 0; start + n <= x.size(); start += n / 2, ++count) {
-    std::complex<double> phase = 1.0, total = 0.0;
-    for (int k = 0; k < n; ++k, phase *= turn) {
-      total += x[start + k] * (0.5 - 0.5 * std::cos(2.0 * M_PI * k / n)) * phase;
+  for (std::size_t start = 0; start + kSegment <= x.size(); start += kSegment / 2, ++count) {
+    double last = 0.0, before = 0.0;
+    for (int k = 0; k < kSegment; ++k) {
+      const double now = x[start + k] * window[k] + turn * last - before;
+      before = last;
+      last = now;
     }
-    sum += std::norm(total) * kStep_s / (0.375 * n * M_PI);
+    const double square = last * last + before * before - turn * last * before;
+    sum += square * kStep_s / (0.375 * kSegment * M_PI);
   }
   return sum / count;
 }
@@ -36,7 +50,7 @@ double density(const std::vector<double>& x, double w_radps) {
 double ratio(const std::vector<double>& x, double w_radps, const Spectrum& want) {
   double sum = 0.0;
   for (int bin = -4; bin <= 4; bin += 2) {
-    const double w = w_radps + bin * 2.0 * M_PI / (8192 * kStep_s);
+    const double w = w_radps + bin * 2.0 * M_PI / (kSegment * kStep_s);
     sum += density(x, w) / want(w) / 5.0;
   }
   return sum;
