@@ -52,6 +52,8 @@ TEST(Rcc, PrescalersDivideAsTheirTablesSay) {
   for (const Row& r : {Row{7, 1}, Row{8, 2}, Row{11, 16}, Row{12, 64}, Row{15, 512}}) {
     bench.put(kCfgr, r.hpre << 4);
     EXPECT_EQ(bench.chip().clocks().hclk_Hz(), 16e6 / r.divisor);
+    EXPECT_EQ(bench.chip().clocks().timclk1_Hz(), 16e6 / r.divisor);  // not doubled: PPRE1 is 1
+    EXPECT_EQ(bench.chip().clocks().timclk2_Hz(), 16e6 / r.divisor);
   }
   bench.put(kCfgr, (7u << 10) | (4u << 13));
   EXPECT_EQ(bench.chip().clocks().pclk1_Hz(), 1e6);
@@ -180,6 +182,19 @@ TEST(Gpio, PullsAndOpenDrainGiveWayToTheBoard) {
   pin.drive(board, io::Drive::low, 0);
   EXPECT_EQ(bench.get(kGpioC + 0x10) & 8, 0u);
   EXPECT_EQ(pin.fights(), 0u);
+}
+
+// An idle USART drives its TX high; through an open-drain pin that is no drive at all.
+TEST(Gpio, OpenDrainAppliesToAlternateFunctionsToo) {
+  for (const bool open_drain : {true, false}) {
+    PinBench bench;
+    bench.set_bits(kRcc + 0x40, 1u << 17);
+    io::Wire& pin = *bench.chip().pin("PA2");
+    pin.drive(pin.add_driver(), io::Drive::low, 0);
+    bench.mux('A', 2, 7, open_drain);
+    bench.put(0x4000440C, 0x2008);
+    EXPECT_EQ(pin.fights(), open_drain ? 0u : 1u);
+  }
 }
 
 TEST(Gpio, AnalogPinsReadZero) {
