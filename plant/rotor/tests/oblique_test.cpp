@@ -140,6 +140,21 @@ TEST(Oblique, NearIdealBladeMeetsItsClosedForms) {
   }
 }
 
+// To turn a rotor that spins counter-clockwise to the right, its shaft must pitch it up; blades that
+// bend give way to that, the disc tilts forward and takes the thrust along.
+TEST(Oblique, BendingBladesPrecess) {
+  const auto force_x = [](double stiffness_Nm_per_rad, int spin) {
+    PropellerDescription d = hobbyking_10x4_5(section("e63"), section("naca4412"));
+    d.flap_stiffness_Nm_per_rad = stiffness_Nm_per_rad;
+    RotorConditions c = hover(4500.0);
+    c.w_WP_P_radps.x() = 3.0;
+    return Rotor(make_blade(d).value(), spin).steady(c).f_P_N.x();
+  };
+  const double stiff = force_x(1e5, 1);
+  EXPECT_GT(force_x(20.0, 1), stiff);
+  EXPECT_LT(force_x(20.0, -1), force_x(1e5, -1));
+}
+
 // Aft of the shaft the skewed wake blows stronger: the nose comes up by more lift in front.
 TEST(Oblique, SkewedWakeLiftsTheNose) {
   EXPECT_GT(Rotor(hobbyking(), 1).steady(forward(3.0)).tau_P_Nm.y(), 0.0);
