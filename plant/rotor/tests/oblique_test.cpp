@@ -94,7 +94,7 @@ struct NearIdeal {
   static constexpr double rho = 1.225;
   StraightSection s{0.1, 5.7, 0.012, 0.02};
 
-  RingLoads numeric(double mu) const {
+  RingLoads numeric(double mu, double coning_rad = 0.0) const {
     PropellerDescription d;
     d.diameter_m = 2.0 * R;
     d.mass_kg = 0.01;
@@ -110,6 +110,7 @@ struct NearIdeal {
     f.climb_mps = lambda * omega * R;
     f.tip_radius_m = R;
     f.blade_count = 2;
+    f.flap_rad.mean = coning_rad;
     return ring_loads(ring, f, 0.0, 0.0);
   }
 };
@@ -138,6 +139,43 @@ TEST(Oblique, NearIdealBladeMeetsItsClosedForms) {
     EXPECT_TRUE(near(-got.fx_N, drag, two_percent(drag))) << mu;
     EXPECT_TRUE(near(got.drive_N * n.R, torque, two_percent(torque))) << mu;
   }
+}
+
+// Seen from a coned blade the wind comes from below in front: lift there, by beta V cos(theta).
+TEST(Oblique, ConingLiftsTheFrontBlade) {
+  const NearIdeal n;
+  const double mu = 0.05, beta = 0.03;
+  const double want =
+      0.25 * n.rho * 2 * n.chord * n.R * n.s.slope * beta * mu * std::pow(n.omega * n.R, 2);
+  EXPECT_TRUE(near(n.numeric(mu, beta).lift_N.c, want, stated(0.03 * want, "small angles")));
+}
+
+TEST(Oblique, YawingAgainstTheSpinCostsThrust) {
+  RotorConditions c = hover(4500.0);
+  const double still = Rotor(hobbyking(), 1).steady(c).thrust_N;
+  c.w_WP_P_radps.z() = 20.0;  // clockwise seen from above
+  EXPECT_LT(Rotor(hobbyking(), 1).steady(c).thrust_N, still);
+  EXPECT_GT(Rotor(hobbyking(), -1).steady(c).thrust_N, still);
+}
+
+// In hover the inflow's gradient answers a moment L with 2 L / (rho A R u) at the tip [PittPeters];
+// a roll rate p acts like a gradient of R p. So the moment of the first instant, before the inflow has
+// moved, falls by 1 + 2 k / (rho A R u), k = L / (R p).
+TEST(Oblique, InflowTakesItsShareOfTheRollDamping) {
+  RotorConditions c = hover(4500.0);
+  PropellerDescription d = hobbyking_10x4_5(section("e63"), section("naca4412"));
+  d.flap_stiffness_Nm_per_rad = 1e5;  // flapping has its own share; not here
+  Rotor rotor(make_blade(d).value(), 1);
+  for (int i = 0; i < 500; ++i) rotor.step(c, 1e-3);
+  c.w_WP_P_radps.x() = 1.0;
+  const double at_once = -rotor.step(c, 1e-9).tau_P_Nm.x();
+  const RotorLoads later = rotor.steady(c);
+  const double R = 0.127;
+  const double k = at_once / (R * 1.0);
+  const double ratio =
+      1.0 + 2.0 * k / (1.225 * 3.14159265 * R * R * R * later.induced_velocity_mps);
+  EXPECT_GT(ratio, 1.2);
+  EXPECT_TRUE(near(at_once / -later.tau_P_Nm.x(), ratio, stated(0.03 * ratio, "linear in p")));
 }
 
 // To turn a rotor that spins counter-clockwise to the right, its shaft must pitch it up; blades that
