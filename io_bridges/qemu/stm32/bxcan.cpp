@@ -1,6 +1,7 @@
 #include "io_bridges/qemu/stm32/bxcan.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "io_bridges/qemu/stm32/can_frame_bits.hpp"
 #include "io_bridges/qemu/stm32/register_access.hpp"
@@ -273,7 +274,7 @@ void BxCan::try_transmit() {
   in_flight_ = next_mailbox();
   if (in_flight_ < 0) return;
   const int bits = can_frame_bits(frame_of(mailbox_[static_cast<std::size_t>(in_flight_)]));
-  sending_.in(static_cast<Nanoseconds>(bits * bit_time_s() * 1e9 + 0.5));
+  sending_.in(std::llround(bits * bit_time_s() * 1e9));
 }
 
 void BxCan::transmitted() {

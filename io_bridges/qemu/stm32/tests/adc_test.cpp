@@ -229,8 +229,8 @@ TEST(AdcF405, TripleInterleavedStartsFiveClocksApart) {
   for (std::uint32_t base : {0x200u, 0x100u}) put(adc.block, base + CR2, ADON | CONT);
   put(adc.block, CR2, ADON | CONT | SWSTART_F4);
   adc.bare.run_to(1'800);
-  std::vector<Nanoseconds> want;
-  for (int i = 0; i < 6; ++i) want.push_back(clocks_ns(3 + 5 * i, 21'000'000));
+  std::vector<Nanoseconds> want(6);
+  for (int i = 0; i < 6; ++i) want[static_cast<std::size_t>(i)] = clocks_ns(3 + 5 * i, 21'000'000);
   ASSERT_GE(adc.sampled.size(), 6u);
   adc.sampled.resize(6);
   EXPECT_EQ(adc.sampled, want);
@@ -247,7 +247,7 @@ TEST(AdcF405, SensorsAnswerAsTheDataSheetSays) {
     put(adc.block, SQR3, row.channel);
     put(adc.block, CR2, ADON | SWSTART_F4);
     adc.bare.run_to(adc.bare.events.now() + 2'000);
-    EXPECT_EQ(get(adc.block, DR), static_cast<std::uint32_t>(row.volts / 3.3 * 4096 + 0.5));
+    EXPECT_EQ(get(adc.block, DR), std::lround(row.volts / 3.3 * 4096));
   }
 }
 
