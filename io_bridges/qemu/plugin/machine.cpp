@@ -229,8 +229,23 @@ void Machine::sleep() {
   asleep_since_ns_ = -1;
   anchor();
   // Idle still: other work of this thread gets a turn, then the sleep goes on.
-  if (api_.cpu_thread_is_idle(cpu_)) return before_sleep();
-  arm(events.next_deadline());
+  if (api_.cpu_thread_is_idle(cpu_)) {
+    before_sleep();
+  } else {
+    arm(events.next_deadline());
+  }
+  if (board_.config().gdb_port != 0) give_way();
+}
+
+// Under gdb the main loop lives; a core that sleeps much would hardly let it have the lock. It cannot
+// move the clock here: the CPU is not idle, there is an interrupt or work for it.
+void Machine::give_way() {
+  const auto now = std::chrono::steady_clock::now();
+  if (now - gave_way_ < std::chrono::milliseconds(5)) return;
+  api_.qemu_mutex_unlock_iothread();
+  usleep(200);
+  api_.qemu_mutex_lock_iothread_impl(__FILE__, __LINE__);
+  gave_way_ = now;
 }
 
 // QEMU's clock to the board's, then what waited for it. On an idle CPU arming a timer moves the clock

@@ -12,6 +12,7 @@
 //   Reset     is done by the CPU's own thread between two instructions, not by QEMU's main loop,
 //             whose moment would depend on the host
 #pragma once
+#include <chrono>
 #include <memory>
 #include <string>
 #include <unordered_map>
@@ -90,6 +91,7 @@ class Machine final : public board::Emulator {
   };
   void sleep();
   void catch_up();
+  void give_way();
   void act(const Deferred& what);
   void act_or_defer(const Deferred& what);
   void queue_reset(stm32::ResetCause cause);
@@ -113,7 +115,8 @@ class Machine final : public board::Emulator {
   const std::uint32_t* other_sp_ = nullptr;
   std::unordered_map<std::uint32_t, std::uint32_t> last_in_block_;
   io::Nanoseconds slept_ns_ = 0, asleep_since_ns_ = -1, sleep_now_ns_ = 0;
-  std::vector<Deferred> deferred_;  // in order
+  std::chrono::steady_clock::time_point gave_way_{};  // host's clock: moves nothing in the guest
+  std::vector<Deferred> deferred_;                    // in order
 };
 
 }  // namespace whirl::qemu

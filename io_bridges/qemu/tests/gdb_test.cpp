@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cstdio>
 #include <thread>
 
@@ -10,10 +11,10 @@
 namespace whirl::board_test {
 namespace {
 
-std::string gdb(int port, const std::string& commands) {
+std::string gdb(int port, const std::string& name, const std::string& commands) {
   const std::string line =
       "gdb-multiarch -nx -batch -ex 'set pagination off' -ex 'target remote :" +
-      std::to_string(port) + "' " + commands + " " + image("calls") + " 2>&1";
+      std::to_string(port) + "' " + commands + " " + image(name) + " 2>&1";
   FILE* pipe = popen(line.c_str(), "r");
   std::string text;
   char chunk[512];
@@ -31,7 +32,7 @@ TEST(Gdb, StopsInAFunctionWhileTheWorldWaits) {
   std::string text;
   std::thread person([&] {
     text =
-        gdb(setup.gdb_port,
+        gdb(setup.gdb_port, "calls",
             "-ex 'break counted' -ex 'continue' -ex 'shell sleep 2' -ex 'print $pc' -ex 'backtrace'"
             " -ex 'stepi' -ex 'print $r0' -ex 'delete' -ex 'detach'");
   });
@@ -47,6 +48,31 @@ TEST(Gdb, StopsInAFunctionWhileTheWorldWaits) {
   EXPECT_NE(text.find("main () at"), std::string::npos) << text;
   EXPECT_NE(text.find("= 100"), std::string::npos) << text;
   target.stop(happened);
+}
+
+TEST(Gdb, InterruptsAnImageThatMostlySleeps) {
+  BoardSetup setup{image("sleeper"), {}};
+  setup.gdb_port = 20000 + static_cast<int>((getpid() + 7) % 20000);
+  VirtualBoard target(options_for(setup));
+  ASSERT_TRUE(target.start());
+  std::atomic<bool> done{false};
+  std::string text;
+  std::thread person([&] {  // presses Ctrl-C while it runs
+    text = gdb(
+        setup.gdb_port, "sleeper",
+        "-ex 'shell (sleep 1; kill -INT $PPID) &' -ex 'continue' -ex 'print count' -ex 'detach'");
+    done = true;
+  });
+  io::Batch happened;
+  bool alive = true;
+  for (std::int64_t k = 1; alive && !done; ++k) {
+    target.run(k * 1'000'000, {});
+    alive = target.arrive(happened).ok();
+  }
+  person.join();
+  EXPECT_TRUE(alive) << target.output();
+  EXPECT_NE(text.find("received signal SIGINT"), std::string::npos) << text;
+  EXPECT_NE(text.find("$1 = "), std::string::npos) << text;
 }
 
 }  // namespace
