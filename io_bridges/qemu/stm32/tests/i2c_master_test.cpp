@@ -90,6 +90,22 @@ TEST(I2cMaster, HalReadsOneByte) {
   EXPECT_EQ(bench.file.fetched_at.size(), 1u);
 }
 
+// Others set STOP while ADDR still stretches the clock: the byte comes first all the same.
+TEST(I2cMaster, StopBeforeAddrIsClearedStillReadsTheByte) {
+  I2cBench bench;
+  bench.point_at(0x31);
+  bench.clear_bits(kCr1, ACK);
+  bench.start_and_address(0xA1);
+  bench.wait(kSr1, ADDR, ADDR);
+  bench.set_bits(kCr1, STOP);
+  bench.run(20'000);
+  bench.get(kSr1);
+  bench.get(kSr2);
+  EXPECT_EQ(bench.take(), 0x31);
+  bench.wait(kCr1, STOP, 0);
+  EXPECT_EQ(bench.file.log, "WRnP");
+}
+
 // Two bytes as the HAL does it: ACK off and POS on while ADDR stretches, BTF, STOP, two reads.
 TEST(I2cMaster, HalReadsTwoBytesWithPos) {
   I2cBench bench;

@@ -4,8 +4,8 @@
 namespace whirl::stm32 {
 namespace {
 
-constexpr std::uint32_t kRcc = 0x40023800, kGpioA = 0x40020000, kGpioB = 0x40020400,
-                        kSpi1 = 0x40013000, kUsart2 = 0x40004400, kI2c3 = 0x40005C00;
+constexpr std::uint32_t kRcc = 0x40023800, kGpioB = 0x40020400, kSpi1 = 0x40013000,
+                        kUsart2 = 0x40004400, kI2c3 = 0x40005C00;
 
 TEST(Stm32f405, ClimbsTo168MHzAsEverySystemInitDoes) {
   ChipBench bench;
