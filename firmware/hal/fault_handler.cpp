@@ -2,7 +2,7 @@
 // interrupted code, then resets. The motors stop by the ESCs' watchdogs at the latest.
 #include "firmware/hal/fault_record.hpp"
 
-#include "firmware/hal/registers.hpp"
+#include "firmware/hal/core_registers.hpp"
 
 __attribute__((section(".noinit"), used)) fw::FaultRecord fw_fault_record;
 

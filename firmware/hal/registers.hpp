@@ -2,33 +2,13 @@
 //
 //   Names   registers and bits keep the spelling of the reference manual
 //   Source  RM0090 (memory map 2.3, register maps at the end of each chapter); PM0214 for the core
-//   Rule    the one reinterpret_cast of the firmware is in Reg32
 #pragma once
 #include <array>
 #include <cstdint>
 
+#include "firmware/hal/core_registers.hpp"
+
 namespace fw::hw {
-
-template <std::uint32_t kAddress>
-struct Reg32 {
-  static constexpr std::uint32_t address = kAddress;
-
-  static std::uint32_t read() { return *pointer(); }
-  static void write(std::uint32_t value) { *pointer() = value; }
-  static void set(std::uint32_t bits) { write(read() | bits); }
-  static void clear(std::uint32_t bits) { write(read() & ~bits); }
-  static void replace(std::uint32_t mask, std::uint32_t bits) { write((read() & ~mask) | bits); }
-  static bool has(std::uint32_t bits) { return (read() & bits) == bits; }
-
- private:
-  static volatile std::uint32_t* pointer() {
-    return reinterpret_cast<volatile std::uint32_t*>(kAddress);  // NOLINT
-  }
-};
-
-constexpr std::uint32_t bit(unsigned n) {
-  return 1u << n;
-}
 
 struct RCC {
   static constexpr std::uint32_t base = 0x4002'3800;
@@ -173,26 +153,6 @@ using Usart2TxDma = DmaStream<kDma1, 6>;  // channel 4
 using Spi1RxDma = DmaStream<kDma2, 0>;    // channel 3
 using Spi1TxDma = DmaStream<kDma2, 3>;    // channel 3
 
-struct IWDG {
-  static constexpr std::uint32_t base = 0x4000'3000;
-  using KR = Reg32<base + 0x00>;
-  using PR = Reg32<base + 0x04>;
-  using RLR = Reg32<base + 0x08>;
-  static constexpr std::uint32_t START = 0xCCCC, RELOAD = 0xAAAA, UNLOCK = 0x5555;
-};
-
-struct SCB {
-  using VTOR = Reg32<0xE000'ED08>;
-  using AIRCR = Reg32<0xE000'ED0C>;
-  using CFSR = Reg32<0xE000'ED28>;
-  using HFSR = Reg32<0xE000'ED2C>;
-  using MMFAR = Reg32<0xE000'ED34>;
-  using BFAR = Reg32<0xE000'ED38>;
-  using CPACR = Reg32<0xE000'ED88>;
-  static constexpr std::uint32_t SYSRESETREQ = 0x05FA'0004;  // with the key
-  static constexpr std::uint32_t CP10_CP11_FULL = 0xFu << 20;
-};
-
 // Interrupt numbers, RM0090 table 61.
 enum class Irq : std::uint8_t {
   DMA1_Stream2 = 13,
@@ -207,15 +167,6 @@ enum class Irq : std::uint8_t {
 inline constexpr unsigned kIrqCount = 82;
 
 template <Irq kIrq>
-struct Nvic {
-  static constexpr unsigned n = static_cast<unsigned>(kIrq);
-  using ISER = Reg32<0xE000'E100 + 4 * (n / 32)>;
-  using IPR = Reg32<0xE000'E400 + 4 * (n / 4)>;
-  static void enable(std::uint32_t priority) {  // 0 (most urgent) .. 15
-    constexpr unsigned shift = 8 * (n % 4);
-    IPR::replace(0xFFu << shift, priority << (shift + 4));
-    ISER::write(bit(n % 32));
-  }
-};
+using Nvic = NvicLine<static_cast<unsigned>(kIrq)>;
 
 }  // namespace fw::hw

@@ -1,19 +1,9 @@
 // From reset to fw_main: vector table, FPU, RAM. Runs no constructors (the linker script asserts
 // that there are none).
-#include <array>
-#include <cstdint>
-#include <cstring>
-
-#include "firmware/hal/fault_record.hpp"
 #include "firmware/hal/registers.hpp"
+#include "firmware/hal/vectors.hpp"
 
 extern "C" {
-extern std::uint32_t stack_top, data_begin, data_end, data_image, bss_begin, bss_end;
-void fw_main();
-void reset_handler();
-void hard_fault_handler();
-void unexpected_interrupt();
-
 // Overridden where a driver needs the line.
 #define FW_WEAK __attribute__((weak, nothrow, alias("unexpected_interrupt")))
 FW_WEAK void dma1_stream2_handler();
@@ -29,21 +19,9 @@ FW_WEAK void i2c3_er_handler();
 
 namespace {
 
-using Handler = void (*)();
-
-struct VectorTable {
-  const void* stack;
-  std::array<Handler, 15> system;
-  std::array<Handler, fw::hw::kIrqCount> irq;
-};
-
-constexpr VectorTable make_vectors() {
-  VectorTable table{&stack_top, {}, {}};
-  table.system.fill(unexpected_interrupt);
-  table.irq.fill(unexpected_interrupt);
-  table.system[0] = reset_handler;
-  table.system[2] = hard_fault_handler;
-  const auto on = [&table](fw::hw::Irq irq, Handler handler) {
+constexpr auto make_vectors() {
+  fw::hal::VectorTable<fw::hw::kIrqCount> table;
+  const auto on = [&table](fw::hw::Irq irq, fw::hal::Handler handler) {
     table.irq[static_cast<unsigned>(irq)] = handler;
   };
   using fw::hw::Irq;
@@ -60,13 +38,12 @@ constexpr VectorTable make_vectors() {
 
 }  // namespace
 
-__attribute__((section(".isr_vector"), used)) constinit const VectorTable vectors = make_vectors();
+__attribute__((section(".isr_vector"), used)) constinit const auto vectors = make_vectors();
 
 extern "C" __attribute__((noreturn, used)) void reset_handler() {
   fw::hw::SCB::CPACR::set(fw::hw::SCB::CP10_CP11_FULL);
   __asm volatile("dsb\n isb" ::: "memory");
-  for (std::uint32_t *to = &data_begin, *from = &data_image; to < &data_end;) *to++ = *from++;
-  for (std::uint32_t* to = &bss_begin; to < &bss_end;) *to++ = 0;
+  fw::hal::prepare_memory();
   fw_main();
   for (;;) __asm volatile("wfi");
 }

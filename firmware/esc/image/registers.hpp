@@ -5,11 +5,12 @@
 #pragma once
 #include <cstdint>
 
-#include "firmware/hal/registers.hpp"
+#include "firmware/hal/core_registers.hpp"
 
 namespace fw::f103 {
 
 using hw::bit;
+using hw::IWDG;
 using hw::Reg32;
 
 struct RCC {
@@ -144,14 +145,6 @@ struct USART1 {
                                  UE = bit(13);
 };
 
-struct IWDG {
-  static constexpr std::uint32_t base = 0x4000'3000;
-  using KR = Reg32<base + 0x00>;
-  using PR = Reg32<base + 0x04>;
-  using RLR = Reg32<base + 0x08>;
-  static constexpr std::uint32_t START = 0xCCCC, RELOAD = 0xAAAA, UNLOCK = 0x5555;
-};
-
 struct SysTick {
   using CTRL = Reg32<0xE000'E010>;
   using LOAD = Reg32<0xE000'E014>;
@@ -170,16 +163,7 @@ enum class Irq : std::uint8_t {
 inline constexpr unsigned kIrqCount = 43;
 
 template <Irq kIrq>
-struct Nvic {
-  static constexpr unsigned n = static_cast<unsigned>(kIrq);
-  using ISER = Reg32<0xE000'E100 + 4 * (n / 32)>;
-  using IPR = Reg32<0xE000'E400 + 4 * (n / 4)>;
-  static void enable(std::uint32_t priority) {  // 0 (most urgent) .. 15
-    constexpr unsigned shift = 8 * (n % 4);
-    IPR::replace(0xFFu << shift, priority << (shift + 4));
-    ISER::write(bit(n % 32));
-  }
-};
+using Nvic = hw::NvicLine<static_cast<unsigned>(kIrq)>;
 
 enum Priority : std::uint32_t {
   kPriorityCommutation = 0,

@@ -1,16 +1,9 @@
 // From reset to fw_main on the STM32F103: vector table and RAM. Runs no constructors (the linker
 // script asserts that there are none).
-#include <array>
-#include <cstdint>
-
 #include "firmware/esc/image/registers.hpp"
+#include "firmware/hal/vectors.hpp"
 
 extern "C" {
-extern std::uint32_t stack_top, data_begin, data_end, data_image, bss_begin, bss_end;
-void fw_main();
-void reset_handler();
-void hard_fault_handler();
-void unexpected_interrupt();
 void systick_handler();
 void adc1_2_handler();
 void tim2_handler();
@@ -21,22 +14,9 @@ void usart1_handler();
 
 namespace {
 
-using Handler = void (*)();
-
-struct VectorTable {
-  const void* stack;
-  std::array<Handler, 15> system;
-  std::array<Handler, fw::f103::kIrqCount> irq;
-};
-
-constexpr VectorTable make_vectors() {
-  VectorTable table{&stack_top, {}, {}};
-  table.system.fill(unexpected_interrupt);
-  table.irq.fill(unexpected_interrupt);
-  table.system[0] = reset_handler;
-  table.system[2] = hard_fault_handler;
-  table.system[14] = systick_handler;
-  const auto on = [&table](fw::f103::Irq irq, Handler handler) {
+constexpr auto make_vectors() {
+  fw::hal::VectorTable<fw::f103::kIrqCount> table;
+  const auto on = [&table](fw::f103::Irq irq, fw::hal::Handler handler) {
     table.irq[static_cast<unsigned>(irq)] = handler;
   };
   using fw::f103::Irq;
@@ -50,11 +30,10 @@ constexpr VectorTable make_vectors() {
 
 }  // namespace
 
-__attribute__((section(".isr_vector"), used)) constinit const VectorTable vectors = make_vectors();
+__attribute__((section(".isr_vector"), used)) constinit const auto vectors = make_vectors();
 
 extern "C" __attribute__((noreturn, used)) void reset_handler() {
-  for (std::uint32_t *to = &data_begin, *from = &data_image; to < &data_end;) *to++ = *from++;
-  for (std::uint32_t* to = &bss_begin; to < &bss_end;) *to++ = 0;
+  fw::hal::prepare_memory();
   fw_main();
   for (;;) __asm volatile("wfi");
 }
