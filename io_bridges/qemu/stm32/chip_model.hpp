@@ -22,6 +22,9 @@
 
 namespace whirl::stm32 {
 
+class BxCan;
+class Timer;
+
 // One mapped block. `block` already has the clock gate in front.
 struct Region {
   std::uint32_t base = 0;
@@ -58,6 +61,9 @@ class ChipModel {
   virtual bool set_analog(std::string_view pin, std::function<double(Nanoseconds)> volts) = 0;
   virtual void set_vdd(double /*volts*/) {
   }  // the supply's level for PWR's detector; 3.3 V at first
+  // For what follows a timer's pattern rather than its edges (a power stage), and for CAN nodes.
+  virtual Timer* timer(int /*number*/) { return nullptr; }  // null: the part has no such timer
+  virtual BxCan* can(int /*number*/) { return nullptr; }
   virtual const Clocks& clocks() const = 0;
   // Told after each change of a clock, for what is clocked outside of the chip model (SysTick).
   virtual void on_clock_change(std::function<void()> changed) = 0;

@@ -50,6 +50,8 @@ class Part : public ChipModel {
   bool join_uart(int number, io::UartPeer& peer) override;
   bool set_analog(std::string_view pin, std::function<double(Nanoseconds)> volts) override;
   void set_vdd(double volts) override { pwr_.set_vdd(volts); }
+  Timer* timer(int number) override { return functions_->timer(number); }
+  BxCan* can(int number) override { return functions_->can(number); }
   const Clocks& clocks() const override { return rcc_; }
   void on_clock_change(std::function<void()> changed) override {
     rcc_.on_change(std::move(changed));

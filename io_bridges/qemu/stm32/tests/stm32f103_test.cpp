@@ -1,7 +1,9 @@
 // The STM32F103 (RM0008, PM0075): what differs from the F405, and the ESC's buses on its pins.
 #include "io_bridges/qemu/stm32/stm32f103.hpp"
 #include "io_bridges/devices/i2c_master.hpp"
+#include "io_bridges/qemu/stm32/bxcan.hpp"
 #include "io_bridges/qemu/stm32/tests/chip_bench.hpp"
+#include "io_bridges/qemu/stm32/timer.hpp"
 
 namespace whirl::stm32 {
 namespace {
@@ -281,6 +283,38 @@ TEST(Stm32f103, JtagPinsMustBeFreedFirst) {
   freed.configure(kGpioB, 4, kOutput);
   freed.configure(kGpioB, 3, kOutput);
   EXPECT_TRUE(freed.findings.empty());
+}
+
+// What a power stage sees of TIM4 CH1 (PB6): 20 kHz of 72 MHz, a quarter on, and the pin with it.
+TEST(Stm32f103, APowerStageHearsThePatternAndThePinShowsIt) {
+  constexpr std::uint32_t kTim4 = 0x40000800;
+  F103Bench bench;
+  bench.clock_72();
+  bench.configure(kGpioB, 6, kAfPushPull);
+  ASSERT_NE(bench.chip().timer(4), nullptr);
+  EXPECT_EQ(bench.chip().timer(5), nullptr);
+  EXPECT_NE(bench.chip().can(1), nullptr);
+  std::vector<PwmPattern> heard;
+  bench.chip().timer(4)->observe_pwm([&](const PwmPattern& pattern) { heard.push_back(pattern); });
+  bench.put(kTim4 + 0x2C, 3599);
+  bench.put(kTim4 + 0x34, 900);
+  bench.put(kTim4 + 0x18, 0x68);
+  bench.put(kTim4 + 0x20, 1);
+  bench.put(kTim4 + 0x14, 1);
+  bench.put(kTim4, 0x81);
+  bench.run(49'000);
+  ASSERT_FALSE(heard.empty());
+  EXPECT_TRUE(heard.back().counting);
+  EXPECT_DOUBLE_EQ(heard.back().period_s, 50e-6);
+  EXPECT_DOUBLE_EQ(heard.back().channel[0].duty, 0.25);
+  EXPECT_TRUE(heard.back().channel[0].driven);
+  EXPECT_FALSE(heard.back().channel[1].driven);
+  const std::size_t before = heard.size();
+  bench.run(5'000);  // 4 us into the next period
+  EXPECT_TRUE(bench.chip().pin("PB6")->level());
+  bench.run(15'000);
+  EXPECT_FALSE(bench.chip().pin("PB6")->level());
+  EXPECT_EQ(heard.size(), before);  // edges are no news
 }
 
 }  // namespace
