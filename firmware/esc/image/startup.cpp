@@ -16,6 +16,7 @@ namespace {
 
 constexpr auto make_vectors() {
   fw::hal::VectorTable<fw::f103::kIrqCount> table;
+  table.system[14] = systick_handler;
   const auto on = [&table](fw::f103::Irq irq, fw::hal::Handler handler) {
     table.irq[static_cast<unsigned>(irq)] = handler;
   };
