@@ -31,7 +31,7 @@ end
 local function flight_plan(name, run)
   plan(name) {
     image = "flight", board = "px4fmu_v1", vehicle = "hp_quad",
-    tags = { "flight", "faults" }, timeout = "60 s",
+    tags = { "quick", "flight", "faults" }, timeout = "60 s",
     run = run,
   }
 end

@@ -14,7 +14,7 @@ end
 local function unmoved(name, fault, height)
   plan(name) {
     image = "flight", board = "px4fmu_v1", vehicle = "hp_quad",
-    tags = { "flight", "faults" }, timeout = "60 s",
+    tags = { "quick", "flight", "faults" }, timeout = "60 s",
     run = function(t)
       hover(t)
       local record = t:record({ "height", "offset", "tilt" }, "2 s", function() t:fault(fault) end)
