@@ -3,7 +3,13 @@
 //   Frame   P at the hub, axes parallel to the body's (forward, right, down): thrust acts along -z_P.
 //   Units   SI; rotor speed is rad/s and never negative, the sense of turning is the spin sign.
 //   Valid   |advance ratio| <= 0.3; descent through the vortex-ring state by an empirical closure
-//           (loads.validity says so). Outside: finite, bounded, flagged, not to be believed.
+//           (validity says so), its mean only. Outside: finite, bounded, flagged, not to be believed.
+//   Source  20 rings x 12 azimuths, averaged over a revolution. Each ring balances blade thrust and
+//           momentum (ring_balance.hpp) with the apparent mass of [PittPeters]; over the rings lies
+//           one gradient of inflow with that theory's first-harmonic gains and time constant.
+//           Flapping is quasi-steady, for stiff blades.
+//   Error   other programs and wind tunnels: plant/validation/rotor_proofs.hpp. Signs, symmetries and
+//           closed forms: tests/.
 //   Left out  gyroscopic moment of the spinning mass (the airframe's equation has it), blade
 //           passing vibration, interference between rotors, compressibility.
 #pragma once
@@ -54,7 +60,8 @@ class Rotor {
   Rotor(Rotor&&) noexcept;
   Rotor& operator=(Rotor&&) noexcept;
 
-  // Advances the inflow by dt_s and answers with the loads at the end of it. Allocates nothing.
+  // The loads under these conditions with the inflow as it stands; then the inflow and the flapping
+  // move on by dt_s. Allocates nothing.
   RotorLoads step(const RotorConditions& conditions, double dt_s);
 
   // Where step() settles under constant conditions; leaves the inflow of this rotor as it is.
