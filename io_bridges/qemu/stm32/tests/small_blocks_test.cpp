@@ -126,6 +126,10 @@ TEST(Dwt, CountsCoreClocksOnlyWithTraceEnabled) {
   EXPECT_EQ(get(dwt, 0x04), 168'000u);
   bare.run_to(28'000'000'000);  // wraps at 2^32
   EXPECT_EQ(get(dwt, 0x04), static_cast<std::uint32_t>(27'999'000'000LL * 168 / 1000));
+  put(core, 0x0C, 0);
+  const std::uint32_t stopped = get(dwt, 0x04);
+  bare.run_to(29'000'000'000);
+  EXPECT_EQ(get(dwt, 0x04), stopped);
 }
 
 TEST(ProbeStub, ReportsEachAddressOnceAndTakesRequestsBack) {
