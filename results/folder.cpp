@@ -63,10 +63,11 @@ Result<Done> write_run(const std::string& folder, Report& report, const TruthLog
                        const EventLog& events) {
   const auto begin = std::chrono::steady_clock::now();
   const fs::path at(folder);
-  for (auto written : {truth.write_csv(at / "truth.csv"), events.write_bus_csv(at / "bus.csv"),
-                       events.write_telemetry(at / "telemetry.tlog"),
-                       write_text(at / "junit.xml", junit_xml({&report})),
-                       write_text(at / "index.html", page_html(report, truth))}) {
+  for (const auto& written :
+       {truth.write_csv(at / "truth.csv"), events.write_bus_csv(at / "bus.csv"),
+        events.write_telemetry(at / "telemetry.tlog"),
+        write_text(at / "junit.xml", junit_xml({&report})),
+        write_text(at / "index.html", page_html(report, truth))}) {
     if (!written) return written.error();
   }
   report.host.results_s =
