@@ -46,6 +46,16 @@ TEST(Timing, AnUnfinishedCallHasNotDeliveredYet) {
                    round_off(4, 1e-3)));
 }
 
+// A task reads at its entry: what preempts it and finishes before it ends came too late for it.
+TEST(Timing, WhatPreemptsATaskCameTooLateForIt) {
+  const std::int64_t ready[] = {0, 1 * kMs};
+  const std::vector<Span> tasks[] = {{{100'000, 200'000}, {1'050'000, 1'200'000}},
+                                     {{1'000'000, 1'500'000}}};
+  const Span writes[] = {{1'400'000, 1'600'000}};
+  EXPECT_TRUE(near(trace_latency(ready, tasks, writes).samples.at(0).latency_s, 1.6e-3,
+                   round_off(4, 1e-3)));
+}
+
 TEST(Timing, WritesBeforeTheFirstSampleAreCountedNotGuessed) {
   const std::int64_t ready[] = {5 * kMs};
   const std::vector<Span> tasks[] = {{{5'100'000, 5'200'000}}};
