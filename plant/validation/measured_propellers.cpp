@@ -200,6 +200,9 @@ Report validate_measured_propellers(const ReadData& read) {
                 {},
                 {},
                 {}};
+  report.notes.push_back(
+      "Sections per family and the induced power factor were settled with these propellers' flight "
+      "data in view; the twist was fitted on static thrust alone.");
   const SectionOf section = section_reader(read);
   std::vector<Case> cases;
   std::vector<double> twists;

@@ -1,7 +1,9 @@
 // The rotor against propellers measured in a wind tunnel.
 //
 //   What is fitted   per propeller one tip twist, on its static thrust alone. Per family the sections.
-//                    For all, the induced power factor 1.15. Nothing else.
+//                    For all, the induced power factor 1.15 and lift as Re^0.1 below the polars.
+//                    Sections and these two were settled with flight data of these same four
+//                    propellers in view: only other propellers can test that choice.
 //   Limits           weighted mean errors: static CT 5 %, CP 10 %; forward CT 10 %, CP 12 %
 //   Left-out figures the same with the twist of the family's other propellers (no fit at all on the
 //                    propeller in question), and without any twist correction: as notes
