@@ -11,6 +11,8 @@
 //             event would cost more than the event (not under gdb, which lives in the main loop)
 //   Reset     is done by the CPU's own thread between two instructions, not by QEMU's main loop,
 //             whose moment would depend on the host
+//   Left out  WFE does not sleep: it returns at once, as the architecture allows, so a core that
+//             waits by it counts as busy; option bytes and OTP cannot be written
 #pragma once
 #include <chrono>
 #include <memory>
