@@ -93,8 +93,7 @@ Script& Script::of(lua_State* L) {
   return *script;
 }
 
-Script::Script(PlanFile& file, const Plan& plan, Stage& stage)
-    : file_(file), stage_(stage) {
+Script::Script(PlanFile& file, const Plan& plan, Stage& stage) : file_(file), stage_(stage) {
   lua_State* L = file_.sandbox().state();
   lua_pushlightuserdata(L, this);
   lua_setfield(L, LUA_REGISTRYINDEX, kOwnerKey);

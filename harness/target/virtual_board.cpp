@@ -65,7 +65,8 @@ Result<Launch> read_launch(const std::string& board_json) {
   const std::string mcu = json.value("mcu", "");
   const board::Part* part = board::find_part(mcu);
   if (part == nullptr) {
-    return Error{ErrorKind::bad_input, "board", "unknown mcu '" + mcu + "'", "use stm32f405rg or stm32f103cb"};
+    return Error{ErrorKind::bad_input, "board", "unknown mcu '" + mcu + "'",
+                 "use stm32f405rg or stm32f103cb"};
   }
   const int ns = json.value("ns_per_instruction", 8);
   Launch launch{std::string(part->qemu_machine), 0, json.value("gdb_port", 0)};

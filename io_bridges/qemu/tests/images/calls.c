@@ -8,7 +8,9 @@ __attribute__((naked, noinline)) void counted(void) {
       "bne 1b\n"
       "bx lr\n");
 }
-__attribute__((naked, noinline)) void tail(void) { __asm volatile("b counted\n"); }
+__attribute__((naked, noinline)) void tail(void) {
+  __asm volatile("b counted\n");
+}
 __attribute__((naked, noinline)) void conditional(void) {
   __asm volatile(
       "movs r0, #1\n"
@@ -25,7 +27,9 @@ __attribute__((naked, noinline)) void nested(void) {
       "pop {r4, pc}\n");
 }
 
-void irq31_handler(void) { ACK = 0; }
+void irq31_handler(void) {
+  ACK = 0;
+}
 
 int main(void) {
   counted();

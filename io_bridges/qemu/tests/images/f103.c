@@ -7,7 +7,8 @@ int main(void) {
   register uint32_t cause __asm("r5") = REG(0x40021024); /* RCC_CSR */
   register uint32_t last __asm("r6") = REG(0x20004FF0);
   register uint32_t id __asm("r7") = REG(0xE0042000);
-  __asm volatile("ldr r0, =0x08020000\n ldr r0, [r0]" ::"r"(flash_KiB), "r"(cause), "r"(last), "r"(id)
+  __asm volatile("ldr r0, =0x08020000\n ldr r0, [r0]" ::"r"(flash_KiB), "r"(cause), "r"(last),
+                 "r"(id)
                  : "r0");
   return 0;
 }

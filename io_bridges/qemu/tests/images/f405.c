@@ -19,7 +19,8 @@ int main(void) {
   register uint32_t cause __asm("r5") = csr;
   register uint32_t bits __asm("r6") = REG(0x20000100);
   register uint32_t id __asm("r8") = word;
-  __asm volatile("ldr r0, =0x20020000\n ldr r0, [r0]" ::"r"(flash_KiB), "r"(cause), "r"(bits), "r"(id)
+  __asm volatile("ldr r0, =0x20020000\n ldr r0, [r0]" ::"r"(flash_KiB), "r"(cause), "r"(bits),
+                 "r"(id)
                  : "r0");
   return 0;
 }

@@ -6,7 +6,9 @@
 #define ICPR0 REG(0xE000E280)
 
 static volatile uint32_t taken;
-void irq31_handler(void) { taken = taken + 1; }
+void irq31_handler(void) {
+  taken = taken + 1;
+}
 
 /* Was the interrupt taken at that priority under that mask? */
 static uint32_t passes(uint32_t priority, uint32_t basepri) {

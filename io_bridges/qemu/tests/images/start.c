@@ -22,7 +22,21 @@ void reset_handler(void) {
 }
 
 typedef void (*vector)(void);
-__attribute__((section(".vectors"), used)) const vector vectors[16 + 82] = {
-    (vector)STACK_TOP,  reset_handler, stuck, hard_fault_handler, stuck, stuck, stuck, 0, 0, 0, 0,
-    stuck,              stuck,         0,     stuck,              systick_handler,
-    [16 + 31] = irq31_handler};
+__attribute__((section(".vectors"), used))
+const vector vectors[16 + 82] = {(vector)STACK_TOP,
+                                 reset_handler,
+                                 stuck,
+                                 hard_fault_handler,
+                                 stuck,
+                                 stuck,
+                                 stuck,
+                                 0,
+                                 0,
+                                 0,
+                                 0,
+                                 stuck,
+                                 stuck,
+                                 0,
+                                 stuck,
+                                 systick_handler,
+                                 [16 + 31] = irq31_handler};

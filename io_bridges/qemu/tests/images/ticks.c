@@ -1,7 +1,9 @@
 /* SysTick every 168,000 cycles of 168 MHz; the handler says CYCCNT. */
 #include "bench.h"
 
-void systick_handler(void) { SAY = REG(0xE0001004); }
+void systick_handler(void) {
+  SAY = REG(0xE0001004);
+}
 
 int main(void) {
   REG(0xE000EDFC) |= 1u << 24;
