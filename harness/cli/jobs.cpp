@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <map>
 
+#include "harness/cli/console.hpp"
 #include "results/report.hpp"
 
 namespace whirl::cli {
@@ -60,7 +61,7 @@ int code_of(int status, const PlanChoice& plan) {
 
 int run_in_processes(const std::vector<PlanChoice>& plans, const RunOptions& options) {
   std::map<pid_t, Child> running;
-  int code = 0;
+  int code = 0, passed = 0, failed = 0, inconclusive = 0, errors = 0;
   std::size_t next = 0;
   while (next < plans.size() || !running.empty()) {
     while (next < plans.size() && running.size() < static_cast<std::size_t>(options.jobs)) {
@@ -75,9 +76,12 @@ int run_in_processes(const std::vector<PlanChoice>& plans, const RunOptions& opt
     const auto it = running.find(pid);
     if (it == running.end()) continue;
     print_all(it->second.output);
-    code = results::worse_exit_code(code, code_of(status, *it->second.plan));
+    const int ended = code_of(status, *it->second.plan);
+    ++(ended == 0 ? passed : ended == 1 ? failed : ended == 3 ? inconclusive : errors);
+    code = results::worse_exit_code(code, ended);
     running.erase(it);
   }
+  if (!options.json) std::fputs(summary(passed, failed, inconclusive, errors).c_str(), stdout);
   return code;
 }
 

@@ -199,6 +199,7 @@ Outcome whirl(const FakeRoot& root, const std::vector<std::string>& arguments) {
   std::vector<std::string> words{"whirl"};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> argv;
+  argv.reserve(words.size());
   for (std::string& word : words) argv.push_back(word.data());
   ::testing::internal::CaptureStdout();
   ::testing::internal::CaptureStderr();
