@@ -22,6 +22,8 @@ enum class Kind : std::uint16_t {
   uart_frame = 3,   // bytes to send into UART `port` from t_ns on
   fault = 4,        // FaultCommand + name text
   end_of_run = 5,   // empty
+  shaft_load = 6,   // ShaftLoad: air, brake and supply of a power stage, from here on
+  i2c_order = 7,    // I2cOrder + bytes to write, port = bus number: not before t_ns
   // Target to harness.
   esc_setpoint = 32,       // EscSetpoint, port = motor number
   uart_received = 33,      // bytes the board has sent on UART `port`; t_ns: the last stop bit
@@ -33,10 +35,13 @@ enum class Kind : std::uint16_t {
   fault_applied = 39,      // port = fault number
   function_call = 40,      // FunctionCall, port = watch number
   interrupt_latency = 41,  // InterruptLatency, port = exception number
-  statistics = 42,   // text, JSON: watchers' summaries, unanswered registers; at the end of a run
-  board_reset = 43,  // ResetCause in port
-  clock_setup = 44,  // ClockSetup: what the firmware set in RCC
-  busy_time = 45,    // BusyTime: about ten a second
+  statistics = 42,     // text, JSON: watchers' summaries, unanswered registers; at the end of a run
+  board_reset = 43,    // ResetCause in port
+  clock_setup = 44,    // ClockSetup: what the firmware set in RCC
+  busy_time = 45,      // BusyTime: about ten a second
+  shaft_state = 46,    // ShaftState: of a power stage, at each boundary
+  i2c_reply = 47,      // I2cReplyHead + bytes read, port = bus number; t_ns: the STOP
+  shoot_through = 48,  // ShootThrough, port = leg 0..2: both switches were on until t_ns
 };
 
 struct Header {
@@ -110,6 +115,45 @@ struct InterruptLatency {
 struct BusyTime {  // of (since_ns, Header::t_ns]
   std::int64_t since_ns = 0;
   std::int64_t busy_ns = 0;  // outside of sleep; interrupts included
+};
+
+struct ShaftLoad {
+  double torque_Nm_s2 = 0.0;  // of the air, over the square of speed
+  double brake_Nm = 0.0;      // holds the shaft once it stands
+  double source_V = 0.0;      // of the supply, behind its resistance
+  double source_ohm = 0.0;
+};
+
+struct ShaftState {  // means and sums of the time since the last boundary, states at this one
+  double speed_radps = 0.0;
+  double angle_rad = 0.0;         // electrical, 0..2 pi
+  double air_torque_Nm = 0.0;     // mean
+  double source_current_A = 0.0;  // mean, out of the supply
+  double bridge_current_A = 0.0;  // mean, into the bridge
+  double bridge_peak_A = 0.0;     // largest mean of a 50 us window
+  double winding_peak_A = 0.0;    // largest magnitude
+  double bus_voltage_V = 0.0;     // at this instant
+  double bus_highest_V = 0.0, bus_lowest_V = 0.0;
+  double electrical_in_J = 0.0, copper_J = 0.0, diode_J = 0.0, no_load_J = 0.0;
+  double magnetic_J = 0.0, kinetic_J = 0.0, air_J = 0.0;
+};
+
+struct I2cOrder {
+  std::uint16_t address = 0;
+  std::uint16_t read = 0;    // bytes to read after the written ones
+  std::uint32_t number = 0;  // comes back in the reply
+};
+
+struct I2cReplyHead {
+  std::uint32_t number = 0;
+  std::uint8_t acked = 0;
+  std::uint8_t timed_out = 0;
+  std::uint8_t pad[2] = {};
+  std::int64_t stretched_ns = 0;  // the longest that SCL was held
+};
+
+struct ShootThrough {
+  std::int64_t start_ns = 0;
 };
 
 struct ClockSetup {

@@ -39,7 +39,8 @@ class SwitchedMotor {
   void set_load(const ShaftLoad& load) { load_ = load; }  // opposes rotation, w |w|
   void set_speed(double speed_radps) { speed_ = speed_radps; }
   void set_angle(double electrical_rad);
-  void block() { blocked_ = true, speed_ = 0.0; }
+  void block() { blocked_ = true, speed_ = 0.0, acceleration_ = 0.0; }
+  void release() { blocked_ = false; }
 
   MotorBooks run(double dt_s);
 

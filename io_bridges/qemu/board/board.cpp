@@ -129,6 +129,7 @@ void Board::synchronise() {
   report_clocks();
   report_busy();
   if (!reported_) {
+    devices_.report(now);
     const auto posted = channel_.post(now, happened_.bytes());
     if (!posted) refuse(posted.error());
     happened_.clear();

@@ -10,7 +10,9 @@
 #include "io_bridges/devices/mpu6000.hpp"
 #include "io_bridges/devices/serial_port.hpp"
 #include "io_bridges/devices/wire_faults.hpp"
+#include "io_bridges/qemu/board/i2c_orders.hpp"
 #include "io_bridges/qemu/board/inertial_sensor.hpp"
+#include "io_bridges/qemu/board/power_stage.hpp"
 
 namespace whirl::board {
 namespace {
@@ -84,6 +86,9 @@ struct DeviceRack::Parts {
   Result<Done> add_esc(const DeviceConfig& device);
   Result<Done> add_radio(const DeviceConfig& device);
   Result<Done> add_serial(const DeviceConfig& device);
+  Result<Done> add_i2c_master(const DeviceConfig& device);
+  Result<Done> add_power_stage(const DeviceConfig& device);
+  Result<Done> join_power_stage(const DeviceConfig& device, PowerStage& stage);
   Result<Done> add_volts(const DeviceConfig& device);
   Result<Done> add_jumper(const DeviceConfig& device);
   io::I2cBus* i2c(int number);
@@ -106,6 +111,8 @@ struct DeviceRack::Parts {
   std::map<int, std::unique_ptr<io::EscI2c>> escs;         // by motor
   std::map<int, std::unique_ptr<io::MavlinkLink>> radios;  // by UART
   std::map<int, std::unique_ptr<io::SerialPort>> serials;  // by UART
+  std::map<int, std::unique_ptr<I2cOrders>> masters;       // by bus
+  std::map<int, std::unique_ptr<PowerStage>> stages;       // by motor
 };
 
 DeviceRack::DeviceRack(Site site) : parts_(std::make_unique<Parts>(std::move(site))) {
@@ -132,10 +139,14 @@ Result<Done> DeviceRack::Parts::add(const DeviceConfig& device, int number) {
   if (device.type == "esc_i2c") return add_esc(device);
   if (device.type == "mavlink_link") return add_radio(device);
   if (device.type == "serial") return add_serial(device);
+  if (device.type == "i2c_master") return add_i2c_master(device);
+  if (device.type == "power_stage") return add_power_stage(device);
   if (device.type == "volts") return add_volts(device);
   if (device.type == "jumper") return add_jumper(device);
-  return wrong(device, "unknown type '" + device.type +
-                           "'; use mpu6000, esc_i2c, mavlink_link, serial, volts or jumper");
+  return wrong(device,
+               "unknown type '" + device.type +
+                   "'; use mpu6000, esc_i2c, mavlink_link, serial, i2c_master, power_stage, volts "
+                   "or jumper");
 }
 
 io::I2cBus* DeviceRack::Parts::i2c(int number) {
@@ -272,6 +283,61 @@ Result<Done> DeviceRack::Parts::add_serial(const DeviceConfig& device) {
   return Done{};
 }
 
+Result<Done> DeviceRack::Parts::add_i2c_master(const DeviceConfig& device) {
+  const BusName name = split(device.bus);
+  io::I2cBus* bus = name.kind == "i2c" ? i2c(name.number) : nullptr;
+  if (bus == nullptr || masters.count(name.number) != 0) {
+    return wrong(device, "the part has no bus '" + device.bus + "' for it");
+  }
+  double rate_Hz = 400e3;
+  for (const auto& [key, value] : device.params) {
+    if (key != "rate") return wrong(device, "unknown parameter '" + key + "'");
+    rate_Hz = value;
+  }
+  if (!(rate_Hz >= 1e3 && rate_Hz <= 400e3)) return wrong(device, "rate must be 1 to 400 kHz");
+  masters[name.number] =
+      std::make_unique<I2cOrders>(site.events, *bus, rate_Hz, port(name.number), site.happened);
+  return Done{};
+}
+
+Result<Done> DeviceRack::Parts::add_power_stage(const DeviceConfig& device) {
+  if (device.motor < 1 || !stages.empty()) {
+    return wrong(device, "needs a motor number; a board has one power stage");
+  }
+  const auto params = power_stage_params(device.params, board + ": " + device.name);
+  if (!params) return params.error();
+  auto stage = std::make_unique<PowerStage>(params.value(), site.seed, device.name);
+  if (const auto joined = join_power_stage(device, *stage); !joined) return joined.error();
+  stage->on_shoot_through(
+      [this, name = device.name](int leg, io::Nanoseconds start_ns, io::Nanoseconds end_ns) {
+        site.happened.add(Kind::shoot_through, port(leg), end_ns, io::ShootThrough{start_ns});
+        site.finding({end_ns, name,
+                      "shoot-through: both switches of leg " + std::string(1, "abc"[leg]) +
+                          " were on for " + std::to_string(end_ns - start_ns) + " ns"});
+      });
+  stages[device.motor] = std::move(stage);
+  return Done{};
+}
+
+Result<Done> DeviceRack::Parts::join_power_stage(const DeviceConfig& device, PowerStage& stage) {
+  for (int leg = 0; leg < 3; ++leg) {
+    io::Wire *upper = pin(PowerStage::kUpper_pins[leg]), *lower = pin(PowerStage::kLower_pins[leg]);
+    const auto phase = [&stage, leg](io::Nanoseconds now) { return stage.phase_V(leg, now); };
+    if (upper == nullptr || lower == nullptr ||
+        !site.chip.set_analog(PowerStage::kPhase_pins[leg], phase)) {
+      return wrong(device, "the part lacks a pin that the power stage is wired to");
+    }
+    stage.wire(leg, true, *upper);
+    stage.wire(leg, false, *lower);
+  }
+  const bool bus = site.chip.set_analog(PowerStage::kBus_pin,
+                                        [&stage](io::Nanoseconds now) { return stage.bus_V(now); });
+  const bool shunt = site.chip.set_analog(
+      PowerStage::kShunt_pin, [&stage](io::Nanoseconds now) { return stage.shunt_V(now); });
+  if (!bus || !shunt) return wrong(device, "the part lacks an analog pin of the power stage");
+  return Done{};
+}
+
 Result<Done> DeviceRack::Parts::add_volts(const DeviceConfig& device) {
   const auto volts = device.params.find("volts");
   if (volts == device.params.end()) return wrong(device, "needs params.volts");
@@ -317,6 +383,21 @@ bool DeviceRack::take(const io::Reader& message) {
       }
       return true;
     }
+    case Kind::shaft_load: {
+      const auto stage = parts_->stages.find(head.port);
+      if (stage != parts_->stages.end()) {
+        stage->second->set_load(message.as<io::ShaftLoad>(), head.t_ns);
+      }
+      return true;
+    }
+    case Kind::i2c_order: {
+      const auto master = parts_->masters.find(head.port);
+      if (master != parts_->masters.end()) {
+        master->second->add(message.as<io::I2cOrder>(), message.tail_after(sizeof(io::I2cOrder)),
+                            head.t_ns);
+      }
+      return true;
+    }
     case Kind::fault: {
       const auto f = message.as<io::FaultCommand>();
       parts_->faults.add({f.number, static_cast<io::FaultKind>(f.kind), f.start_ns, f.end_ns, f.bus,
@@ -325,6 +406,12 @@ bool DeviceRack::take(const io::Reader& message) {
     }
     default:
       return false;
+  }
+}
+
+void DeviceRack::report(io::Nanoseconds now) {
+  for (auto& [motor, stage] : parts_->stages) {
+    parts_->site.happened.add(Kind::shaft_state, port(motor), now, stage->report(now));
   }
 }
 

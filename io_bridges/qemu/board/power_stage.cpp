@@ -1,0 +1,184 @@
+#include "io_bridges/qemu/board/power_stage.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "harness/base/check.hpp"
+
+namespace whirl::board {
+namespace {
+
+constexpr double kDivider = 1.5 / 11.5;
+constexpr double kShunt_VpA = 0.5e-3 * 50.9;
+constexpr double kReference_V = 3.3;
+constexpr double kLeast_source_ohm = 1e-3;  // leads; also keeps the bus capacitor's equation sane
+constexpr double kLongest_step_s = 25e-6;
+constexpr double kWindow_s = 50e-6;
+constexpr double kStands_radps = 5.0;
+
+double at_pin(double volts) {
+  return std::clamp(volts, 0.0, kReference_V);
+}
+
+plant::Leg leg_of(const std::array<bool, 2>& on) {
+  if (on[0]) return plant::Leg::low;
+  return on[1] ? plant::Leg::high : plant::Leg::off;
+}
+
+bool set_one(PowerStageParams& p, const std::string& key, double value) {
+  if (key == "torque_constant") return p.motor.torque_constant_NmpA = value, true;
+  if (key == "resistance") return p.motor.resistance_ohm = value, true;
+  if (key == "inductance") return p.motor.inductance_H = value, true;
+  if (key == "no_load_current") return p.motor.no_load_current_A = value, true;
+  if (key == "inertia") return p.motor.inertia_kgm2 = value, true;
+  if (key == "bus_capacitance") return p.bus_capacitance_F = value, true;
+  if (key == "shunt.offset") return p.shunt.offset_low_A = p.shunt.offset_high_A = value, true;
+  if (key == "shunt.gain") return p.shunt.gain_tolerance = value, true;
+  if (key == "shunt.warm_up") return p.shunt.warm_up_A = value, true;
+  if (key == "shunt.wander") return p.shunt.wander_A = value, true;
+  if (key == "shunt.noise") return p.shunt.noise_A = value, p.shunt.noise_per_A = 0.0, true;
+  return false;
+}
+
+}  // namespace
+
+Result<PowerStageParams> power_stage_params(const std::map<std::string, double>& params,
+                                            const std::string& place) {
+  PowerStageParams result;
+  for (const auto& [key, value] : params) {
+    if (!set_one(result, key, value)) {
+      return Error{ErrorKind::bad_input, place, "unknown parameter '" + key + "'",
+                   "torque_constant, resistance, inductance, no_load_current, inertia, "
+                   "bus_capacitance, shunt { offset, gain, noise, warm_up, wander }"};
+    }
+  }
+  if (!(result.bus_capacitance_F >= 10e-6 && result.bus_capacitance_F <= 0.1)) {
+    return Error{ErrorKind::bad_input, place, "bus_capacitance must be 10 uF to 0.1 F", ""};
+  }
+  const auto good = plant::validate(result.motor, place);
+  if (!good) return good.error();
+  return result;
+}
+
+PowerStage::PowerStage(const PowerStageParams& params, std::uint64_t seed, const std::string& name)
+    : params_(params), motor_(params.motor), shunt_(params.shunt, seed, name + ".shunt") {}
+
+void PowerStage::wire(int leg, bool upper, io::Wire& wire) {
+  wire.drive(wire.add_driver(), io::Drive::pull_low, now_ns_);
+  on_[static_cast<std::size_t>(leg)][upper ? 1 : 0] = wire.level();
+  wire.watch([this, leg, upper](bool level, Nanoseconds now) { switched(leg, upper, level, now); });
+}
+
+void PowerStage::switched(int leg, bool upper, bool on, Nanoseconds now) {
+  advance(now);
+  auto& both = on_[static_cast<std::size_t>(leg)];
+  auto& since = both_since_[static_cast<std::size_t>(leg)];
+  both[upper ? 1 : 0] = on;
+  if (both[0] && both[1]) {
+    since = now_ns_;
+  } else {
+    end_shot(leg, now_ns_);
+  }
+  plant::Bridge bridge;
+  for (std::size_t k = 0; k < 3; ++k) bridge.leg[k] = leg_of(on_[k]);
+  motor_.set_bridge(bridge);
+}
+
+// Edges of one instant overlap for no time: they are no short circuit.
+void PowerStage::end_shot(int leg, Nanoseconds now) {
+  auto& since = both_since_[static_cast<std::size_t>(leg)];
+  if (since < now && shot_) shot_(leg, since, now);
+  since = io::kNever;
+}
+
+double PowerStage::phase_V(int leg, Nanoseconds now) {
+  advance(now);
+  return at_pin(motor_.phase_voltages()[static_cast<std::size_t>(leg)] * kDivider);
+}
+
+double PowerStage::bus_V(Nanoseconds now) {
+  advance(now);
+  return at_pin(bus_V_ * kDivider);
+}
+
+double PowerStage::shunt_V(Nanoseconds now) {
+  advance(now);
+  return at_pin(shunt_.sample_A() * kShunt_VpA);
+}
+
+void PowerStage::set_load(const io::ShaftLoad& load, Nanoseconds now) {
+  advance(now);
+  load_ = load;
+  load_.source_ohm = std::max(load.source_ohm, kLeast_source_ohm);
+  if (load.brake_Nm <= 0.0) motor_.release();
+}
+
+void PowerStage::advance(Nanoseconds now) {
+  while (now_ns_ < now) {
+    const double dt_s = std::min(static_cast<double>(now - now_ns_) * 1e-9, kLongest_step_s);
+    const auto step_ns = std::min<Nanoseconds>(now - now_ns_, 25'000);
+    run(dt_s);
+    now_ns_ += step_ns;
+  }
+}
+
+void PowerStage::hold_or_turn() {
+  const double speed = motor_.speed_radps();
+  if (load_.brake_Nm > 0.0 && std::abs(speed) < kStands_radps) return motor_.block();
+  motor_.set_load(
+      {.quadratic_Nm_s2 = load_.torque_Nm_s2, .constant_Nm = std::copysign(load_.brake_Nm, speed)});
+}
+
+void PowerStage::run(double dt_s) {
+  hold_or_turn();
+  motor_.set_bus(bus_V_);
+  const plant::MotorBooks books = motor_.run(dt_s);
+  const double bridge_A = books.bus_charge_C / dt_s;
+  shunt_.flow(bridge_A, dt_s);
+  plant::MotorBooks sum = books;
+  sum.air_torque_Nm *= dt_s;  // a mean; here its integral is kept
+  books_ += sum;
+
+  // The capacitor between supply and bridge, implicit in its own voltage.
+  const double C = params_.bus_capacitance_F, R = load_.source_ohm;
+  if (R > 0.0) {
+    bus_V_ = (bus_V_ + dt_s / C * (load_.source_V / R - bridge_A)) / (1.0 + dt_s / (R * C));
+    source_charge_C_ += (load_.source_V - bus_V_) / R * dt_s;
+  }
+  state_.bus_highest_V = std::max(state_.bus_highest_V, bus_V_);
+  state_.bus_lowest_V = std::min(state_.bus_lowest_V, bus_V_);
+  window_charge_C_ += books.bus_charge_C;
+  window_s_ += dt_s;
+  if (window_s_ < kWindow_s) return;
+  state_.bridge_peak_A = std::max(state_.bridge_peak_A, window_charge_C_ / window_s_);
+  window_charge_C_ = window_s_ = 0.0;
+}
+
+io::ShaftState PowerStage::report(Nanoseconds now) {
+  advance(now);
+  const double dt_s = static_cast<double>(now - reported_ns_) * 1e-9;
+  WHIRL_CHECK(dt_s > 0.0, now, reported_ns_);
+  io::ShaftState told = state_;
+  told.speed_radps = motor_.speed_radps();
+  told.angle_rad = motor_.electrical_angle_rad();
+  told.air_torque_Nm = books_.air_torque_Nm / dt_s;
+  told.source_current_A = source_charge_C_ / dt_s;
+  told.bridge_current_A = books_.bus_charge_C / dt_s;
+  told.winding_peak_A = motor_.peak_current_A();
+  told.bus_voltage_V = bus_V_;
+  told.electrical_in_J = books_.electrical_in_J;
+  told.copper_J = books_.copper_J;
+  told.diode_J = books_.diode_J;
+  told.no_load_J = books_.no_load_J;
+  told.magnetic_J = books_.magnetic_J;
+  told.kinetic_J = books_.kinetic_J;
+  told.air_J = books_.air_J;
+  state_ = {.bus_highest_V = bus_V_, .bus_lowest_V = bus_V_};
+  books_ = {};
+  source_charge_C_ = 0.0;
+  motor_.clear_peak();
+  reported_ns_ = now;
+  return told;
+}
+
+}  // namespace whirl::board

@@ -1,0 +1,183 @@
+// The power stage without a chip: six wires driven by hand.
+#include "io_bridges/qemu/board/power_stage.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "harness/base/near.hpp"
+
+namespace whirl::board {
+namespace {
+
+constexpr Nanoseconds kUs = 1000, kMs = 1'000'000;
+constexpr double kDivider = 1.5 / 11.5;
+
+struct Stand {
+  Stand() {
+    for (int leg = 0; leg < 3; ++leg) {
+      for (const bool upper : {false, true}) {
+        auto& slot = wire[static_cast<std::size_t>(leg)][upper ? 1 : 0];
+        slot = std::make_unique<io::Wire>("switch");
+        stage.wire(leg, upper, *slot);
+        driver[static_cast<std::size_t>(leg)][upper ? 1 : 0] = slot->add_driver();
+      }
+    }
+    stage.on_shoot_through([this](int leg, Nanoseconds start_ns, Nanoseconds end_ns) {
+      shots.push_back({leg, end_ns - start_ns});
+    });
+    load(0.0);
+  }
+  static PowerStageParams params() {
+    PowerStageParams p;
+    p.shunt = {.gain_tolerance = 0.0,
+               .offset_low_A = 4.3,
+               .offset_high_A = 4.3,
+               .warm_up_A = 0.0,
+               .wander_A = 0.0,
+               .noise_A = 0.0,
+               .noise_per_A = 0.0};
+    return p;
+  }
+  void load(double brake_Nm, double air_Nm_s2 = 2.3e-7) {
+    stage.set_load(
+        {.torque_Nm_s2 = air_Nm_s2, .brake_Nm = brake_Nm, .source_V = 16.0, .source_ohm = 0.03},
+        now);
+  }
+  void set(int leg, bool upper, bool on) {
+    wire[static_cast<std::size_t>(leg)][upper ? 1 : 0]->drive(
+        driver[static_cast<std::size_t>(leg)][upper ? 1 : 0], on ? io::Drive::high : io::Drive::low,
+        now);
+  }
+  void off() {
+    for (int leg = 0; leg < 3; ++leg) set(leg, true, false), set(leg, false, false);
+  }
+  // One PWM period of 50 us at the pattern that the rotor's true angle asks for.
+  void period(double duty) {
+    static constexpr int kHigh[] = {0, 0, 1, 1, 2, 2}, kLow[] = {1, 2, 2, 0, 0, 1};
+    const auto sector =
+        static_cast<std::size_t>(plant::sector_of(stage.motor().electrical_angle_rad()));
+    if (sector != last) off(), last = sector;
+    set(kLow[sector], false, true);
+    set(kHigh[sector], true, true);
+    const auto on_ns = static_cast<Nanoseconds>(duty * 50e3);
+    now += on_ns;
+    set(kHigh[sector], true, false);
+    now += 50 * kUs - on_ns;
+  }
+  void spin(double duty, int periods) {
+    for (int i = 0; i < periods; ++i) period(duty);
+  }
+
+  PowerStage stage{params(), 1, "motor"};
+  std::array<std::array<std::unique_ptr<io::Wire>, 2>, 3> wire;
+  std::array<std::array<int, 2>, 3> driver{};
+  std::vector<std::pair<int, Nanoseconds>> shots;
+  std::size_t last = 6;
+  Nanoseconds now = 0;
+};
+
+TEST(PowerStage, UndrivenSwitchesAreOff) {
+  Stand s;
+  s.now = 10 * kMs;
+  EXPECT_EQ(s.stage.report(s.now).bridge_current_A, 0.0);
+  EXPECT_EQ(s.stage.motor().speed_radps(), 0.0);
+  EXPECT_TRUE(s.shots.empty());
+}
+
+TEST(PowerStage, DividersAndShuntGiveWhatTheSchematicSays) {
+  Stand s;
+  s.now = 5 * kMs;
+  EXPECT_TRUE(near(s.stage.bus_V(s.now), 16.0 * kDivider, stated(1e-4, "capacitor charged")));
+  EXPECT_TRUE(near(s.stage.shunt_V(s.now), 4.3 * 0.5e-3 * 50.9, round_off(1, 1)));
+  s.set(1, true, true);  // one upper switch: its phase at the bus, no current
+  s.now += kUs;
+  EXPECT_TRUE(near(s.stage.phase_V(1, s.now), 16.0 * kDivider, stated(1e-4, "as above")));
+}
+
+TEST(PowerStage, StalledCurrentRisesWithTheWindingsTimeConstant) {
+  Stand s;
+  s.load(1.0);  // held: 1 N m
+  s.now = 5 * kMs;
+  s.set(1, false, true);
+  s.set(0, true, true);
+  s.now += 600 * kUs;  // L/R is 625 us; the bus sags by the supply's 30 mohm meanwhile
+  s.stage.bus_V(s.now);
+  const double R = 0.16 + 0.03, tau_s = 1.0e-4 / R;
+  const double expected_A = 16.0 / R * -std::expm1(-600e-6 / tau_s);
+  EXPECT_TRUE(near(s.stage.motor().phase_currents_A()[0], expected_A,
+                   stated(0.02 * expected_A, "the bus capacitor delays by 14 us")));
+  EXPECT_EQ(s.stage.motor().speed_radps(), 0.0);
+}
+
+TEST(PowerStage, OverlapOfOneLegIsToldWithItsDuration) {
+  Stand s;
+  s.now = kMs;
+  s.set(2, true, true);
+  s.now += kUs;
+  s.set(2, false, true);
+  s.now += 300;
+  s.set(2, true, false);
+  ASSERT_EQ(s.shots.size(), 1u);
+  EXPECT_EQ(s.shots[0], (std::pair<int, Nanoseconds>{2, 300}));
+  s.set(2, true, true);  // on and off at one instant: no overlap
+  s.set(2, true, false);
+  s.set(0, true, true);  // another leg's switch is no short circuit
+  s.now += kUs;
+  s.off();
+  EXPECT_EQ(s.shots.size(), 1u);
+}
+
+TEST(PowerStage, BooksBalanceAndTheRotorFindsItsSpeed) {
+  Stand s;
+  s.now = 5 * kMs;
+  s.stage.report(s.now);
+  s.spin(0.4, 20'000);  // one second
+  const io::ShaftState sum = s.stage.report(s.now);
+  const double spent_J =
+      sum.copper_J + sum.diode_J + sum.no_load_J + sum.magnetic_J + sum.kinetic_J + sum.air_J;
+  EXPECT_TRUE(near(sum.electrical_in_J, spent_J,
+                   stated(1e-3 * spent_J, "the switched motor's own balance is 1e-4")));
+  s.spin(0.4, 4'000);
+  const io::ShaftState now = s.stage.report(s.now);
+  EXPECT_GT(now.speed_radps, 0.8 * 0.4 * 16.0 / 0.01005 * 0.8);  // within the drop of R i
+  EXPECT_LT(now.speed_radps, 0.4 * 16.0 / 0.01005);              // and below no load
+  // Steady: the air takes what its coefficient says, the supply gives what the bridge takes.
+  EXPECT_TRUE(near(now.air_torque_Nm, 2.3e-7 * now.speed_radps * now.speed_radps,
+                   stated(0.02 * now.air_torque_Nm, "ripple of speed over commutations")));
+  EXPECT_TRUE(near(now.source_current_A, now.bridge_current_A,
+                   stated(0.01 * now.bridge_current_A, "capacitor at both ends")));
+  EXPECT_TRUE(s.shots.empty());
+}
+
+TEST(PowerStage, BrakeStopsTheRotorAsItsTorqueAndInertiaSay) {
+  Stand s;
+  s.now = 5 * kMs;
+  s.spin(0.4, 10'000);
+  s.off();
+  const double speed = s.stage.motor().speed_radps();
+  s.load(0.5, 0.0);
+  const double friction_Nm = 0.01005 * 1.0, J = 3.752e-5;
+  const double stops_s = speed * J / (0.5 + friction_Nm);
+  s.now += static_cast<Nanoseconds>(0.9 * stops_s * 1e9);
+  s.stage.bus_V(s.now);
+  EXPECT_TRUE(near(s.stage.motor().speed_radps(), 0.1 * speed, stated(0.02 * speed, "currents")));
+  s.now += static_cast<Nanoseconds>(0.2 * stops_s * 1e9);
+  s.stage.bus_V(s.now);
+  EXPECT_EQ(s.stage.motor().speed_radps(), 0.0);
+  s.load(0.0);
+  s.spin(0.4, 10'000);
+  EXPECT_GT(s.stage.motor().speed_radps(), 100.0);  // released, it turns again
+}
+
+TEST(PowerStage, UnknownParameterIsRefusedByName) {
+  const auto wrong = power_stage_params({{"resistence", 0.1}}, "esc32v2: motor");
+  ASSERT_FALSE(wrong);
+  EXPECT_NE(wrong.error().message().find("resistence"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace whirl::board
