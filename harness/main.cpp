@@ -1,18 +1,20 @@
-// whirl: the virtual board and the flight world, put together.
+// whirl: the virtual board and its world, a flight or a thrust stand, put together.
 #include <cstdlib>
 
 #include "harness/cli/composition.hpp"
 #include "harness/flight/flight_world.hpp"
 #include "harness/flight/vehicle_file.hpp"
+#include "harness/stand/stand_world.hpp"
 #include "harness/target/virtual_board.hpp"
 
 namespace whirl {
 namespace {
 
 Result<std::unique_ptr<World>> make_world(const cli::Setup& setup) {
-  if (setup.vehicle_file.empty()) {
-    return Error{ErrorKind::bad_input, setup.plan.place, "a stand is not there yet",
-                 "use a vehicle"};
+  if (setup.plan.stand) {
+    const auto params = stand::read_stand(*setup.plan.stand, setup.root + "/test_plans/propellers");
+    if (!params) return params.error();
+    return std::unique_ptr<World>(std::make_unique<stand::StandWorld>(params.value(), setup.seed));
   }
   const auto params = flight::read_vehicle(setup.vehicle_file);
   if (!params) return params.error();

@@ -90,7 +90,12 @@ bool EventLog::add(const io::Batch& batch) {
       case io::Kind::fault:
       case io::Kind::end_of_run:
       case io::Kind::esc_setpoint:
-        break;  // truth.csv and the bus log have them
+      case io::Kind::shaft_load:
+      case io::Kind::shaft_state:
+      case io::Kind::i2c_order:
+      case io::Kind::i2c_reply:
+      case io::Kind::shoot_through:
+        break;  // truth.csv, the bus log and the findings have them
     }
   }
   return reader.complete();

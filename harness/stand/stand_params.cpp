@@ -1,0 +1,53 @@
+#include "harness/stand/stand_params.hpp"
+
+#include "harness/flight/propeller_file.hpp"
+
+namespace whirl::stand {
+namespace {
+
+constexpr const char* kModes[] = {"duty",  "rpm",   "thrust_by_rpm",
+                                  "servo", "power", "thrust_by_power"};
+
+void read_feed(const lua::Table& t, plant::BatteryParams& battery) {
+  if (t.has("battery") == t.has("supply")) {
+    return t.refuse("battery", "a stand has a battery or a supply, one of the two");
+  }
+  if (t.has("supply")) {
+    battery = plant::lab_supply(
+        t.quantity("supply", Dimension::voltage, lua::between(1.0, 60.0)),
+        t.quantity_or("supply_resistance", Dimension::resistance, 0.01, lua::between(0.001, 1.0)));
+    return;
+  }
+  std::ignore = t.choice("battery", {"4s_2200"});
+  battery = plant::lipo_4s_2200();
+  battery.initial_depth_of_discharge =
+      t.quantity_or("depth_of_discharge", Dimension::ratio, 0.0, lua::between(0.0, 1.0));
+}
+
+io::EscMode read_mode(const lua::Table& t) {
+  if (!t.has("mode")) return io::EscMode::thrust_by_rpm;
+  const std::string word = t.choice("mode", {std::begin(kModes), std::end(kModes)});
+  for (std::uint8_t i = 0; i < std::size(kModes); ++i) {
+    if (word == kModes[i]) return static_cast<io::EscMode>(i);
+  }
+  return io::EscMode::thrust_by_rpm;  // refused by choice() already
+}
+
+}  // namespace
+
+Result<StandParams> read_stand(const lua::Table& t, const std::string& propellers) {
+  StandParams p;
+  const std::string prop = t.text("prop");
+  read_feed(t, p.battery);
+  p.mode = read_mode(t);
+  p.address = static_cast<std::uint8_t>(t.integer_or("address", p.address, 0x08, 0x77));
+  p.i2c = static_cast<std::uint16_t>(t.integer_or("i2c", p.i2c, 1, 3));
+  p.serial = static_cast<std::uint16_t>(t.integer_or("serial", p.serial, 1, 8));
+  if (const auto good = t.finish(); !good) return good.error();
+  auto blade = flight::read_propeller(propellers + "/" + prop + ".lua");
+  if (!blade) return blade.error();
+  p.blade = blade.value();
+  return p;
+}
+
+}  // namespace whirl::stand

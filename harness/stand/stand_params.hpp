@@ -1,0 +1,33 @@
+// A thrust stand as a plan names it: what turns, what feeds it, what commands it.
+//
+//   stand = { prop = "hk_10x4.5", battery = "4s_2200", depth_of_discharge = "0 %" }  or
+//   stand = { prop = "hk_10x4.5", supply = "16 V", supply_resistance = "10 mohm",
+//             mode = "thrust_by_rpm", address = 0x29, i2c = 2, serial = 1 }
+//   Mode     what the ESC is set to: it scales the set-points on I2C (esc_codec.hpp)
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "harness/base/result.hpp"
+#include "harness/lua/table.hpp"
+#include "io_bridges/protocols/esc_codec.hpp"
+#include "plant/battery/battery_params.hpp"
+#include "plant/rotor/blade.hpp"
+#include "plant/sensors/load_cell.hpp"
+
+namespace whirl::stand {
+
+struct StandParams {
+  std::shared_ptr<const plant::Blade> blade;
+  plant::BatteryParams battery;
+  plant::LoadCellParams cell;
+  io::EscMode mode = io::EscMode::thrust_by_rpm;
+  std::uint8_t address = 0x29;
+  std::uint16_t i2c = 2, serial = 1, motor = 1;
+};
+
+// Propellers are looked for in this folder.
+Result<StandParams> read_stand(const lua::Table& table, const std::string& propellers);
+
+}  // namespace whirl::stand

@@ -1,0 +1,80 @@
+// The thrust stand: the rotor in its air, the supply, the load cell and who commands the ESC. The
+// motor itself is in the board's process, behind its bridge (io_bridges/qemu/board/power_stage.hpp).
+//
+//   Step     takes speed and charge of the last millisecond, moves the rotor's inflow and the
+//            supply by it, tells the torque coefficient, the supply and what goes over the bus
+//   Command  t:command { thrust = "2 N" } { duty = "20 %" } { speed = "3500 rpm" }
+//            { power = "12 W" } over I2C in the ESC's mode (StandParams::mode); { stop = true };
+//            { silence = true }: no more set-points; { line = "status" }: over the serial line;
+//            { brake = "0.5 N m" }: holds the shaft, "0 N m" lets go
+//   Gust     t:gust { down = "2 m/s", edge = "300 ms" [, duration = "5 s"] }: the flow generator
+//   Faults   supply_dip (value: volts below)
+//   Left out warm windings, the flow's own turbulence
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "harness/executive/world.hpp"
+#include "harness/stand/stand_params.hpp"
+#include "harness/stand/throttle.hpp"
+#include "plant/battery/battery.hpp"
+#include "plant/rotor/rotor.hpp"
+#include "plant/sensors/load_cell.hpp"
+
+namespace whirl::stand {
+
+class StandWorld : public World {
+ public:
+  StandWorld(const StandParams& params, std::uint64_t seed);
+
+  const std::vector<Signal>& signals() const override { return signals_; }
+  void read(std::span<double> values) const override;
+  void step(std::int64_t t_ns, const io::Batch& happened, io::Batch& sensed) override;
+  Result<Done> command(const lua::Table& wish, std::int64_t now_ns) override;
+  Result<Done> gust(const lua::Table& wish, std::int64_t now_ns) override;
+  std::int64_t command_on_wire_ns() const override { return throttle_.on_wire_ns(); }
+  bool take_fault(const FaultSpec& fault) override;
+  std::vector<std::uint32_t> applied_faults() const override;
+  std::string status() const override;
+
+ private:
+  struct Flow {  // a ramp from one speed to another
+    double from_mps = 0.0, to_mps = 0.0;
+    std::int64_t start_ns = 0, edge_ns = 1;
+    double at(std::int64_t t_ns) const;
+  };
+  struct Dip {
+    FaultSpec spec;
+    bool applied = false;
+  };
+
+  void take(const io::Batch& happened);
+  void move(std::int64_t t_ns);
+  void tell(std::int64_t t_ns, io::Batch& sensed);
+  void blow(double to_mps, std::int64_t start_ns, std::int64_t edge_ns);
+  void add_signal(std::string name, Dimension dimension, std::string about,
+                  std::function<double()> value);
+  void name_signals();
+
+  StandParams params_;
+  plant::Rotor rotor_;
+  plant::Battery battery_;
+  plant::LoadCell cell_;
+  Throttle throttle_;
+  io::ShaftState shaft_;
+  plant::RotorLoads loads_;
+  plant::LoadReading weighed_;
+  Flow flow_;
+  std::int64_t calm_from_ns_ = INT64_MAX, calm_edge_ns_ = 1;
+  double wind_mps_ = 0.0, brake_Nm_ = 0.0;
+  std::vector<Dip> dips_;
+  std::string line_;  // to send
+  std::uint64_t shots_ = 0;
+  std::vector<Signal> signals_;
+  std::vector<std::function<double()>> values_;
+  std::int64_t now_ns_ = 0;
+};
+
+}  // namespace whirl::stand

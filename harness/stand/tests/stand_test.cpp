@@ -1,0 +1,168 @@
+// The stand against a board that is played by hand: what it sends, hears and weighs.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "harness/base/near.hpp"
+#include "harness/stand/stand_world.hpp"
+
+namespace whirl::stand {
+namespace {
+
+constexpr std::int64_t kMs = 1'000'000;
+
+lua::Table table(const std::string& text) {
+  auto read = lua::read_text("return " + text, "wish.lua");
+  EXPECT_TRUE(read.ok());
+  return read.value();
+}
+
+const std::string kPropellers = std::string(WHIRL_SOURCE_FOLDER) + "/test_plans/propellers";
+
+StandParams params(const std::string& text = R"({ prop = "hk_10x4.5", supply = "16 V" })") {
+  auto read = read_stand(table(text), kPropellers);
+  EXPECT_TRUE(read.ok()) << read.error().message();
+  return read.value();
+}
+
+struct Bench {
+  explicit Bench(const StandParams& stand = params()) : world(stand, 1) {}
+
+  // Runs until t with the shaft at a speed; keeps what was sent.
+  void run_until(std::int64_t to_ns, double speed_radps, double source_A = 0.0) {
+    for (; t_ns <= to_ns; t_ns += kMs) {
+      io::Batch happened, sensed;
+      io::ShaftState shaft;
+      shaft.speed_radps = speed_radps;
+      shaft.source_current_A = source_A;
+      happened.add(io::Kind::shaft_state, 1, t_ns, shaft);
+      for (const io::I2cReplyHead& head : replies) {
+        happened.add(io::Kind::i2c_reply, 2, t_ns - kMs / 2, head);
+      }
+      replies.clear();
+      world.step(t_ns, happened, sensed);
+      for (io::Reader r(sensed.bytes()); r.next();) keep(r);
+    }
+  }
+  void keep(const io::Reader& r) {
+    if (r.header().kind == io::Kind::shaft_load) load = r.as<io::ShaftLoad>();
+    if (r.header().kind != io::Kind::i2c_order) return;
+    const auto order = r.as<io::I2cOrder>();
+    const auto bytes = r.tail_after(sizeof order);
+    if (!bytes.empty()) {
+      writes_ns.push_back(r.header().t_ns);
+      last_write.assign(bytes.begin(), bytes.end());
+    } else {
+      reads_ns.push_back(r.header().t_ns);
+    }
+    if (answers) replies.push_back({.number = order.number, .acked = 1});
+  }
+  double signal(const std::string& name) const {
+    std::vector<double> values(world.signals().size());
+    world.read(values);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (world.signals()[i].name == name) return values[i];
+    }
+    ADD_FAILURE() << name;
+    return std::nan("");
+  }
+
+  StandWorld world;
+  io::ShaftLoad load;
+  std::vector<std::int64_t> writes_ns, reads_ns;
+  std::vector<std::uint8_t> last_write;
+  std::vector<io::I2cReplyHead> replies;
+  bool answers = false;
+  std::int64_t t_ns = 0;
+};
+
+TEST(Stand, WritesAtFiftyAndReadsAtTwentyHertz) {
+  Bench b;
+  b.run_until(1099 * kMs, 0.0);
+  EXPECT_EQ(b.writes_ns.size(), 50u);  // in [0.1 s, 1.1 s)
+  EXPECT_EQ(b.reads_ns.size(), 20u);
+  // Zero, as the protocol writes it: hi, lo, CRC-8 (polynomial 7) over 0x52, 0, 0.
+  EXPECT_EQ(b.last_write, (std::vector<std::uint8_t>{0x00, 0x00, 0xF2}));
+}
+
+TEST(Stand, CommandIsOnTheWireOnceItsOwnWriteWasAnswered) {
+  Bench b;
+  b.answers = true;
+  b.run_until(200 * kMs, 0.0);
+  ASSERT_TRUE(b.world.command(table(R"({ thrust = "2 N" })"), b.t_ns).ok());
+  EXPECT_LT(b.world.command_on_wire_ns(), 0);
+  b.run_until(218 * kMs, 0.0);
+  EXPECT_LT(b.world.command_on_wire_ns(), 0);  // the next write is due at 220 ms
+  b.run_until(221 * kMs, 0.0);
+  EXPECT_EQ(b.world.command_on_wire_ns(), 220 * kMs + kMs / 2);
+}
+
+TEST(Stand, DowndraftTakesThrustAndUpdraftGivesIt) {
+  Bench b;
+  b.run_until(1000 * kMs, 400.0);
+  const double calm_N = b.signal("thrust");
+  EXPECT_GT(calm_N, 1.0);
+  ASSERT_TRUE(b.world.gust(table(R"({ down = "3 m/s", edge = "100 ms" })"), b.t_ns).ok());
+  b.run_until(1051 * kMs, 400.0);
+  EXPECT_TRUE(near(b.signal("wind"), 1.5, stated(1e-9, "half of the ramp")));
+  b.run_until(2000 * kMs, 400.0);
+  EXPECT_LT(b.signal("thrust"), 0.85 * calm_N);
+  ASSERT_TRUE(b.world.gust(table(R"({ down = "-1 m/s" })"), b.t_ns).ok());
+  b.run_until(4000 * kMs, 400.0);
+  EXPECT_GT(b.signal("thrust"), calm_N);
+}
+
+TEST(Stand, TellsTheTorqueThatTheAirTakesAndTheSupply) {
+  Bench b;
+  b.run_until(1000 * kMs, 400.0);
+  EXPECT_TRUE(near(b.load.torque_Nm_s2 * 400.0 * 400.0, b.signal("torque"), round_off(1, 4)));
+  EXPECT_EQ(b.load.source_V, 16.0);
+  EXPECT_EQ(b.load.source_ohm, 0.01);
+}
+
+TEST(Stand, BatteryLosesTheChargeThatTheBridgeTakes) {
+  Bench b(params(R"({ prop = "hk_10x4.5", battery = "4s_2200" })"));
+  b.run_until(1000 * kMs, 400.0, 10.0);
+  EXPECT_TRUE(near(b.signal("charge_used"), 10.0, stated(1e-6, "a thousand sums")));
+  EXPECT_LT(b.load.source_V, 16.80);
+}
+
+TEST(Stand, DipLowersTheSupplyWhileItLasts) {
+  Bench b;
+  FaultSpec dip;
+  dip.number = 7;
+  dip.kind = "supply_dip";
+  dip.start_ns = 100 * kMs;
+  dip.end_ns = 200 * kMs;
+  dip.value = 4.0;
+  ASSERT_TRUE(b.world.take_fault(dip));
+  FaultSpec other;
+  other.kind = "i2c_nack";
+  EXPECT_FALSE(b.world.take_fault(other));  // the board's
+  b.run_until(50 * kMs, 0.0);
+  EXPECT_TRUE(b.world.applied_faults().empty());
+  b.run_until(150 * kMs, 0.0);
+  EXPECT_EQ(b.load.source_V, 12.0);
+  b.run_until(250 * kMs, 0.0);
+  EXPECT_EQ(b.load.source_V, 16.0);
+  EXPECT_EQ(b.world.applied_faults(), std::vector<std::uint32_t>{7});
+}
+
+TEST(Stand, MistakesAreNamed) {
+  const auto complaint = [](const std::string& text) {
+    const auto read = read_stand(table(text), kPropellers);
+    return read ? "none" : read.error().message();
+  };
+  EXPECT_NE(complaint(R"({ prop = "hk_10x4.5" })").find("battery or a supply"), std::string::npos);
+  EXPECT_NE(complaint(R"({ prop = "hk_99", supply = "16 V" })").find("hk_99"), std::string::npos);
+  EXPECT_NE(complaint(R"({ prop = "hk_10x4.5", supply = "16 V", moed = "rpm" })").find("moed"),
+            std::string::npos);
+  Bench b;
+  const auto wrong = b.world.command(table(R"({ duty = "20 %" })"), 0);
+  ASSERT_FALSE(wrong);
+  EXPECT_NE(wrong.error().message().find("mode"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace whirl::stand

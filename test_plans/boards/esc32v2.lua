@@ -1,0 +1,14 @@
+-- ESC32v2: STM32F103CB, 8 MHz crystal. The power stage is wired as io_bridges/qemu/board/power_stage.hpp
+-- says; a thrust stand commands it on I2C2 (PB10, PB11) and types on USART1 (PA9, PA10).
+return {
+  board = "esc32v2",
+  mcu = "stm32f103cb",
+  hse = "8 MHz",
+  instruction = "16 ns", -- timing profile: 62 MIPS, close to 72 MHz with two flash wait states
+  devices = {
+    { name = "stage", type = "power_stage", bus = "pins", motor = 1 },
+    { name = "throttle", type = "i2c_master", bus = "i2c2", params = { rate = "400 kHz" } },
+    { name = "terminal", type = "serial", bus = "usart1", baud = "115200 baud" },
+  },
+  watch = { "fw::esc::control_task", "fw::esc::sampling_task", "fw::esc::commutation_task" },
+}
