@@ -88,7 +88,6 @@ struct DeviceRack::Parts {
   Result<Done> add_serial(const DeviceConfig& device);
   Result<Done> add_i2c_master(const DeviceConfig& device);
   Result<Done> add_power_stage(const DeviceConfig& device);
-  Result<Done> join_power_stage(const DeviceConfig& device, PowerStage& stage);
   Result<Done> add_volts(const DeviceConfig& device);
   Result<Done> add_jumper(const DeviceConfig& device);
   io::I2cBus* i2c(int number);
@@ -307,7 +306,9 @@ Result<Done> DeviceRack::Parts::add_power_stage(const DeviceConfig& device) {
   const auto params = power_stage_params(device.params, board + ": " + device.name);
   if (!params) return params.error();
   auto stage = std::make_unique<PowerStage>(params.value(), site.seed, device.name);
-  if (const auto joined = join_power_stage(device, *stage); !joined) return joined.error();
+  if (!stage->join(site.chip)) {
+    return wrong(device, "the part lacks a pin that the power stage is wired to");
+  }
   stage->on_shoot_through(
       [this, name = device.name](int leg, io::Nanoseconds start_ns, io::Nanoseconds end_ns) {
         site.happened.add(Kind::shoot_through, port(leg), end_ns, io::ShootThrough{start_ns});
@@ -316,25 +317,6 @@ Result<Done> DeviceRack::Parts::add_power_stage(const DeviceConfig& device) {
                           " were on for " + std::to_string(end_ns - start_ns) + " ns"});
       });
   stages[device.motor] = std::move(stage);
-  return Done{};
-}
-
-Result<Done> DeviceRack::Parts::join_power_stage(const DeviceConfig& device, PowerStage& stage) {
-  for (int leg = 0; leg < 3; ++leg) {
-    io::Wire *upper = pin(PowerStage::kUpper_pins[leg]), *lower = pin(PowerStage::kLower_pins[leg]);
-    const auto phase = [&stage, leg](io::Nanoseconds now) { return stage.phase_V(leg, now); };
-    if (upper == nullptr || lower == nullptr ||
-        !site.chip.set_analog(PowerStage::kPhase_pins[leg], phase)) {
-      return wrong(device, "the part lacks a pin that the power stage is wired to");
-    }
-    stage.wire(leg, true, *upper);
-    stage.wire(leg, false, *lower);
-  }
-  const bool bus = site.chip.set_analog(PowerStage::kBus_pin,
-                                        [&stage](io::Nanoseconds now) { return stage.bus_V(now); });
-  const bool shunt = site.chip.set_analog(
-      PowerStage::kShunt_pin, [&stage](io::Nanoseconds now) { return stage.shunt_V(now); });
-  if (!bus || !shunt) return wrong(device, "the part lacks an analog pin of the power stage");
   return Done{};
 }
 

@@ -63,6 +63,20 @@ Result<PowerStageParams> power_stage_params(const std::map<std::string, double>&
 PowerStage::PowerStage(const PowerStageParams& params, std::uint64_t seed, const std::string& name)
     : params_(params), motor_(params.motor), shunt_(params.shunt, seed, name + ".shunt") {}
 
+bool PowerStage::join(stm32::ChipModel& chip) {
+  for (int leg = 0; leg < 3; ++leg) {
+    io::Wire *upper = chip.pin(kUpper_pins[leg]), *lower = chip.pin(kLower_pins[leg]);
+    const auto phase = [this, leg](Nanoseconds now) { return phase_V(leg, now); };
+    if (upper == nullptr || lower == nullptr || !chip.set_analog(kPhase_pins[leg], phase)) {
+      return false;
+    }
+    wire(leg, true, *upper);
+    wire(leg, false, *lower);
+  }
+  return chip.set_analog(kBus_pin, [this](Nanoseconds now) { return bus_V(now); }) &&
+         chip.set_analog(kShunt_pin, [this](Nanoseconds now) { return shunt_V(now); });
+}
+
 void PowerStage::wire(int leg, bool upper, io::Wire& wire) {
   wire.drive(wire.add_driver(), io::Drive::pull_low, now_ns_);
   on_[static_cast<std::size_t>(leg)][upper ? 1 : 0] = wire.level();

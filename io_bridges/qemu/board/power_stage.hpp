@@ -21,6 +21,7 @@
 #include "io_bridges/devices/event_queue.hpp"
 #include "io_bridges/devices/wire.hpp"
 #include "io_bridges/link/messages.hpp"
+#include "io_bridges/qemu/stm32/chip_model.hpp"
 #include "plant/motor/switched_motor.hpp"
 #include "plant/sensors/current_shunt.hpp"
 
@@ -53,6 +54,7 @@ class PowerStage {
   PowerStage(const PowerStage&) = delete;
   PowerStage& operator=(const PowerStage&) = delete;
 
+  bool join(stm32::ChipModel& chip);               // all of the pins; false: one is missing
   void wire(int leg, bool upper, io::Wire& wire);  // the six switches, once each
   void on_shoot_through(Shot shot) { shot_ = std::move(shot); }
 
