@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kStep_s = 1e-3;
 constexpr std::int64_t kStep_ns = 1'000'000;
-constexpr double kSlow_radps = 20.0;  // below, the torque's coefficient would divide by nothing
+constexpr double kSlow_radps = 20.0;  // below, loads go with the square of speed
 constexpr double kRpm = 30.0 / std::numbers::pi;
 
 struct Wish {
@@ -80,9 +80,12 @@ void StandWorld::move(std::int64_t t_ns) {
   wind_mps_ = flow_.at(t_ns);
   // The hub stands still in air that comes down along the shaft: against the air it climbs.
   plant::RotorConditions conditions;
-  conditions.omega_radps = std::max(0.0, shaft_.speed_radps);
+  conditions.omega_radps = std::max(kSlow_radps, shaft_.speed_radps);
   conditions.v_AP_P_mps = {0.0, 0.0, -wind_mps_};
   loads_ = rotor_.step(conditions, kStep_s);
+  const double slower = std::max(0.0, shaft_.speed_radps) / conditions.omega_radps;  // 1 as a rule
+  loads_.thrust_N *= slower * slower;
+  loads_.shaft_torque_Nm *= slower * slower;
   weighed_ = cell_.sample(kStep_s, {loads_.thrust_N, loads_.shaft_torque_Nm});
 
   double below_V = 0.0;

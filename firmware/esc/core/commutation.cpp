@@ -102,7 +102,11 @@ Commutation::Order Commutation::on_sample(Ticks now, int floating_counts, int bu
       (state_ == State::running || blank < config_.start_blank ? blank : config_.start_blank)) {
     return {};
   }
-  const int side = side_in(step_);
+  // At a rail a diode still carries the old current: that says nothing about the rotor. At low duty
+  // this outlasts the blank time, for the current dies slowly while the PWM is off.
+  const int rail = bus_counts / 64;
+  const bool at_rail = floating_counts <= rail || floating_counts >= bus_counts - rail;
+  const int side = at_rail ? 0 : side_in(step_);
   const int clear = state_ == State::running ? 0 : config_.start_clear_counts;
   if (side > clear) {
     seen_before_ = true;

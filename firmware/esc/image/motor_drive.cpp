@@ -37,6 +37,8 @@ void MotorDrive::on_sample(const sampling::Sample& sample) {
     return;
   }
   if (phase_ != Phase::turning) return;
+  // A commutation in here would lie after `now`: the sector would seem over, and a step be skipped.
+  const hal::InterruptLock lock;
   const Commutation::Order order =
       commutation_.on_sample(bridge::now(), sample.floating, sample.bus);
   if (order.commutate) bridge::interrupt_at(order.at);

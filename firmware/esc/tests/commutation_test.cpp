@@ -167,5 +167,20 @@ TEST(Commutation, StoppedItOrdersNothing) {
   }
 }
 
+// While a diode still carries the old phase's current, that phase lies at a rail, on the side that a
+// crossing would lead to: a start that believed it would run away from the rotor.
+TEST(Commutation, PhaseAtARailIsNoCrossing) {
+  for (const int rail_counts : {0, kBus_counts, kBus_counts + 100}) {
+    Commutation commutation{CommutationConfig{}};
+    Ticks t = 1000;
+    EXPECT_TRUE(commutation.start(t).commutate);
+    commutation.on_commutated(t);
+    const auto end = static_cast<Ticks>(t + CommutationConfig{}.align_sector - 100);
+    for (; t < end; t = static_cast<Ticks>(t + 100)) {
+      ASSERT_FALSE(commutation.on_sample(t, rail_counts, kBus_counts).commutate) << rail_counts;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace fw::esc
