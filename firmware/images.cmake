@@ -41,7 +41,7 @@ endfunction()
 fw_image(flight FLASH 128 RAM 16 FOLDER . SOURCES
   flight/main.cpp ${FW_CORE} hal/clock.cpp hal/time_base.cpp hal/spi_master.cpp hal/i2c_master.cpp
   hal/uart_link.cpp)
-foreach(image hardfault silent sleeper)
+foreach(image hardfault silent sleeper starved)
   fw_image(${image} FLASH 4 RAM 1 FOLDER images SOURCES images/${image}.cpp)
 endforeach()
 include(esc/image.cmake)

@@ -37,6 +37,15 @@ results::TruthLog truth_log_for(const World& world) {
   return {std::move(columns), kStep_ns};
 }
 
+// The watchdog that has reset the board, or null.
+const char* bitten(const std::vector<results::ResetRecord>& resets) {
+  for (const results::ResetRecord& reset : resets) {
+    if (reset.cause == io::kResetByIndependentWatchdog) return "independent";
+    if (reset.cause == io::kResetByWindowWatchdog) return "window";
+  }
+  return nullptr;
+}
+
 class Run {
  public:
   explicit Run(const RunParts& parts)
@@ -123,6 +132,7 @@ class Run {
     if (!*arrived) return fail(arrived->error());
     file_batch(happened_);
     if (!record_.events.cpu_faults.empty()) return core_fault();
+    if (const char* watchdog = bitten(record_.events.resets)) return watchdog_reset(watchdog);
     if (arrived->value() == TargetState::running) return true;
     return stopped_early(arrived->value());
   }
@@ -188,6 +198,12 @@ class Run {
     record_.report.cpu_faults.push_back(row);
     must_hold("the firmware runs without a fault", row.name + " in " + row.where);
     return fail_plan("firmware fault: " + row.name + " in " + row.where);
+  }
+
+  bool watchdog_reset(const char* watchdog) {
+    const std::string what = std::string("reset by the ") + watchdog + " watchdog";
+    must_hold("the firmware keeps its watchdogs fed", what);
+    return fail_plan("firmware fault: " + what);
   }
 
   bool stopped_early(TargetState state) {

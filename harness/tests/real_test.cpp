@@ -119,6 +119,13 @@ TEST_F(Real, AHardFaultIsNamedWithItsFunction) {
   EXPECT_NE(reason.find("0x080"), std::string::npos) << reason;
 }
 
+TEST_F(Real, AHangingImageIsResetByItsWatchdogAndFailsByName) {
+  const Outcome outcome = run("starved", kSecond);
+  expect_told(outcome, 1, "reset by the independent watchdog");
+  // 500 counts of LSI / 16 at 32 kHz nominal: 0.25 s after its start.
+  EXPECT_NEAR(outcome.run.value("virtual_s", 0.0), 0.25, 0.01);
+}
+
 TEST_F(Real, AnImageThatNeverFeedsTheBusFailsByItsDeadline) {
   const Outcome outcome =
       run("silent",

@@ -44,6 +44,9 @@ enum class Kind : std::uint16_t {
   shoot_through = 48,  // ShootThrough, port = leg 0..2: both switches were on until t_ns
 };
 
+// Ports of board_reset: stm32::ResetCause by number.
+inline constexpr std::uint16_t kResetByIndependentWatchdog = 3, kResetByWindowWatchdog = 4;
+
 struct Header {
   std::int64_t t_ns = 0;
   Kind kind{};

@@ -228,6 +228,11 @@ void Board::finish(io::BoardState state) {
   std::abort();  // never reached; GCC forgets [[noreturn]] on virtual calls
 }
 
+static_assert(static_cast<std::uint16_t>(stm32::ResetCause::independent_watchdog) ==
+              io::kResetByIndependentWatchdog);
+static_assert(static_cast<std::uint16_t>(stm32::ResetCause::window_watchdog) ==
+              io::kResetByWindowWatchdog);
+
 void Board::core_was_reset(stm32::ResetCause cause) {
   happened_.add(io::Kind::board_reset, static_cast<std::uint16_t>(cause), events_.now(), nullptr,
                 0);
