@@ -1,7 +1,8 @@
 // Rotor speed by voltage: feedforward of the steady state, PI, and the bounds that keep the winding
 // current within its limits at this very speed.
 //
-//   Law     va = vff(wd) - Kp (w - wd) - Ki int(w - wd); Ke w - i_brake R <= va <= Ke w + i_max R
+//   Law     va = vff(wd) - Kp (w - wd) - Ki int(w - wd); Ke w - i_brake R <= va <= Ke w + i_max R',
+//           where R' counts the drop of commutation too
 //   Source  [Bangura 2017, sec. 3.4 and 5.3.2]; the bound is its over-current guard
 #pragma once
 #include "firmware/esc/core/calibration.hpp"
@@ -18,16 +19,21 @@ struct VoltageDemand {
   bool saturated;
 };
 
+// What a bridge has to overcome per ampere: resistance and commutation.
+inline float drop_ohm(const MotorConstants& motor, float w) {
+  return motor.resistance_ohm + motor.overlap_ohm_s * w;
+}
+
 // Steady voltage at a speed in free air.
 inline float steady_voltage_V(const MotorConstants& motor, const StaticMap& free_air, float w) {
   const float current_A = motor.no_load_current_A + free_air.q2 * w * w / motor.Kt_NmpA;
-  return motor.Kt_NmpA * w + motor.resistance_ohm * current_A;
+  return motor.Kt_NmpA * w + drop_ohm(motor, w) * current_A;
 }
 
 inline VoltageDemand within_current_limits(const MotorConstants& motor, float wanted_V, float w,
                                            float bus_V) {
   const float emf_V = motor.Kt_NmpA * w;
-  float high_V = emf_V + motor.max_current_A * motor.resistance_ohm;
+  float high_V = emf_V + motor.max_current_A * drop_ohm(motor, w);
   float low_V = emf_V - motor.max_braking_A * motor.resistance_ohm;
   if (high_V > bus_V) high_V = bus_V;
   if (low_V < 0.0f) low_V = 0.0f;

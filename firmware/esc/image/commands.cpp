@@ -80,6 +80,7 @@ constexpr Parameter kParameters[] = {
     {"kt", [](Calibration& c) -> float& { return c.motor.Kt_NmpA; }},
     {"resistance", [](Calibration& c) -> float& { return c.motor.resistance_ohm; }},
     {"inductance", [](Calibration& c) -> float& { return c.motor.inductance_H; }},
+    {"overlap", [](Calibration& c) -> float& { return c.motor.overlap_ohm_s; }},
     {"no_load", [](Calibration& c) -> float& { return c.motor.no_load_current_A; }},
     {"inertia", [](Calibration& c) -> float& { return c.motor.inertia_kgm2; }},
     {"max_current", [](Calibration& c) -> float& { return c.motor.max_current_A; }},
