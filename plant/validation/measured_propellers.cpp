@@ -68,6 +68,16 @@ const std::vector<Measured>& all_measured() {
   return all;
 }
 
+// Asked only after sections and induced factor were settled; nothing but its own twist is fitted.
+const std::vector<Measured>& all_unseen() {
+  static const std::vector<Measured> all = {
+      {"apcsf_10x4.7",
+       10.0,
+       "static_kt0835",
+       {{4997, "rd0838_4997"}, {6020, "rd0840_6020"}, {6512, "rd0841_6512"}}}};
+  return all;
+}
+
 struct Errors {  // weighted means in percent
   double CT = 0.0;
   double CP = 0.0;
@@ -90,8 +100,9 @@ struct Case {
   std::vector<Rows> forward;  // per run: J, CT, CP
 };
 
-Case read_case(const Measured& m, const ReadData& read, const SectionOf& section) {
-  const std::string base = std::string("propellers/") + m.name + "/" + m.name + "_";
+Case read_case(const char* folder, const Measured& m, const ReadData& read,
+               const SectionOf& section) {
+  const std::string base = std::string(folder) + m.name + "/" + m.name + "_";
   Case c{&m, {}, read_rows(read(base + m.static_file + ".txt"), 3), {}};
   for (const Run& run : m.runs) c.forward.push_back(read_rows(read(base + run.file + ".txt"), 3));
   PropellerDescription& d = c.description;
@@ -165,6 +176,13 @@ Errors forward_errors(const Case& c, const std::shared_ptr<const Blade>& blade, 
   return {ct.percent(), cp.percent()};
 }
 
+void add_bounds(const std::string& name, Errors s, Errors f, Report& report) {
+  report.figures.push_back({name + ": static CT", "%", s.CT, 5.0});
+  report.figures.push_back({name + ": static CP", "%", s.CP, 10.0});
+  report.figures.push_back({name + ": flight CT", "%", f.CT, 10.0});
+  report.figures.push_back({name + ": flight CP", "%", f.CP, 12.0});
+}
+
 std::string line(const char* name, const char* what, double twist, Errors s, Errors f) {
   char text[160];
   std::snprintf(
@@ -207,7 +225,7 @@ Report validate_measured_propellers(const ReadData& read) {
   std::vector<Case> cases;
   std::vector<double> twists;
   for (const Measured& m : all_measured()) {
-    cases.push_back(read_case(m, read, section));
+    cases.push_back(read_case("propellers/", m, read, section));
     twists.push_back(fitted_twist(cases.back()));
   }
   for (std::size_t i = 0; i < cases.size(); ++i) {
@@ -216,10 +234,7 @@ Report validate_measured_propellers(const ReadData& read) {
     const auto blade = blade_with(c, twists[i]);
     const Errors s = static_errors(c, blade, &report);
     const Errors f = forward_errors(c, blade, &report);
-    report.figures.push_back({name + ": static CT", "%", s.CT, 5.0});
-    report.figures.push_back({name + ": static CP", "%", s.CP, 10.0});
-    report.figures.push_back({name + ": flight CT", "%", f.CT, 10.0});
-    report.figures.push_back({name + ": flight CP", "%", f.CP, 12.0});
+    add_bounds(name, s, f, report);
     report.notes.push_back(line(c.measured->name, "fitted on static thrust", twists[i], s, f));
     const std::size_t sibling = i ^ 1u;  // pairs of one make stand together
     const auto other = blade_with(c, twists[sibling]);
@@ -229,6 +244,29 @@ Report validate_measured_propellers(const ReadData& read) {
     const auto none = blade_with(c, 0.0);
     report.notes.push_back(line(c.measured->name, "no twist correction", 0.0,
                                 static_errors(c, none, nullptr), forward_errors(c, none, nullptr)));
+  }
+  return report;
+}
+
+Report validate_unseen_propellers(const ReadData& read) {
+  Report report{
+      "Unseen propellers: static and in flight", "UIUC Propeller Database [UiucProp]", {}, {}, {}};
+  report.notes.push_back(
+      "Nothing was settled with this flight data; the limits are those of the four known "
+      "propellers. "
+      "Same make as two of them, and three of its runs: another make is still untested.");
+  const SectionOf section = section_reader(read);
+  for (const Measured& m : all_unseen()) {
+    const Case c = read_case("unseen/", m, read, section);
+    const double twist = fitted_twist(c);
+    const auto blade = blade_with(c, twist);
+    const Errors s = static_errors(c, blade, &report);
+    const Errors f = forward_errors(c, blade, &report);
+    add_bounds(m.name, s, f, report);
+    report.notes.push_back(line(m.name, "fitted on static thrust", twist, s, f));
+    const auto none = blade_with(c, 0.0);
+    report.notes.push_back(line(m.name, "no twist correction", 0.0, static_errors(c, none, nullptr),
+                                forward_errors(c, none, nullptr)));
   }
   return report;
 }

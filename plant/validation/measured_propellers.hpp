@@ -27,5 +27,7 @@ SectionOf section_reader(ReadData read);
 std::vector<SectionStation> family_sections(const std::string& propeller, const SectionOf& section);
 
 Report validate_measured_propellers(const ReadData& read);
+// Propellers whose flight data nobody had in view when the rules were settled.
+Report validate_unseen_propellers(const ReadData& read);
 
 }  // namespace whirl::plant

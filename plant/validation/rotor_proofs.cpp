@@ -19,6 +19,7 @@ std::vector<Proof> rotor_proofs(const ReadData& read) {
   add(validate_ccblade_c(reference("ccblade_c.txt"), reference("ccblade_naca0012.txt")));
   add(validate_qprop(reference("qprop_cam6x3.txt")));
   add(validate_measured_propellers(read));
+  add(validate_unseen_propellers(read));
   add(validate_hobbyking(read));
   return all;
 }
