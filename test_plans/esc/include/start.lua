@@ -1,0 +1,15 @@
+-- What the plans of the thrust stand share: arm, start, turn steadily.
+
+-- Armed by its zeros, then turning at `thrust` for two seconds.
+function start(t, thrust)
+  t:step "start"
+  t:within("3 s", function(s) return s.armed == 1 end, "armed after its zeros")
+  t:command { thrust = thrust }
+  t:within("3 s", function(s) return s.speed_radps > 150 end, "turning")
+  t:wait "2 s"
+end
+
+-- Bit `number` of the status byte.
+function flag(flags, number)
+  return flags // 2 ^ number % 2 == 1
+end
