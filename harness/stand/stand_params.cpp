@@ -27,7 +27,7 @@ void read_feed(const lua::Table& t, plant::BatteryParams& battery) {
 io::EscMode read_mode(const lua::Table& t) {
   if (!t.has("mode")) return io::EscMode::thrust_by_rpm;
   const std::string word = t.choice("mode", {std::begin(kModes), std::end(kModes)});
-  for (std::uint8_t i = 0; i < std::size(kModes); ++i) {
+  for (std::size_t i = 0; i < std::size(kModes); ++i) {
     if (word == kModes[i]) return static_cast<io::EscMode>(i);
   }
   return io::EscMode::thrust_by_rpm;  // refused by choice() already
