@@ -163,6 +163,7 @@ std::vector<std::string> command_line(const VirtualBoardOptions& options, const 
 // Lets only the two given descriptors through to QEMU.
 pid_t launch_process(const std::vector<std::string>& line, int log_fd, int link_fd, int config_fd) {
   std::vector<char*> argv;
+  argv.reserve(line.size() + 1);
   for (const std::string& word : line) argv.push_back(const_cast<char*>(word.c_str()));
   argv.push_back(nullptr);
   const pid_t parent = getpid();
