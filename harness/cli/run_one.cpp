@@ -32,7 +32,7 @@ void announce_gdb(const Setup& setup) {
   std::fprintf(
       stderr,
       "whirl: the board waits for gdb; the world's time stands still while it is stopped:\n"
-      "       gdb-multiarch %s -ex 'target remote localhost:%d'\n",
+      "       gdb-multiarch %s -ex 'target remote 127.0.0.1:%d'\n",
       setup.image.c_str(), setup.gdb_port);
 }
 

@@ -149,9 +149,10 @@ TEST_F(Real, GdbStopsInATaskAndTheRunGoesOnAfterIt) {
   const int port = 20000 + getpid() % 20000;
   const std::string out = folder_ + "/whirl.txt";
   const std::string command =
-      std::string(WHIRL_PROGRAM) + " run --gdb --gdb-port " + std::to_string(port) + " " + folder_ +
-      "/p.lua >" + out + " 2>&1 & whirl=$!; gdb-multiarch -batch -nx " + WHIRL_IMAGES +
-      "/flight.elf -ex 'set tcp connect-timeout 60' -ex 'target remote localhost:" +
+      std::string("timeout 100 ") + WHIRL_PROGRAM + " run --gdb --gdb-port " +
+      std::to_string(port) + " " + folder_ + "/p.lua >" + out +
+      " 2>&1 & whirl=$!; gdb-multiarch -batch -nx " + WHIRL_IMAGES +
+      "/flight.elf -ex 'set tcp connect-timeout 60' -ex 'target remote 127.0.0.1:" +
       std::to_string(port) +
       "' -ex 'hbreak fw::attitude_task' -ex continue -ex backtrace"
       " -ex 'delete' -ex detach 2>&1; wait $whirl; echo code $?";

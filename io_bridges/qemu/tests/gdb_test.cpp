@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <csignal>
 #include <cstdio>
 #include <thread>
 
@@ -13,7 +14,7 @@ namespace {
 
 std::string gdb(int port, const std::string& name, const std::string& commands) {
   const std::string line =
-      "gdb-multiarch -nx -batch -ex 'set pagination off' -ex 'target remote :" +
+      "gdb-multiarch -nx -batch -ex 'set pagination off' -ex 'target remote 127.0.0.1:" +
       std::to_string(port) + "' " + commands + " " + image(name) + " 2>&1";
   FILE* pipe = popen(line.c_str(), "r");
   std::string text;
@@ -21,6 +22,11 @@ std::string gdb(int port, const std::string& name, const std::string& commands) 
   while (pipe != nullptr && fgets(chunk, sizeof chunk, pipe) != nullptr) text += chunk;
   if (pipe != nullptr) pclose(pipe);
   return text;
+}
+
+// A gdb that never got through leaves the world standing for ever: end it, so that the test fails.
+void let_nobody_wait(const VirtualBoard& target, const std::string& text) {
+  if (text.find("detached") == std::string::npos) kill(target.pid(), SIGKILL);
 }
 
 TEST(Gdb, StopsInAFunctionWhileTheWorldWaits) {
@@ -35,6 +41,7 @@ TEST(Gdb, StopsInAFunctionWhileTheWorldWaits) {
         gdb(setup.gdb_port, "calls",
             "-ex 'break counted' -ex 'continue' -ex 'shell sleep 2' -ex 'print $pc' -ex 'backtrace'"
             " -ex 'stepi' -ex 'print $r0' -ex 'delete' -ex 'detach'");
+    let_nobody_wait(target, text);
   });
   io::Batch happened;
   bool alive = true;
@@ -61,6 +68,7 @@ TEST(Gdb, InterruptsAnImageThatMostlySleeps) {
     text = gdb(
         setup.gdb_port, "sleeper",
         "-ex 'shell (sleep 1; kill -INT $PPID) &' -ex 'continue' -ex 'print count' -ex 'detach'");
+    let_nobody_wait(target, text);
     done = true;
   });
   io::Batch happened;
