@@ -185,6 +185,7 @@ io::Nanoseconds Machine::slept_ns() const {
 void Machine::on_timer() {
   if (asleep_since_ns_ < 0 && timeline_.at(0) != now()) ++timeline_.ran_on;
   anchor();
+  if (asleep_since_ns_ < 0) act_on_deferred();  // what hold() left
   board_.on_timer();
 }
 
@@ -222,9 +223,9 @@ void Machine::sleep() {
     sleep_now_ns_ = std::max(sleep_now_ns_, events.next_deadline());
     WHIRL_CHECK(sleep_now_ns_ != io::kNever);  // the next boundary is always there
     events.run_until(sleep_now_ns_);
-    if (!deferred_.empty()) catch_up();
+    if (!deferred_.empty() && !catch_up()) return hold();
   }
-  catch_up();
+  if (!catch_up()) return hold();
   slept_ns_ += sleep_now_ns_ - asleep_since_ns_;
   asleep_since_ns_ = -1;
   anchor();
@@ -250,12 +251,25 @@ void Machine::give_way() {
 
 // QEMU's clock to the board's, then what waited for it. On an idle CPU arming a timer moves the clock
 // to its deadline at once.
-void Machine::catch_up() {
+// False: gdb is stopping the machine at this moment, and a stopped clock does not move.
+bool Machine::catch_up() {
   if (api_.qemu_clock_get_ns(kVirtualClock) != sleep_now_ns_) {
     api_.timer_mod(&timer_, sleep_now_ns_);
     const std::int64_t there = api_.qemu_clock_get_ns(kVirtualClock);
+    if (there < sleep_now_ns_ && board_.config().gdb_port != 0) return false;
     WHIRL_CHECK(there == sleep_now_ns_, there, sleep_now_ns_);
   }
+  act_on_deferred();
+  return true;
+}
+
+// The timer is set to where the board is already; when gdb lets go it fires, and the rest follows.
+void Machine::hold() {
+  slept_ns_ += sleep_now_ns_ - asleep_since_ns_;
+  asleep_since_ns_ = -1;
+}
+
+void Machine::act_on_deferred() {
   const std::vector<Deferred> waiting = std::exchange(deferred_, {});
   for (const Deferred& what : waiting) act(what);
 }

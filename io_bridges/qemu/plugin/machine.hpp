@@ -92,7 +92,9 @@ class Machine final : public board::Emulator {
     stm32::ResetCause cause;
   };
   void sleep();
-  void catch_up();
+  bool catch_up();
+  void hold();
+  void act_on_deferred();
   void give_way();
   void act(const Deferred& what);
   void act_or_defer(const Deferred& what);
