@@ -33,7 +33,7 @@ void FlashF1::reset() {
   acr_ = 0x30;
   sr_ = ar_ = 0;
   cr_ = LOCK;
-  key_step_ = 0;
+  keys_.reset();
   update();
 }
 
@@ -60,7 +60,8 @@ void FlashF1::write_word(std::uint32_t offset, std::uint32_t value) {
       acr_ = (value & 0x1F) | ((value & 0x10) << 1);  // PRFTBS follows PRFTBE
       return;
     case KEYR:
-      return write_key(value);
+      if ((cr_ & LOCK) != 0 && keys_.open(value)) cr_ &= ~LOCK;
+      return;
     case SR:
       sr_ &= ~(value & (PGERR | WRPRTERR | EOP));
       return update();
@@ -72,19 +73,6 @@ void FlashF1::write_word(std::uint32_t offset, std::uint32_t value) {
     default:
       return;
   }
-}
-
-// A wrong key locks until the next reset.
-void FlashF1::write_key(std::uint32_t value) {
-  static constexpr std::uint32_t kKeys[2] = {0x45670123, 0xCDEF89AB};
-  if (key_step_ < 0 || (cr_ & LOCK) == 0) return;
-  if (value != kKeys[key_step_]) {
-    key_step_ = -1;
-    return;
-  }
-  if (++key_step_ < 2) return;
-  key_step_ = 0;
-  cr_ &= ~LOCK;
 }
 
 void FlashF1::write_cr(std::uint32_t value) {

@@ -7,6 +7,7 @@
 //   Left out  option bytes (OBR and WRPR read as erased), the stall of fetches while BSY
 #pragma once
 #include "io_bridges/qemu/stm32/flash_array.hpp"
+#include "io_bridges/qemu/stm32/flash_keys.hpp"
 #include "io_bridges/qemu/stm32/word_block.hpp"
 
 namespace whirl::stm32 {
@@ -23,7 +24,6 @@ class FlashF1 final : public WordBlock {
 
   std::uint32_t read_word(std::uint32_t offset) override;
   void write_word(std::uint32_t offset, std::uint32_t value) override;
-  void write_key(std::uint32_t value);
   void write_cr(std::uint32_t value);
   void begin();
   void busy(Nanoseconds duration);
@@ -36,7 +36,7 @@ class FlashF1 final : public WordBlock {
   std::uint32_t bytes_;
   io::Event done_;
   std::uint32_t acr_ = 0x30, sr_ = 0, cr_ = 0x80, ar_ = 0;
-  int key_step_ = 0;
+  FlashKeys keys_ = kProgramKeys;
   bool latency_reported_ = false;
 };
 

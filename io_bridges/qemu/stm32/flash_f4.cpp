@@ -23,8 +23,6 @@ constexpr std::uint32_t PG = 1u << 0, SER = 1u << 1, MER = 1u << 2, STRT = 1u <<
 // OPTCR
 constexpr std::uint32_t OPTLOCK = 1u << 0, OPTSTRT = 1u << 1;
 
-constexpr std::uint32_t kKeys[2] = {0x45670123, 0xCDEF89AB};
-constexpr std::uint32_t kOptionKeys[2] = {0x08192A3B, 0x4C5D6E7F};
 constexpr std::uint32_t kBase = 0x08000000;
 constexpr Nanoseconds kProgram_ns = 16'000, ms = 1'000'000;
 
@@ -65,7 +63,8 @@ void FlashF4::reset() {
   acr_ = sr_ = 0;
   cr_ = LOCK;
   optcr_ |= OPTLOCK;
-  key_step_ = option_step_ = 0;
+  keys_.reset();
+  option_keys_.reset();
   update();
 }
 
@@ -90,9 +89,11 @@ void FlashF4::write_word(std::uint32_t offset, std::uint32_t value) {
       acr_ = value & 0x1F07;
       return;
     case KEYR:
-      return write_key(value, kKeys, key_step_, cr_, LOCK);
+      if ((cr_ & LOCK) != 0 && keys_.open(value)) cr_ &= ~LOCK;
+      return;
     case OPTKEYR:
-      return write_key(value, kOptionKeys, option_step_, optcr_, OPTLOCK);
+      if ((optcr_ & OPTLOCK) != 0 && option_keys_.open(value)) optcr_ &= ~OPTLOCK;
+      return;
     case SR:
       sr_ &= ~(value & (EOP | OPERR | kErrors));
       return update();
@@ -103,19 +104,6 @@ void FlashF4::write_word(std::uint32_t offset, std::uint32_t value) {
     default:
       return;
   }
-}
-
-// A wrong key locks until the next reset (RM0090 3.6.1).
-void FlashF4::write_key(std::uint32_t value, const std::uint32_t (&keys)[2], int& step,
-                        std::uint32_t& reg, std::uint32_t lock) {
-  if (step < 0 || (reg & lock) == 0) return;
-  if (value != keys[step]) {
-    step = -1;
-    return;
-  }
-  if (++step < 2) return;
-  step = 0;
-  reg &= ~lock;
 }
 
 void FlashF4::write_cr(std::uint32_t value) {

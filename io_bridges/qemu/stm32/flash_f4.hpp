@@ -7,6 +7,7 @@
 //   Left out  the core stalls on a fetch while BSY on the part; here it runs on. RDP is stored
 #pragma once
 #include "io_bridges/qemu/stm32/flash_array.hpp"
+#include "io_bridges/qemu/stm32/flash_keys.hpp"
 #include "io_bridges/qemu/stm32/word_block.hpp"
 
 namespace whirl::stm32 {
@@ -22,8 +23,6 @@ class FlashF4 final : public WordBlock {
  private:
   std::uint32_t read_word(std::uint32_t offset) override;
   void write_word(std::uint32_t offset, std::uint32_t value) override;
-  void write_key(std::uint32_t value, const std::uint32_t (&keys)[2], int& step, std::uint32_t& reg,
-                 std::uint32_t lock);
   void write_cr(std::uint32_t value);
   void write_optcr(std::uint32_t value);
   void erase();
@@ -39,7 +38,7 @@ class FlashF4 final : public WordBlock {
   std::uint32_t bytes_;
   io::Event done_;
   std::uint32_t acr_ = 0, sr_ = 0, cr_ = 0x80000000, optcr_ = 0x0FFFAAED;
-  int key_step_ = 0, option_step_ = 0;
+  FlashKeys keys_ = kProgramKeys, option_keys_{0x08192A3B, 0x4C5D6E7F};
   bool latency_reported_ = false;
 };
 

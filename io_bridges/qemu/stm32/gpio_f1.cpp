@@ -12,7 +12,6 @@ enum Offset : std::uint32_t {
   BRR = 0x14,
   LCKR = 0x18,
 };
-constexpr std::uint32_t LCKK = 1u << 16;
 
 }  // namespace
 
@@ -36,8 +35,8 @@ void GpioF1::remap(std::uint32_t mapr) {
 
 void GpioF1::reset() {
   cr_[0] = cr_[1] = 0x44444444;  // floating inputs
-  odr_ = lckr_ = 0;
-  lock_step_ = 0;
+  odr_ = 0;
+  lock_.reset();
   for (int pin = 0; pin < 16; ++pin) apply(pin);
 }
 
@@ -52,11 +51,7 @@ std::uint32_t GpioF1::read_word(std::uint32_t offset) {
     case ODR:
       return odr_;
     case LCKR:
-      if (lock_step_ == 3) {
-        lckr_ |= LCKK;
-        lock_step_ = 0;
-      }
-      return lckr_;
+      return lock_.read();
     default:
       return 0;
   }
@@ -75,7 +70,7 @@ void GpioF1::write_word(std::uint32_t offset, std::uint32_t value) {
     case BRR:
       return set_odr(odr_ & ~(value & 0xFFFF));
     case LCKR:
-      return write_lock(value);
+      return lock_.write(value);
     default:
       return;
   }
@@ -93,23 +88,9 @@ void GpioF1::set_configuration(int first, std::uint32_t value) {
   for (int pin = first; pin < first + 8; ++pin) {
     const std::uint32_t mask = 0xFu << (4 * (pin - first));
     if (((reg ^ value) & mask) == 0) continue;
-    if ((lckr_ & LCKK) != 0 && ((lckr_ >> pin) & 1) != 0) continue;
+    if (lock_.holds(pin)) continue;
     reg = (reg & ~mask) | (value & mask);
     apply(pin);
-  }
-}
-
-void GpioF1::write_lock(std::uint32_t value) {
-  if ((lckr_ & LCKK) != 0) return;
-  const bool key = (value & LCKK) != 0;
-  const bool same = (value & 0xFFFF) == (lckr_ & 0xFFFF);
-  if (lock_step_ == 1 && !key && same) {
-    lock_step_ = 2;
-  } else if (lock_step_ == 2 && key && same) {
-    lock_step_ = 3;
-  } else {
-    lock_step_ = key ? 1 : 0;
-    lckr_ = value & 0xFFFF;
   }
 }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "io_bridges/qemu/stm32/exti.hpp"
+#include "io_bridges/qemu/stm32/gpio_lock.hpp"
 #include "io_bridges/qemu/stm32/pins.hpp"
 #include "io_bridges/qemu/stm32/word_block.hpp"
 
@@ -48,7 +49,6 @@ class GpioF1 final : public WordBlock {
   void write_word(std::uint32_t offset, std::uint32_t value) override;
   void set_odr(std::uint32_t value);
   void set_configuration(int first, std::uint32_t value);
-  void write_lock(std::uint32_t value);
   void apply(int pin);
   void check_jtag(int pin, PinMode mode);
   PinSetting setting(int pin) const;
@@ -60,9 +60,9 @@ class GpioF1 final : public WordBlock {
   std::array<std::vector<Carried>, 16> signals_;
   EdgeSink edge_;
   std::uint32_t cr_[2] = {0x44444444, 0x44444444};
-  std::uint32_t odr_ = 0, lckr_ = 0, mapr_ = 0;
+  std::uint32_t odr_ = 0, mapr_ = 0;
   std::uint32_t levels_ = 0xFFFF, analog_ = 0;
-  int lock_step_ = 0;
+  GpioLock lock_;
   bool jtag_reported_ = false;
 };
 

@@ -17,7 +17,6 @@ enum Offset : std::uint32_t {
   AFRL = 0x20,
   AFRH = 0x24,
 };
-constexpr std::uint32_t LCKK = 1u << 16;
 
 std::uint32_t field(std::uint32_t reg, int pin, int bits) {
   return (reg >> (pin * bits)) & ((1u << bits) - 1);
@@ -47,8 +46,8 @@ void GpioF4::reset() {
   moder_ = port_ == 'A' ? 0xA8000000 : port_ == 'B' ? 0x00000280 : 0;
   ospeedr_ = port_ == 'A' ? 0x0C000000 : port_ == 'B' ? 0x000000C0 : 0;
   pupdr_ = port_ == 'A' ? 0x64000000 : port_ == 'B' ? 0x00000100 : 0;
-  otyper_ = odr_ = lckr_ = afr_[0] = afr_[1] = 0;
-  lock_step_ = 0;
+  otyper_ = odr_ = afr_[0] = afr_[1] = 0;
+  lock_.reset();
   for (int pin = 0; pin < 16; ++pin) apply(pin);
 }
 
@@ -67,11 +66,7 @@ std::uint32_t GpioF4::read_word(std::uint32_t offset) {
     case ODR:
       return odr_;
     case LCKR:
-      if (lock_step_ == 3) {
-        lckr_ |= LCKK;
-        lock_step_ = 0;
-      }
-      return lckr_;
+      return lock_.read();
     case AFRL:
       return afr_[0];
     case AFRH:
@@ -103,7 +98,7 @@ void GpioF4::write_word(std::uint32_t offset, std::uint32_t value) {
     case BSRR:
       return set_odr((odr_ & ~(value >> 16)) | (value & 0xFFFF));  // set beats reset
     case LCKR:
-      return write_lock(value);
+      return lock_.write(value);
     case AFRL:
       return set_configuration(afr_[0], value, 4, 0);
     case AFRH:
@@ -128,26 +123,11 @@ void GpioF4::set_configuration(std::uint32_t& reg, std::uint32_t value, int bits
   for (int pin = first; pin < 16 && (pin - first) * bits < 32; ++pin) {
     const std::uint32_t mask = ((1u << bits) - 1) << ((pin - first) * bits);
     if (((reg ^ value) & mask) == 0) continue;
-    if ((lckr_ & LCKK) != 0 && ((lckr_ >> pin) & 1) != 0) continue;
+    if (lock_.holds(pin)) continue;
     reg = (reg & ~mask) | (value & mask);
     changed_pins |= 1u << pin;
   }
   for (; changed_pins != 0; changed_pins &= changed_pins - 1) apply(__builtin_ctz(changed_pins));
-}
-
-// The key: write 1, 0, 1 with the same mask in the low half, then read.
-void GpioF4::write_lock(std::uint32_t value) {
-  if ((lckr_ & LCKK) != 0) return;
-  const bool key = (value & LCKK) != 0;
-  const bool same = (value & 0xFFFF) == (lckr_ & 0xFFFF);
-  if (lock_step_ == 1 && !key && same) {
-    lock_step_ = 2;
-  } else if (lock_step_ == 2 && key && same) {
-    lock_step_ = 3;
-  } else {
-    lock_step_ = key ? 1 : 0;
-    lckr_ = value & 0xFFFF;
-  }
 }
 
 PinSetting GpioF4::setting(int pin) const {

@@ -6,6 +6,7 @@
 #pragma once
 #include <array>
 
+#include "io_bridges/qemu/stm32/gpio_lock.hpp"
 #include "io_bridges/qemu/stm32/pins.hpp"
 #include "io_bridges/qemu/stm32/word_block.hpp"
 
@@ -29,7 +30,6 @@ class GpioF4 final : public WordBlock {
   void write(std::uint32_t offset, std::uint32_t value, unsigned size) override;
   void set_odr(std::uint32_t value);
   void set_configuration(std::uint32_t& reg, std::uint32_t value, int bits_per_pin, int first);
-  void write_lock(std::uint32_t value);
   void apply(int pin);
   PinSetting setting(int pin) const;
 
@@ -39,11 +39,11 @@ class GpioF4 final : public WordBlock {
   std::array<Pin*, 16> pins_{};
   std::array<std::array<std::array<Signal*, 2>, 16>, 16> alternates_{};  // [pin][af]
   EdgeSink edge_;
-  std::uint32_t moder_ = 0, otyper_ = 0, ospeedr_ = 0, pupdr_ = 0, odr_ = 0, lckr_ = 0;
+  std::uint32_t moder_ = 0, otyper_ = 0, ospeedr_ = 0, pupdr_ = 0, odr_ = 0;
   std::uint32_t afr_[2] = {0, 0};
   std::uint32_t levels_ = 0xFFFF;  // what the wires carry
   std::uint32_t analog_ = 0;       // pins whose Schmitt trigger is off
-  int lock_step_ = 0;
+  GpioLock lock_;
 };
 
 }  // namespace whirl::stm32
