@@ -102,10 +102,10 @@ Reason Flight::first_esc_problem() const {
   for (unsigned i = 0; i < 4; ++i) {
     const std::uint8_t flags = esc_status_[i].flags;
     if (esc_silent_ms_[i] > kEscSilent_ms) return Reason::esc_silent;
-    if ((flags & (esc_wire::kOverCurrent | esc_wire::kUnderVoltage | esc_wire::kDesync)) != 0) {
+    if ((flags & (esc::flag_over_current | esc::flag_under_voltage | esc::flag_desync)) != 0) {
       return Reason::esc_fault;
     }
-    if ((flags & esc_wire::kArmed) == 0) return Reason::esc_not_armed;
+    if ((flags & esc::flag_armed) == 0) return Reason::esc_not_armed;
   }
   return Reason::none;
 }
@@ -202,9 +202,9 @@ void Flight::estimate() {
 }
 
 void Flight::calibrate_on_ground() {
-  const bool turning = std::any_of(esc_status_.begin(), esc_status_.end(), [](const EscStatus& s) {
-    return (s.flags & esc_wire::kTurning) != 0;
-  });
+  const bool turning = std::any_of(
+      esc_status_.begin(), esc_status_.end(),
+      [](const esc::protocol::Status& s) { return (s.flags & esc::flag_turning) != 0; });
   if (turning || imu_frozen_ || fix_age_ms_ > kCaptureFresh_ms) return calibration_.restart();
   const Quaternion q_WB = from_euler(fix_.roll_rad, fix_.pitch_rad, fix_.yaw_rad);
   const Vector3 raw_w = attitude_.w_WB_B_radps() + attitude_.gyro_bias_B_radps();

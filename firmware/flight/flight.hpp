@@ -12,7 +12,7 @@
 #include "firmware/control/mixer.hpp"
 #include "firmware/control/position_controller.hpp"
 #include "firmware/control/reference.hpp"
-#include "firmware/drivers/esc_protocol.hpp"
+#include "firmware/esc/core/protocol.hpp"
 #include "firmware/estimation/attitude_filter.hpp"
 #include "firmware/estimation/ground_calibration.hpp"
 #include "firmware/estimation/position_filter.hpp"
@@ -60,7 +60,9 @@ class Flight {
   void on_fix(const CaptureFix& fix);
   void on_target(const Vector3& p_W_m, float yaw_rad);
   void on_esc_answered(unsigned motor) { esc_silent_ms_[motor] = 0; }
-  void on_esc_status(unsigned motor, const EscStatus& status) { esc_status_[motor] = status; }
+  void on_esc_status(unsigned motor, const esc::protocol::Status& status) {
+    esc_status_[motor] = status;
+  }
   // Commands: none if accepted.
   Reason arm();
   Reason disarm();
@@ -82,7 +84,7 @@ class Flight {
   const PositionFilter& position() const { return position_; }
   const Reference& reference() const { return reference_; }
   const ImuSample& imu() const { return sample_; }
-  const EscStatus& esc_status(unsigned motor) const { return esc_status_[motor]; }
+  const esc::protocol::Status& esc_status(unsigned motor) const { return esc_status_[motor]; }
   bool capture_fresh() const { return fix_age_ms_ < kCaptureLost_ms; }
 
  private:
@@ -128,7 +130,7 @@ class Flight {
   Vector3 target_W_m_ = Vector3::Zero();
   float target_yaw_rad_ = 0.0f;
   std::uint32_t target_age_ms_ = kNever;
-  std::array<EscStatus, 4> esc_status_{};
+  std::array<esc::protocol::Status, 4> esc_status_{};
   std::array<std::uint32_t, 4> esc_silent_ms_{kNever, kNever, kNever, kNever};
 
   Vector3 ground_W_m_ = Vector3::Zero();

@@ -108,7 +108,7 @@ __attribute__((noinline)) void position_task() {
 __attribute__((noinline)) void esc_task(std::uint32_t tick) {
   for (unsigned motor = 0; motor < 4; ++motor) {
     if (escs.take_answered(motor)) flight().on_esc_answered(motor);
-    EscStatus status;
+    esc::protocol::Status status;
     if (escs.take_status(motor, status)) flight().on_esc_status(motor, status);
   }
   if (schedule::setpoints(tick)) std::ignore = escs.write(flight().setpoints());

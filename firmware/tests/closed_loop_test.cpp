@@ -204,7 +204,7 @@ TEST(Flight, RefusesToArmAndSaysWhy) {
   vehicle.run(flight, 0.3);
   EXPECT_EQ(flight.arm(), Reason::imu_not_calibrated);
   vehicle.run(flight, 2.0);
-  flight.on_esc_status(2, {0, 0, esc_wire::kArmed | esc_wire::kUnderVoltage});
+  flight.on_esc_status(2, {0, 0, esc::flag_armed | esc::flag_under_voltage});
   EXPECT_EQ(flight.arm(), Reason::esc_fault);
   flight.on_esc_status(2, {0, 0, 0});
   EXPECT_EQ(flight.arm(), Reason::esc_not_armed);

@@ -198,7 +198,7 @@ TEST(EscBus, TakesAStatusOnceAndOnlyWithItsCrc) {
   std::copy(bytes.begin(), bytes.end(), job.bytes.begin());
   job.bytes[5] = crc8_of({0x2B << 1 | 1, 0xF6, 0xFF, 0x6E, 0x0F, 0x03});
   escs.job_done(job, Status::ok);
-  EscStatus status;
+  esc::protocol::Status status;
   ASSERT_TRUE(escs.take_status(2, status));
   EXPECT_EQ(status.current_mA, -10);
   EXPECT_EQ(status.speed_rpm, 3950);

@@ -9,22 +9,12 @@
 #include <cstdint>
 
 #include "firmware/esc/core/calibration.hpp"
+#include "firmware/esc/core/protocol.hpp"
 #include "firmware/esc/core/speed_controller.hpp"
 #include "firmware/esc/core/supervisor.hpp"
 #include "firmware/esc/core/thrust_estimator.hpp"
 
 namespace fw::esc {
-
-enum Flag : std::uint8_t {  // status flags of the protocol
-  flag_armed = 1 << 0,
-  flag_turning = 1 << 1,
-  flag_saturated = 1 << 2,
-  flag_over_current = 1 << 3,
-  flag_under_voltage = 1 << 4,
-  flag_desync = 1 << 5,
-  flag_uncalibrated = 1 << 6,
-  flag_write_rejected = 1 << 7,
-};
 
 struct Sensed {
   float bus_voltage_V = 0.0f;

@@ -1,8 +1,8 @@
 #include "firmware/esc/image/i2c_slave.hpp"
 
 #include <array>
+#include <span>
 
-#include "firmware/esc/core/core.hpp"
 #include "firmware/esc/image/registers.hpp"
 #include "firmware/hal/interrupts.hpp"
 
@@ -12,16 +12,15 @@ namespace {
 using namespace f103;
 
 constexpr std::uint32_t kPclk1_MHz = 36;
-constexpr std::size_t kStatusBytes = 6;
 
 struct Wire {
   std::uint8_t address = 0;
   std::array<std::uint8_t, 4> received{};
   std::uint8_t received_count = 0;  // saturates at its size: one more than a set-point has
   bool transmitting = false;
-  std::array<std::uint8_t, kStatusBytes> sending{};
+  protocol::StatusBytes sending{};
   std::uint8_t sent = 0;
-  std::array<std::uint8_t, kStatusBytes> next{};  // prepared by publish()
+  protocol::Status next;  // prepared by publish()
   std::uint16_t setpoint = 0;
   bool fresh = false;
   bool write_rejected = false;  // since the last read
@@ -29,20 +28,9 @@ struct Wire {
 };
 constinit Wire wire;
 
-std::uint8_t crc8(std::uint8_t crc, std::uint8_t byte) {
-  crc = static_cast<std::uint8_t>(crc ^ byte);
-  for (int i = 0; i < 8; ++i) {
-    crc = static_cast<std::uint8_t>((crc & 0x80) != 0 ? (crc << 1) ^ 0x07 : crc << 1);
-  }
-  return crc;
-}
-
 void judge_write() {
-  const auto& bytes = wire.received;
-  std::uint8_t crc = crc8(0, static_cast<std::uint8_t>(wire.address << 1));
-  crc = crc8(crc8(crc, bytes[0]), bytes[1]);
-  if (wire.received_count == 3 && bytes[1] <= 7 && bytes[2] == crc) {
-    wire.setpoint = static_cast<std::uint16_t>(bytes[0] << 3 | bytes[1]);
+  const std::span bytes(wire.received.data(), wire.received_count);
+  if (protocol::decode_setpoint(wire.address, bytes, wire.setpoint)) {
     wire.fresh = true;
   } else if (wire.received_count > 0) {
     ++wire.rejected;
@@ -52,17 +40,15 @@ void judge_write() {
 }
 
 void begin_status() {
-  wire.sending = wire.next;
-  if (wire.write_rejected) wire.sending[4] |= flag_write_rejected;
+  protocol::Status status = wire.next;
+  if (wire.write_rejected) status.flags |= flag_write_rejected;
   wire.write_rejected = false;
-  std::uint8_t crc = crc8(0, static_cast<std::uint8_t>(wire.address << 1 | 1));
-  for (std::size_t i = 0; i + 1 < kStatusBytes; ++i) crc = crc8(crc, wire.sending[i]);
-  wire.sending[kStatusBytes - 1] = crc;
+  wire.sending = protocol::encode_status(wire.address, status);
   wire.sent = 0;
 }
 
 void send_next() {
-  const std::uint8_t byte = wire.sent < kStatusBytes ? wire.sending[wire.sent++] : 0xFF;
+  const std::uint8_t byte = wire.sent < wire.sending.size() ? wire.sending[wire.sent++] : 0xFF;
   I2C2::DR::write(byte);
 }
 
@@ -115,15 +101,9 @@ void start(std::uint8_t address_7bit) {
   Nvic<Irq::I2C2_ER>::enable(kPriorityI2c);
 }
 
-void publish(const Status& status) {
+void publish(const protocol::Status& status) {
   const hal::InterruptLock lock;
-  const auto current = static_cast<std::uint16_t>(status.current_mA);
-  wire.next = {static_cast<std::uint8_t>(current),
-               static_cast<std::uint8_t>(current >> 8),
-               static_cast<std::uint8_t>(status.speed_rpm),
-               static_cast<std::uint8_t>(status.speed_rpm >> 8),
-               status.flags,
-               0};
+  wire.next = status;
 }
 
 bool take_setpoint(std::uint16_t& v) {

@@ -5,16 +5,12 @@
 #pragma once
 #include <cstdint>
 
+#include "firmware/esc/core/protocol.hpp"
+
 namespace fw::esc::i2c_slave {
 
-struct Status {
-  std::int16_t current_mA = 0;
-  std::uint16_t speed_rpm = 0;
-  std::uint8_t flags = 0;
-};
-
 void start(std::uint8_t address_7bit);
-void publish(const Status& status);
+void publish(const protocol::Status& status);
 // A valid set-point that has come in since the last call.
 bool take_setpoint(std::uint16_t& v);
 std::uint32_t rejected();

@@ -82,7 +82,7 @@ extern "C" void fw_main() {
   bridge::start();
   sampling::start();
   serial::start();
-  i2c_slave::start(static_cast<std::uint8_t>(0x28 + stored.motor_number));
+  i2c_slave::start(protocol::address_of(stored.motor_number));
   start_watchdog();
   start_tick();
   for (;;) {
