@@ -41,6 +41,7 @@ struct Calibration {
   StaticMap free_air;
   CurrentSense sense;
   ThrustModel rotor{};  // all zero: not identified, modes 4 and 5 fall back to the static map
+  float arming_voltage_V = 15.7f;  // at rest
   Mode mode = Mode::thrust_by_speed;
   bool identified = false;
 };

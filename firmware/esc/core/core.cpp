@@ -22,7 +22,7 @@ float clamped(float x, float low, float high) {
 
 Core::Core(const Calibration& calibration)
     : calibration_(calibration),
-      supervisor_(SupervisorLimits{}),
+      supervisor_({.arming_voltage_V = calibration.arming_voltage_V}),
       estimator_(calibration, kPeriod_s),
       speed_control_(calibration.motor, calibration.free_air, SpeedGains{}, kPeriod_s) {}
 
@@ -50,6 +50,7 @@ bool Core::recalibrate(const Calibration& calibration) {
   const Mode mode = calibration_.mode;
   calibration_ = calibration;
   calibration_.mode = mode;
+  supervisor_.limit({.arming_voltage_V = calibration.arming_voltage_V});
   estimator_ = ThrustEstimator(calibration_, kPeriod_s);
   speed_control_ =
       SpeedController(calibration.motor, calibration.free_air, SpeedGains{}, kPeriod_s);

@@ -21,6 +21,8 @@ class Supervisor {
  public:
   explicit Supervisor(const SupervisorLimits& limits) : limits_(limits) {}
 
+  void limit(const SupervisorLimits& limits) { limits_ = limits; }
+
   // A valid set-point came in, from any source. at_rest: the motor does not turn.
   void on_setpoint(std::uint16_t v, float bus_voltage_V, bool at_rest) {
     silence_ms_ = 0;

@@ -87,12 +87,10 @@ Sensed MotorDrive::sense() {
     speed = commutation_.speed_radps();
     in_sync = commutation_.in_sync();
   }
-  // 0.5/0.5 per sample [Bangura 2017, sec. 3.3.1.1].
-  speed_radps_ = in_sync ? 0.5f * (speed_radps_ + speed) : 0.0f;
   const float per_sample = n > 0 ? 1.0f / static_cast<float>(n) : 0.0f;
   return {.bus_voltage_V = static_cast<float>(bus) * per_sample * sampling::kVolts_per_count,
           .bus_current_A = static_cast<float>(shunt) * per_sample * sampling::kAmperes_per_count,
-          .speed_radps = speed_radps_,
+          .speed_radps = speed_.update(speed, in_sync),
           .in_sync = in_sync};
 }
 

@@ -7,25 +7,10 @@
 
 #include "firmware/esc/core/commutation.hpp"
 #include "firmware/esc/core/core.hpp"
+#include "firmware/esc/core/sensing.hpp"
 #include "firmware/esc/image/sampling.hpp"
 
 namespace fw::esc {
-
-// The amplifier's offset wanders by amperes: averaged whenever the motor stands without current.
-class ZeroCurrent {
- public:
-  void note(float current_A) {
-    // 0.1 s at first, then 2 s: a quick start and a quiet value.
-    const float blend = settled_ms_ < 500 ? 0.01f : 0.0005f;
-    if (settled_ms_ < 500) ++settled_ms_;
-    offset_A_ += blend * (current_A - offset_A_);
-  }
-  float offset_A() const { return offset_A_; }
-
- private:
-  float offset_A_ = 0.0f;
-  std::uint16_t settled_ms_ = 0;
-};
 
 class MotorDrive {
  public:
@@ -48,7 +33,7 @@ class MotorDrive {
   int zero_counts_ = 0;  // of the shunt, while off: the trip counts from there
   std::uint8_t over_ = 0;
   bool tripped_ = false;
-  float speed_radps_ = 0.0f;
+  SmoothSpeed speed_;
 };
 
 }  // namespace fw::esc

@@ -196,5 +196,19 @@ TEST(Core, HoldsPowerInPowerMode) {
                    stated(0.4, "2 %: filters and set-point step")));
 }
 
+TEST(Core, ArmsAtTheVoltageOfItsCalibration) {
+  Calibration three_cells;
+  three_cells.arming_voltage_V = 11.8f;
+  Bench bench(three_cells, 12.4);
+  bench.arm();
+  EXPECT_TRUE(bench.core.flags() & flag_armed);
+  Bench four_cells({}, 12.4);
+  four_cells.arm();
+  EXPECT_FALSE(four_cells.core.flags() & flag_armed);
+  ASSERT_TRUE(four_cells.core.recalibrate(three_cells));
+  four_cells.arm();
+  EXPECT_TRUE(four_cells.core.flags() & flag_armed);
+}
+
 }  // namespace
 }  // namespace fw::esc
