@@ -10,9 +10,13 @@
 namespace whirl {
 namespace {
 
+Result<stand::StandParams> stand_of(const cli::Setup& setup) {
+  return stand::read_stand(*setup.plan.stand, setup.root + "/test_plans/propellers");
+}
+
 Result<std::unique_ptr<World>> make_world(const cli::Setup& setup) {
   if (setup.plan.stand) {
-    const auto params = stand::read_stand(*setup.plan.stand, setup.root + "/test_plans/propellers");
+    const auto params = stand_of(setup);
     if (!params) return params.error();
     return std::unique_ptr<World>(std::make_unique<stand::StandWorld>(params.value(), setup.seed));
   }
@@ -24,6 +28,13 @@ Result<std::unique_ptr<World>> make_world(const cli::Setup& setup) {
 Result<std::unique_ptr<Target>> make_target(const cli::Setup& setup) {
   VirtualBoardOptions options;
   options.board_json = setup.board_text;
+  if (setup.plan.stand) {
+    const auto params = stand_of(setup);
+    if (!params) return params.error();
+    auto text = stand::with_stage(setup.board_text, params.value().motor, params.value().stage);
+    if (!text) return text.error();
+    options.board_json = std::move(text.value());
+  }
   options.any_qemu_version = std::getenv("WHIRL_ANY_QEMU") != nullptr;
   return std::unique_ptr<Target>(std::make_unique<VirtualBoard>(std::move(options)));
 }

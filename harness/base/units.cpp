@@ -139,6 +139,12 @@ std::string quoted(std::string_view text) {
   return "'" + std::string(text) + "'";
 }
 
+// from_chars takes no sign of plus, people write it: "+12 %".
+std::from_chars_result read_number(std::string_view body, double& number) {
+  const bool plus = body.size() > 1 && body[0] == '+' && body[1] != '-' && body[1] != '+';
+  return std::from_chars(body.data() + (plus ? 1 : 0), body.data() + body.size(), number);
+}
+
 }  // namespace
 
 const char* name(Dimension dimension) {
@@ -156,7 +162,7 @@ const char* si_suffix(Dimension dimension) {
 std::string unit_symbol(std::string_view text) {
   const std::string_view body = trimmed(text);
   double number = 0.0;
-  const char* end = std::from_chars(body.data(), body.data() + body.size(), number).ptr;
+  const char* end = read_number(body, number).ptr;
   return std::string(trimmed({end, body.data() + body.size()}));
 }
 
@@ -179,7 +185,7 @@ std::vector<std::string_view> units_of(Dimension dimension) {
 Result<Quantity> parse_quantity(std::string_view text, std::string_view place) {
   const std::string_view body = trimmed(text);
   double number = 0.0;
-  const auto [end, status] = std::from_chars(body.data(), body.data() + body.size(), number);
+  const auto [end, status] = read_number(body, number);
   if (status != std::errc{} || !std::isfinite(number)) {
     return bad(place, quoted(text) + " does not start with a number", "write it as \"50 ms\"");
   }

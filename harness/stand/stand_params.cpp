@@ -39,6 +39,7 @@ Result<StandParams> read_stand(const lua::Table& t, const std::string& propeller
   StandParams p;
   const std::string prop = t.text("prop");
   read_feed(t, p.battery);
+  p.stage = read_stage(t);
   p.mode = read_mode(t);
   p.address = static_cast<std::uint8_t>(t.integer_or("address", p.address, 0x08, 0x77));
   p.i2c = static_cast<std::uint16_t>(t.integer_or("i2c", p.i2c, 1, 3));

@@ -3,6 +3,7 @@
 //   stand = { prop = "hk_10x4.5", battery = "4s_2200", depth_of_discharge = "0 %" }  or
 //   stand = { prop = "hk_10x4.5", supply = "16 V", supply_resistance = "10 mohm",
 //             mode = "thrust_by_rpm", address = 0x29, i2c = 2, serial = 1 }
+//   and optionally motor = { ... }, shunt = { ... }: stage_params.hpp
 //   Mode     what the ESC is set to: it scales the set-points on I2C (esc_codec.hpp)
 #pragma once
 #include <cstdint>
@@ -11,6 +12,7 @@
 
 #include "harness/base/result.hpp"
 #include "harness/lua/table.hpp"
+#include "harness/stand/stage_params.hpp"
 #include "io_bridges/protocols/esc_codec.hpp"
 #include "plant/battery/battery_params.hpp"
 #include "plant/rotor/blade.hpp"
@@ -22,6 +24,7 @@ struct StandParams {
   std::shared_ptr<const plant::Blade> blade;
   plant::BatteryParams battery;
   plant::LoadCellParams cell;
+  StageParams stage;  // what differs from the board's own motor and shunt
   io::EscMode mode = io::EscMode::thrust_by_rpm;
   std::uint8_t address = 0x29;
   std::uint16_t i2c = 2, serial = 1, motor = 1;

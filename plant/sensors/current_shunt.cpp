@@ -8,7 +8,8 @@ CurrentShunt::CurrentShunt(const CurrentShuntParams& p, std::uint64_t seed, cons
     : params_(p),
       wander_(p.wander_A, p.wander_time_s, seed, name + ".wander"),
       noise_(seed, name + ".noise"),
-      gain_(1.0 + draw_uniform(-p.gain_tolerance, p.gain_tolerance, seed, name + ".gain")),
+      gain_(1.0 + p.gain_error +
+            draw_uniform(-p.gain_tolerance, p.gain_tolerance, seed, name + ".gain")),
       offset_A_(draw_uniform(p.offset_low_A, p.offset_high_A, seed, name + ".offset")),
       excess_A_(draw_normal(p.warm_up_A, seed, name + ".warm_up")) {}
 

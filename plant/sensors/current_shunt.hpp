@@ -16,6 +16,7 @@ namespace whirl::plant {
 struct CurrentShuntParams {
   double pole_Hz = 1000.0;
   double gain_tolerance = 0.10;                    // uniform, drawn once
+  double gain_error = 0.0;                         // and one that is known
   double offset_low_A = 4.1, offset_high_A = 4.6;  // uniform, drawn once: where it settles
   double warm_up_A = 0.4;        // standard deviation of the offset's excess at power-up
   double warm_up_time_s = 30.0;  // settled in about 100 s

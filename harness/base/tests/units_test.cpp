@@ -26,6 +26,7 @@ TEST(Units, AreTurnedIntoSI) {
       {"25 degC", Dimension::temperature, 298.15},
       {"-3", Dimension::none, -3.0},
       {"0.0125 kg m2", Dimension::inertia, 0.0125},
+      {"+12 %", Dimension::ratio, 0.12},
   };
   for (const Row& row : kRows) {
     const auto got = parse_quantity(row.text, "test");
@@ -37,7 +38,7 @@ TEST(Units, AreTurnedIntoSI) {
 
 TEST(Units, RefuseWhatIsNotAQuantity) {
   for (const char* text :
-       {"", "ms", "five ms", "5 furlong", "5 m s", "nan s", "inf m", "1e999 m"}) {
+       {"", "ms", "five ms", "+-5 ms", "+", "5 furlong", "5 m s", "nan s", "inf m", "1e999 m"}) {
     EXPECT_FALSE(parse_quantity(text, "test").ok()) << text;
   }
 }

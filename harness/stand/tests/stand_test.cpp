@@ -2,10 +2,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
 #include <vector>
 
 #include "harness/base/near.hpp"
 #include "harness/stand/stand_world.hpp"
+#include "plant/motor/motor_params.hpp"
 
 namespace whirl::stand {
 namespace {
@@ -149,6 +152,28 @@ TEST(Stand, DipLowersTheSupplyWhileItLasts) {
   EXPECT_EQ(b.world.applied_faults(), std::vector<std::uint32_t>{7});
 }
 
+// What the plan says of motor and shunt, and nothing else, goes to the power stage of that motor.
+TEST(Stand, MotorAndShuntOfThePlanReachTheBoardsPowerStage) {
+  const StandParams stand = params(R"({ prop = "hk_10x4.5", supply = "16 V",
+      motor = { inertia = "+12 %", resistance = "90 mohm", kv_rpm_per_V = 950 },
+      shunt = { gain = "-5 %" } })");
+  const std::string board = R"({ "devices": [ { "type": "serial" },
+      { "type": "power_stage", "motor": 1, "params": { "inductance": 2e-5, "resistance": 1 } } ] })";
+  const auto text = with_stage(board, stand.motor, stand.stage);
+  ASSERT_TRUE(text) << text.error().message();
+  const auto stage = nlohmann::json::parse(text.value())["devices"][1]["params"];
+  EXPECT_EQ(stage.size(), 5u);
+  const auto is = [&](const char* key, double want) {
+    EXPECT_TRUE(near(stage[key].get<double>(), want, round_off(4, want))) << key;
+  };
+  is("inductance", 2e-5);
+  is("resistance", 0.09);
+  is("inertia", 1.12 * plant::MotorParams{}.inertia_kgm2);
+  is("torque_constant", 60.0 / (2.0 * std::numbers::pi * 950.0));
+  is("shunt.gain_error", -0.05);
+  EXPECT_FALSE(with_stage(board, 2, stand.stage));  // no such motor
+}
+
 TEST(Stand, MistakesAreNamed) {
   const auto complaint = [](const std::string& text) {
     const auto read = read_stand(table(text), kPropellers);
@@ -158,6 +183,13 @@ TEST(Stand, MistakesAreNamed) {
   EXPECT_NE(complaint(R"({ prop = "hk_99", supply = "16 V" })").find("hk_99"), std::string::npos);
   EXPECT_NE(complaint(R"({ prop = "hk_10x4.5", supply = "16 V", moed = "rpm" })").find("moed"),
             std::string::npos);
+  const auto motor = [&](const std::string& inner) {
+    return complaint(R"({ prop = "hk_10x4.5", supply = "16 V", motor = { )" + inner + " } }");
+  };
+  EXPECT_NE(motor(R"(inertai = "+12 %")").find("motor.inertai"), std::string::npos);
+  EXPECT_NE(motor(R"(inertia = "12 V")").find("kg m2"), std::string::npos);
+  EXPECT_NE(motor(R"(inertia = "-100 %")").find("outside"), std::string::npos);
+  EXPECT_NE(motor(R"(resistance = "0 ohm")").find("positive"), std::string::npos);
   Bench b;
   const auto wrong = b.world.command(table(R"({ duty = "20 %" })"), 0);
   ASSERT_FALSE(wrong);

@@ -34,6 +34,9 @@ bool set_one(PowerStageParams& p, const std::string& key, double value) {
   if (key == "bus_capacitance") return p.bus_capacitance_F = value, true;
   if (key == "shunt.offset") return p.shunt.offset_low_A = p.shunt.offset_high_A = value, true;
   if (key == "shunt.gain") return p.shunt.gain_tolerance = value, true;
+  if (key == "shunt.gain_error") {
+    return p.shunt.gain_error = value, p.shunt.gain_tolerance = 0.0, true;
+  }
   if (key == "shunt.warm_up") return p.shunt.warm_up_A = value, true;
   if (key == "shunt.wander") return p.shunt.wander_A = value, true;
   if (key == "shunt.noise") return p.shunt.noise_A = value, p.shunt.noise_per_A = 0.0, true;
@@ -49,7 +52,7 @@ Result<PowerStageParams> power_stage_params(const std::map<std::string, double>&
     if (!set_one(result, key, value)) {
       return Error{ErrorKind::bad_input, place, "unknown parameter '" + key + "'",
                    "torque_constant, resistance, inductance, no_load_current, inertia, "
-                   "bus_capacitance, shunt { offset, gain, noise, warm_up, wander }"};
+                   "bus_capacitance, shunt { offset, gain, gain_error, noise, warm_up, wander }"};
     }
   }
   if (!(result.bus_capacitance_F >= 10e-6 && result.bus_capacitance_F <= 0.1)) {

@@ -36,7 +36,8 @@ struct PowerStageParams {
 };
 
 // From a device's parameters: torque_constant, resistance, inductance, no_load_current, inertia,
-// bus_capacitance; shunt.offset, shunt.gain, shunt.noise, shunt.warm_up, shunt.wander.
+// bus_capacitance; shunt.offset, shunt.gain (a tolerance to draw from), shunt.gain_error (this part's
+// own, nothing is drawn), shunt.noise, shunt.warm_up, shunt.wander.
 Result<PowerStageParams> power_stage_params(const std::map<std::string, double>& params,
                                             const std::string& place);
 
