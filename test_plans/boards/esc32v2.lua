@@ -8,7 +8,7 @@ return {
   devices = {
     { name = "stage", type = "power_stage", bus = "pins", motor = 1 },
     { name = "throttle", type = "i2c_master", bus = "i2c2", params = { rate = "400 kHz" } },
-    { name = "terminal", type = "serial", bus = "usart1", baud = "115200 baud" },
+    { name = "terminal", type = "serial", bus = "usart1", baud = "921600 baud" },
   },
-  watch = { "fw::esc::control_task" }, -- plans add the tasks of 3 to 20 kHz where they judge them
+  watch = { "fw::esc::control_task", "fw::esc::sampling_task", "fw::esc::commutation_task" },
 }

@@ -166,6 +166,7 @@ Drive Core::tick(const Sensed& sensed) {
   supervisor_.tick();
   const CurrentSense& sense = calibration_.sense;
   const float bus_A = sense.gain * (sensed.bus_current_A - sense.offset_A);
+  measured_A_ = bus_A;
   bus_current_A_ += kPeriod_s / (kStatusFilter_s + kPeriod_s) * (bus_A - bus_current_A_);
   guard(sensed);
 

@@ -46,7 +46,10 @@ class Core {
 
   std::uint8_t flags() const;
   Mode mode() const { return calibration_.mode; }
-  float bus_current_A() const { return bus_current_A_; }  // filtered
+  float bus_current_A() const { return bus_current_A_; }    // filtered
+  float measured_current_A() const { return measured_A_; }  // of the bus, calibrated, last period
+  const Sensed& sensed() const { return sensed_; }
+  const Drive& drive() const { return drive_; }
   float bus_voltage_V() const { return sensed_.bus_voltage_V; }
   float speed_radps() const { return sensed_.speed_radps; }
   bool at_rest() const { return sensed_.speed_radps < 10.0f; }
@@ -74,6 +77,7 @@ class Core {
   Drive drive_{};
   float command_value_ = 0.0f;
   bool command_given_ = false;
+  float measured_A_ = 0.0f;
   float bus_current_A_ = 0.0f;
   float wanted_radps_ = 0.0f;
   std::uint16_t over_current_ms_ = 0;

@@ -23,6 +23,7 @@ class ThrustEstimator {
   float CT() const { return CT_; }            // smoothed; never 0 after the first update
   float thrust_N() const { return thrust_N_; }
   float current_A() const { return current_.current_A(); }
+  float acceleration_radps2() const { return speed_.acceleration_radps2(); }
   bool observable() const { return last_.status == Estimate::converged; }
   const ThrustEstimate& solution() const { return last_; }
 

@@ -3,44 +3,17 @@
 #include <array>
 
 #include "firmware/esc/core/parameters.hpp"
+#include "firmware/esc/image/registers.hpp"
 #include "firmware/esc/image/serial.hpp"
+#include "firmware/esc/image/stream.hpp"
+#include "firmware/esc/image/text_number.hpp"
+#include "firmware/hal/interrupts.hpp"
 
 namespace fw::esc {
 namespace {
 
-// "3.25", "-1.2e-7": what people and the stand write. False: not a number, or something follows.
-bool parse(std::string_view text, float& value) {
-  std::size_t i = 0;
-  const bool negative = !text.empty() && text[0] == '-';
-  if (negative) ++i;
-  float number = 0.0f;
-  int digits = 0, scale = 0;
-  bool fraction = false;
-  for (; i < text.size(); ++i) {
-    if (text[i] >= '0' && text[i] <= '9') {
-      number = 10.0f * number + static_cast<float>(text[i] - '0');
-      scale -= fraction ? 1 : 0;
-      ++digits;
-    } else if (text[i] == '.' && !fraction) {
-      fraction = true;
-    } else {
-      break;
-    }
-  }
-  if (digits == 0) return false;
-  if (i < text.size() && (text[i] == 'e' || text[i] == 'E')) {
-    float exponent = 0.0f;
-    const std::string_view rest(text.data() + i + 1, text.size() - i - 1);
-    if (rest.find_first_of(".eE") != std::string_view::npos || !parse(rest, exponent)) return false;
-    scale += static_cast<int>(exponent);
-    i = text.size();
-  }
-  if (i != text.size() || scale > 30 || scale < -45) return false;
-  for (; scale > 0; --scale) number *= 10.0f;
-  for (; scale < 0; ++scale) number /= 10.0f;
-  value = negative ? -number : number;
-  return true;
-}
+// The core belongs to the tick.
+using TickLock = hal::PriorityLock<f103::kPriorityControl>;
 
 class Line {  // what is being answered
  public:
@@ -63,13 +36,17 @@ class Line {  // what is being answered
     while (n > 0) text({&digits[--n], 1});
     return *this;
   }
+  Line& real(float value) {
+    NumberText digits;
+    return text(write_number(value, digits));
+  }
   ~Line() {
     text("\r\n");
     serial::put({text_.data(), length_});  // no room: the asker has to ask again
   }
 
  private:
-  std::array<char, 96> text_{};
+  std::array<char, 128> text_{};  // the longest answer is commands' list
   std::size_t length_ = 0;
 };
 
@@ -117,18 +94,86 @@ void answer(bool good) {
   Line().text(good ? "ok" : "refused");
 }
 
+bool recalibrate(const Calibration& changed, Core& core, Settings& settings) {
+  const TickLock lock;
+  if (!core.recalibrate(changed)) return false;
+  settings.calibration = changed;
+  return true;
+}
+
 bool set_parameter(const Words& words, Core& core, Settings& settings) {
   float value = 0.0f;
-  if (!parse(words.second, value)) return false;
+  if (!parse_number(words.second, value)) return false;
   for (const Parameter& parameter : kParameters) {
     if (parameter.name != words.first) continue;
     Calibration changed = settings.calibration;
     parameter.in(changed) = value;
-    if (!core.recalibrate(changed)) return false;
-    settings.calibration = changed;
-    return true;
+    return recalibrate(changed, core, settings);
   }
   return false;
+}
+
+bool get(std::string_view name, Settings& settings) {
+  const bool all = name == "all";
+  bool found = false;
+  for (const Parameter& parameter : kParameters) {
+    if (!all && parameter.name != name) continue;
+    Line().text(parameter.name).text(" ").real(parameter.in(settings.calibration));
+    found = true;
+  }
+  const struct {
+    std::string_view name;
+    std::int32_t value;
+  } whole[] = {{"mode", static_cast<std::int32_t>(settings.calibration.mode)},
+               {"motor", static_cast<std::int32_t>(settings.motor_number)},
+               {"identified", settings.calibration.identified ? 1 : 0}};
+  for (const auto& entry : whole) {
+    if (!all && entry.name != name) continue;
+    Line().text(entry.name).text(" ").number(entry.value);
+    found = true;
+  }
+  return found;
+}
+
+bool set_mode(float value, Core& core, Settings& settings) {
+  const TickLock lock;
+  const bool taken = value >= 0.0f && value <= 5.0f &&
+                     core.set_mode(static_cast<Mode>(static_cast<std::uint8_t>(value)));
+  settings.calibration.mode = core.mode();
+  return taken;
+}
+
+bool set_motor(float value, Settings& settings) {
+  const bool valid = value >= 1.0f && value <= 4.0f;
+  if (valid) settings.motor_number = static_cast<std::uint32_t>(value);
+  return valid;  // the address changes at the next power-up
+}
+
+bool set_identified(bool identified, Core& core, Settings& settings) {
+  Calibration changed = settings.calibration;
+  changed.identified = identified;
+  return recalibrate(changed, core, settings);
+}
+
+bool save(const Core& core, const Settings& settings) {
+  const hal::InterruptLock lock;  // the flash answers nobody meanwhile
+  return core.at_rest() && settings::save(settings);
+}
+
+bool arm(Core& core) {
+  const TickLock lock;
+  core.arm_by_hand();
+  return core.supervisor().armed();
+}
+
+bool setpoint(const ModeWord& mode, float value, Core& core) {
+  const TickLock lock;
+  return core.command(mode.mode, mode.scale * value);
+}
+
+void stop(Core& core) {
+  const TickLock lock;
+  core.on_setpoint(0);
 }
 
 }  // namespace
@@ -136,37 +181,29 @@ bool set_parameter(const Words& words, Core& core, Settings& settings) {
 void execute(std::string_view text, Core& core, Settings& settings) {
   const Words words = split(text);
   float value = 0.0f;
-  const bool number = parse(words.first, value);
+  const bool number = parse_number(words.first, value);
   for (const ModeWord& mode : kModes) {
-    if (mode.verb == words.verb)
-      return answer(number && core.command(mode.mode, mode.scale * value));
+    if (mode.verb == words.verb) return answer(number && setpoint(mode, value, core));
   }
   if (words.verb == "status") return report_status(core);
-  if (words.verb == "stop") return core.on_setpoint(0), answer(true);
-  if (words.verb == "arm") return core.arm_by_hand(), answer(core.supervisor().armed());
+  if (words.verb == "stop") return stop(core), answer(true);
+  if (words.verb == "arm") return answer(arm(core));
   if (words.verb == "set") return answer(set_parameter(words, core, settings));
+  if (words.verb == "get") {
+    if (!get(words.first, settings)) answer(false);
+    return;
+  }
+  if (words.verb == "stream") return answer(number && stream::set_rate(value));
   if (words.verb == "watch" && number) return core.watch(value != 0.0f), answer(true);
-  if (words.verb == "mode" && number) {
-    const bool taken = value >= 0.0f && value <= 5.0f &&
-                       core.set_mode(static_cast<Mode>(static_cast<std::uint8_t>(value)));
-    settings.calibration.mode = core.mode();
-    return answer(taken);
-  }
-  if (words.verb == "motor" && number) {
-    const bool valid = value >= 1.0f && value <= 4.0f;
-    if (valid) settings.motor_number = static_cast<std::uint32_t>(value);
-    return answer(valid);  // the address changes at the next power-up
-  }
+  if (words.verb == "mode" && number) return answer(set_mode(value, core, settings));
+  if (words.verb == "motor" && number) return answer(set_motor(value, settings));
   if (words.verb == "identified" && number) {
-    Calibration changed = settings.calibration;
-    changed.identified = value != 0.0f;
-    const bool taken = core.recalibrate(changed);
-    if (taken) settings.calibration = changed;
-    return answer(taken);
+    return answer(set_identified(value != 0.0f, core, settings));
   }
-  if (words.verb == "save") return answer(core.at_rest() && settings::save(settings));
+  if (words.verb == "save") return answer(save(core, settings));
   Line().text(
-      "unknown: duty rpm thrust power st | arm stop status mode set watch motor identified save");
+      "unknown: duty rpm thrust power st | arm stop status mode set get stream watch motor "
+      "identified save");
 }
 
 }  // namespace fw::esc

@@ -1,8 +1,11 @@
-// The command line: one line in, one answer out. Numbers are read and written by hand: no printf.
+// The command line: one line in, one answer out ("ok", "refused", or what was asked for).
 //
 //   duty 20 | rpm 3500 | thrust 2.0 | power 12.0 | st 2.0   set-point in its mode (25 zeros arm: `arm`)
-//   mode 0..5 | status | stop | arm | watch 0|1 | save | motor 1..4 | zero
-//   set NAME VALUE | get NAME                               calibration, by the names of calibration.hpp
+//   mode 0..5 | status | stop | arm | watch 0|1 | save | motor 1..4 | identified 0|1
+//   set NAME VALUE     calibration, by the names of core/parameters.hpp
+//   get NAME           "NAME VALUE", the same bits when set again; also mode, motor, identified
+//   get all            one such line for each
+//   stream HZ          binary frames (stream_frame.hpp), up to 1000 a second; 0 stops
 #pragma once
 #include <string_view>
 
@@ -11,7 +14,8 @@
 
 namespace fw::esc {
 
-// The answer is queued on the serial line.
+// The answer is queued on the serial line. Called without a lock; what the tick shares is changed
+// under one that leaves commutation and sampling free.
 void execute(std::string_view line, Core& core, Settings& settings);
 
 }  // namespace fw::esc

@@ -3,7 +3,7 @@
 //   TIM2     commutation, most urgent
 //   ADC1_2   20 kHz: floating phase, bus, shunt; finds zero crossings, trips on over-current
 //   SysTick  1 kHz: the control core; feeds the watchdog
-//   Main     the command line, otherwise asleep
+//   Main     the command line and the stream, otherwise asleep
 #include "firmware/esc/core/core.hpp"
 #include "firmware/esc/image/bridge.hpp"
 #include "firmware/esc/image/clock.hpp"
@@ -14,7 +14,7 @@
 #include "firmware/esc/image/sampling.hpp"
 #include "firmware/esc/image/serial.hpp"
 #include "firmware/esc/image/settings.hpp"
-#include "firmware/hal/interrupts.hpp"
+#include "firmware/esc/image/stream.hpp"
 
 namespace {
 
@@ -27,6 +27,31 @@ Core* core = nullptr;
 Settings stored;
 MotorDrive drive;
 ZeroCurrent zero;
+std::uint32_t ticks = 0;
+
+StreamSample sample(float raw_current_A) {
+  const ThrustEstimator& found = core->estimator();
+  const ThrustEstimate& solution = found.solution();
+  return {.tick = ticks,
+          .bus_voltage_V = core->bus_voltage_V(),
+          .raw_current_A = raw_current_A,
+          .zero_current_A = zero.offset_A(),
+          .bus_current_A = core->measured_current_A(),
+          .winding_current_A = found.current_A(),
+          .duty = core->drive().energised ? core->drive().duty : 0.0f,
+          .speed_radps = core->speed_radps(),
+          .wanted_speed_radps = core->wanted_speed_radps(),
+          .acceleration_radps2 = found.acceleration_radps2(),
+          .power_W = found.power_W(),
+          .CP = found.CP(),
+          .CT = found.CT(),
+          .thrust_N = found.thrust_N(),
+          .inflow_ratio = solution.ls,
+          .solver_status = static_cast<std::uint8_t>(solution.status),
+          .iterations = solution.iterations,
+          .flags = core->flags(),
+          .mode = static_cast<std::uint8_t>(core->mode())};
+}
 
 void start_tick() {
   using namespace f103;
@@ -46,12 +71,15 @@ __attribute__((noinline)) void control_task() {
   Sensed sensed = drive.sense();
   if (drive.tripped()) core->latch(Latched::over_current);
   if (!drive.energised() && core->at_rest()) zero.note(sensed.bus_current_A);
+  const float raw_current_A = sensed.bus_current_A;
   sensed.bus_current_A -= zero.offset_A();
   const Drive wanted = core->tick(sensed);
   drive.follow(wanted);
   i2c_slave::publish({static_cast<std::int16_t>(1000.0f * core->bus_current_A()),
                       static_cast<std::uint16_t>(core->speed_radps() / kRadps_per_rpm),
                       core->flags()});
+  ++ticks;
+  if (stream::due()) stream::note(sample(raw_current_A));
 }
 
 __attribute__((noinline)) void sampling_task() {
@@ -86,9 +114,9 @@ extern "C" void fw_main() {
   start_watchdog();
   start_tick();
   for (;;) {
+    stream::send();
     const std::string_view line = serial::take_line();
     if (!line.empty()) {
-      const hal::InterruptLock lock;  // the core belongs to the tick
       execute(line, *core, stored);
     } else {
       __asm volatile("wfi");

@@ -28,6 +28,7 @@ struct RCC {
                                  PLLMUL9 = 7u << 18;
   static constexpr std::uint32_t AFIOEN = bit(0), IOPAEN = bit(2), IOPBEN = bit(3), ADC1EN = bit(9),
                                  ADC2EN = bit(10), USART1EN = bit(14);
+  static constexpr std::uint32_t DMA1EN = bit(0);
   static constexpr std::uint32_t TIM2EN = bit(0), TIM4EN = bit(2), I2C2EN = bit(22);
 };
 
@@ -136,14 +137,32 @@ struct I2C2 {
 
 struct USART1 {
   static constexpr std::uint32_t base = 0x4001'3800;
-  using SR = Reg32<base + 0x00>;
   using DR = Reg32<base + 0x04>;
   using BRR = Reg32<base + 0x08>;
   using CR1 = Reg32<base + 0x0C>;
-  static constexpr std::uint32_t RXNE = bit(5), TXE = bit(7), ORE = bit(3);
-  static constexpr std::uint32_t RE = bit(2), TE = bit(3), RXNEIE = bit(5), TXEIE = bit(7),
-                                 UE = bit(13);
+  using CR3 = Reg32<base + 0x14>;
+  static constexpr std::uint32_t RE = bit(2), TE = bit(3), UE = bit(13);
+  static constexpr std::uint32_t DMAR = bit(6), DMAT = bit(7);
 };
+
+struct DMA1 {
+  static constexpr std::uint32_t base = 0x4002'0000;
+  using IFCR = Reg32<base + 0x04>;
+};
+
+template <unsigned kChannel>
+struct DmaChannel {
+  static constexpr std::uint32_t base = DMA1::base + 0x08 + 0x14 * (kChannel - 1);
+  using CCR = Reg32<base + 0x00>;
+  using CNDTR = Reg32<base + 0x04>;
+  using CPAR = Reg32<base + 0x08>;
+  using CMAR = Reg32<base + 0x0C>;
+  static constexpr std::uint32_t EN = bit(0), TCIE = bit(1), DIR = bit(4), CIRC = bit(5),
+                                 MINC = bit(7);
+  static constexpr std::uint32_t CGIF = bit(4 * (kChannel - 1));
+};
+using SerialOut = DmaChannel<4>;  // requests of USART1: RM0008 table 78
+using SerialIn = DmaChannel<5>;
 
 struct SysTick {
   using CTRL = Reg32<0xE000'E010>;
@@ -154,11 +173,11 @@ struct SysTick {
 };
 
 enum class Irq : std::uint8_t {
+  DMA1_Channel4 = 14,
   ADC1_2 = 18,
   TIM2_Global = 28,
   I2C2_EV = 33,
-  I2C2_ER = 34,
-  USART1_Global = 37
+  I2C2_ER = 34
 };
 inline constexpr unsigned kIrqCount = 43;
 

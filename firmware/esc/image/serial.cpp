@@ -1,6 +1,7 @@
 #include "firmware/esc/image/serial.hpp"
 
 #include <array>
+#include <bit>
 
 #include "firmware/esc/image/registers.hpp"
 #include "firmware/hal/interrupts.hpp"
@@ -11,62 +12,59 @@ namespace {
 using namespace f103;
 
 constexpr std::uint32_t kPclk2_Hz = 72'000'000;
+constexpr std::size_t kReceiveSize = 256, kSendSize = 1024;  // powers of two
 
-template <std::size_t kSize>
-class Ring {  // one writer, one reader; kSize is a power of two
- public:
-  bool push(char c) {
-    if (free() == 0) return false;
-    bytes_[head_++ % kSize] = c;
-    return true;
-  }
-  bool pop(char& c) {
-    if (head_ == tail_) return false;
-    c = bytes_[tail_++ % kSize];
-    return true;
-  }
-  std::size_t free() const { return kSize - (head_ - tail_); }
+constinit std::array<char, kReceiveSize> received{};
+constinit std::size_t taken = 0;  // place in `received`
 
- private:
-  std::array<char, kSize> bytes_{};
-  std::size_t head_ = 0, tail_ = 0;
-};
+constinit std::array<char, kSendSize> to_send{};
+constinit std::size_t head = 0, tail = 0;  // ever queued, ever sent
+constinit std::size_t under_way = 0;       // what the DMA has now
 
-constinit Ring<64> received;
-constinit Ring<256> to_send;
 constinit std::array<char, 48> line{};
 constinit std::size_t line_length = 0;
 constinit bool line_spoilt = false;  // too long: dropped as a whole
 
-void on_interrupt() {
-  const std::uint32_t sr = USART1::SR::read();
-  if ((sr & (USART1::RXNE | USART1::ORE)) != 0) {
-    received.push(static_cast<char>(USART1::DR::read()));
-  }
-  if ((sr & USART1::TXE) != 0 && USART1::CR1::has(USART1::TXEIE)) {
-    char c = 0;
-    if (to_send.pop(c)) {
-      USART1::DR::write(static_cast<std::uint8_t>(c));
-    } else {
-      USART1::CR1::clear(USART1::TXEIE);
-    }
-  }
+void send_more() {
+  if (under_way != 0 || head == tail) return;
+  const std::size_t from = tail % kSendSize;
+  under_way = head - tail < kSendSize - from ? head - tail : kSendSize - from;
+  SerialOut::CCR::write(0);
+  SerialOut::CMAR::write(std::bit_cast<std::uint32_t>(to_send.data() + from));
+  SerialOut::CNDTR::write(under_way);
+  SerialOut::CCR::write(SerialOut::MINC | SerialOut::DIR | SerialOut::TCIE | SerialOut::EN);
+}
+
+void on_sent() {
+  DMA1::IFCR::write(SerialOut::CGIF);
+  tail += under_way;
+  under_way = 0;
+  send_more();
 }
 
 }  // namespace
 
 void start() {
   RCC::APB2ENR::set(RCC::USART1EN);
+  RCC::AHBENR::set(RCC::DMA1EN);
   GPIOA::configure(9, kAlternate);
   GPIOA::configure(10, kInputFloating);
   USART1::BRR::write((kPclk2_Hz + kBaud / 2) / kBaud);
-  USART1::CR1::write(USART1::UE | USART1::TE | USART1::RE | USART1::RXNEIE);
-  Nvic<Irq::USART1_Global>::enable(kPrioritySerial);
+  USART1::CR3::write(USART1::DMAT | USART1::DMAR);
+  SerialOut::CPAR::write(USART1::DR::address);
+  SerialIn::CPAR::write(USART1::DR::address);
+  SerialIn::CMAR::write(std::bit_cast<std::uint32_t>(received.data()));
+  SerialIn::CNDTR::write(kReceiveSize);
+  SerialIn::CCR::write(SerialIn::MINC | SerialIn::CIRC | SerialIn::EN);
+  USART1::CR1::write(USART1::UE | USART1::TE | USART1::RE);
+  Nvic<Irq::DMA1_Channel4>::enable(kPrioritySerial);
 }
 
 std::string_view take_line() {
-  char c = 0;
-  while (received.pop(c)) {
+  const std::size_t end = (kReceiveSize - SerialIn::CNDTR::read()) % kReceiveSize;
+  while (taken != end) {
+    const char c = received[taken];
+    taken = (taken + 1) % kReceiveSize;
     if (c == '\r' || c == '\n') {
       const std::string_view done(line.data(), line_spoilt ? 0 : line_length);
       line_length = 0;
@@ -81,16 +79,17 @@ std::string_view take_line() {
   return {};
 }
 
-bool put(std::string_view text) {
+bool put(std::string_view bytes) {
+  if (kSendSize - (head - tail) < bytes.size()) return false;  // `tail` only makes more room
+  for (std::size_t i = 0; i < bytes.size(); ++i) to_send[(head + i) % kSendSize] = bytes[i];
   const hal::InterruptLock lock;
-  if (to_send.free() < text.size()) return false;
-  for (const char c : text) to_send.push(c);
-  USART1::CR1::set(USART1::TXEIE);
+  head += bytes.size();
+  send_more();
   return true;
 }
 
 }  // namespace fw::esc::serial
 
-extern "C" void usart1_handler() {
-  fw::esc::serial::on_interrupt();
+extern "C" void dma1_channel4_handler() {
+  fw::esc::serial::on_sent();
 }

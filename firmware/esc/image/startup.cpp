@@ -9,7 +9,7 @@ void adc1_2_handler();
 void tim2_handler();
 void i2c2_ev_handler();
 void i2c2_er_handler();
-void usart1_handler();
+void dma1_channel4_handler();
 }
 
 namespace {
@@ -25,7 +25,7 @@ constexpr auto make_vectors() {
   on(Irq::TIM2_Global, tim2_handler);
   on(Irq::I2C2_EV, i2c2_ev_handler);
   on(Irq::I2C2_ER, i2c2_er_handler);
-  on(Irq::USART1_Global, usart1_handler);
+  on(Irq::DMA1_Channel4, dma1_channel4_handler);
   return table;
 }
 
