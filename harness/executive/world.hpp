@@ -54,6 +54,13 @@ class World {
   virtual Result<Done> command(const lua::Table& wish, std::int64_t now_ns) = 0;
   virtual Result<Done> gust(const lua::Table& wish, std::int64_t now_ns) = 0;
 
+  // Text lines for t:ask: one to the firmware, and all that came from it so far. False: no such line.
+  virtual bool say(const std::string& /*line*/) { return false; }
+  virtual const std::vector<std::string>& heard() const {
+    static const std::vector<std::string> nothing;
+    return nothing;
+  }
+
   // When the last bit of the latest command had passed the wire; negative: not known (yet).
   virtual std::int64_t command_on_wire_ns() const { return -1; }
 

@@ -134,5 +134,6 @@ void add_record_calls(lua_State* L);
 void add_expect_calls(lua_State* L);
 void add_timing_calls(lua_State* L);
 void add_action_calls(lua_State* L);
+void add_text_calls(lua_State* L);
 
 }  // namespace whirl::plan

@@ -42,7 +42,8 @@ StandWorld::StandWorld(const StandParams& params, std::uint64_t seed)
       rotor_(params.blade, +1),
       battery_(params.battery),
       cell_(params.cell, seed, "stand.cell"),
-      throttle_(params.address, params.i2c) {
+      throttle_(params.address, params.i2c),
+      line_(params.serial) {
   name_signals();
 }
 
@@ -65,6 +66,8 @@ void StandWorld::take(const io::Batch& happened) {
       shaft_ = reader.as<io::ShaftState>();
     } else if (header.kind == io::Kind::i2c_reply) {
       throttle_.take(reader);
+    } else if (header.kind == io::Kind::uart_received) {
+      line_.take(reader);
     } else if (header.kind == io::Kind::shoot_through) {
       ++shots_;
     }
@@ -106,10 +109,7 @@ void StandWorld::tell(std::int64_t t_ns, io::Batch& sensed) {
                            .source_ohm = battery_.series_resistance_ohm()};
   sensed.add(io::Kind::shaft_load, params_.motor, t_ns, load);
   throttle_.send(t_ns, sensed);
-  if (line_.empty()) return;
-  sensed.add(io::Kind::uart_frame, params_.serial, t_ns, line_.data(),
-             static_cast<std::uint32_t>(line_.size()));
-  line_.clear();
+  line_.send(t_ns, sensed);
 }
 
 // ---- What a plan may ask
@@ -126,7 +126,7 @@ Result<Done> StandWorld::command(const lua::Table& wish, std::int64_t /*now_ns*/
   }
   if (wish.has("stop") && wish.flag_or("stop", true)) throttle_.set(0);
   if (wish.has("silence")) throttle_.silence(wish.flag_or("silence", true));
-  if (wish.has("line")) line_ += wish.text("line") + "\r\n";
+  if (wish.has("line")) line_.say(wish.text("line"));
   if (wish.has("brake")) {
     brake_Nm_ = wish.quantity("brake", Dimension::torque, lua::between(0.0, 10.0));
   }
@@ -213,6 +213,9 @@ void StandWorld::name_signals() {
              [this] { return static_cast<double>(throttle_.told().refused); });
   add_signal("shoot_through", D::none, "times that both switches of a leg were on",
              [this] { return static_cast<double>(shots_); });
+  for (EscLine::Named& told : line_.signals()) {
+    add_signal(told.signal.name, told.signal.dimension, told.signal.about, std::move(told.value));
+  }
 }
 
 }  // namespace whirl::stand

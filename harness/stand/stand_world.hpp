@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "harness/executive/world.hpp"
+#include "harness/stand/esc_line.hpp"
 #include "harness/stand/stand_params.hpp"
 #include "harness/stand/throttle.hpp"
 #include "plant/battery/battery.hpp"
@@ -38,6 +39,8 @@ class StandWorld : public World {
   bool take_fault(const FaultSpec& fault) override;
   std::vector<std::uint32_t> applied_faults() const override;
   std::string status() const override;
+  bool say(const std::string& line) override { return line_.say(line), true; }
+  const std::vector<std::string>& heard() const override { return line_.heard(); }
 
  private:
   struct Flow {  // a ramp from one speed to another
@@ -70,7 +73,7 @@ class StandWorld : public World {
   std::int64_t calm_from_ns_ = INT64_MAX, calm_edge_ns_ = 1;
   double wind_mps_ = 0.0, brake_Nm_ = 0.0;
   std::vector<Dip> dips_;
-  std::string line_;  // to send
+  EscLine line_;
   std::uint64_t shots_ = 0;
   std::vector<Signal> signals_;
   std::vector<std::function<double()>> values_;

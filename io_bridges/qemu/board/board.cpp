@@ -10,7 +10,6 @@
 
 #include "io_bridges/qemu/board/chip_factory.hpp"
 #include "io_bridges/qemu/board/post_mortem.hpp"
-#include "io_bridges/qemu/stm32/adc.hpp"
 
 namespace whirl::board {
 namespace {
@@ -83,29 +82,6 @@ Board::Board(Setup setup, io::Channel channel, Emulator& emulator)
 }
 
 Board::~Board() = default;
-
-Result<Done> Board::build_devices() {
-  if (const auto built = devices_.build(setup_.config); !built) return built.error();
-  return watch_converters();
-}
-
-// "adc1" in the watch list: each of its sequences is told like a call, from its trigger to its end.
-Result<Done> Board::watch_converters() {
-  for (std::uint16_t i = 0; i < setup_.config.watch.size(); ++i) {
-    const std::string& name = setup_.config.watch[i];
-    int number = 0;
-    if (std::sscanf(name.c_str(), "adc%1d", &number) != 1 || name.size() != 4) continue;
-    stm32::Adc* converter = chip_->converter(number);
-    if (converter == nullptr) {
-      return Error{ErrorKind::bad_input, setup_.config.board + ": watch",
-                   "the part has no '" + name + "'", ""};
-    }
-    converter->on_sequence([this, i](Nanoseconds began, Nanoseconds ended) {
-      happened_.add(io::Kind::function_call, i, ended, io::FunctionCall{began, ended - began});
-    });
-  }
-  return Done{};
-}
 
 stm32::Region Board::unanswered_region() {
   return {kPeripherals, kPeripherals_size, &unanswered_};

@@ -38,7 +38,7 @@ class Board final : stm32::InterruptLines, stm32::SystemBus, stm32::FlashArray {
  public:
   Board(Setup setup, io::Channel channel, Emulator& emulator);
   ~Board() override;
-  Result<Done> build_devices();
+  Result<Done> build_devices() { return devices_.build(setup_.config); }
 
   const Part& part() const { return *setup_.part; }
   const Image& image() const { return setup_.image; }
@@ -84,7 +84,6 @@ class Board final : stm32::InterruptLines, stm32::SystemBus, stm32::FlashArray {
   void synchronise();
   void await_orders();
   void obey(const io::Reader& message);
-  Result<Done> watch_converters();
   void report_clocks();
   void report_busy();
   void check_profile();

@@ -1,0 +1,81 @@
+// t:ask: a line to the firmware's terminal, and its answer.
+#include <cmath>
+
+#include "harness/plan/raise.hpp"
+#include "harness/plan/values.hpp"
+
+namespace whirl::plan {
+namespace {
+
+// Arguments, by their place on the coroutine's stack.
+constexpr int kLine = 2, kPattern = 3, kLimit = 4, kPlace = 5, kHeard = 6, kSince = 7;
+
+// A condition for Script::wait_until: more has been heard than the upvalue says.
+int heard_more(lua_State* L) {
+  const auto before = static_cast<std::size_t>(lua_tointeger(L, lua_upvalueindex(1)));
+  lua_pushboolean(L, Script::of(L).stage().world.heard().size() > before ? 1 : 0);
+  return 1;
+}
+
+bool matches(lua_State* L, const std::string& text) {
+  if (lua_isnil(L, kPattern)) return true;
+  lua_getglobal(L, "string");
+  lua_getfield(L, -1, "find");
+  lua_pushlstring(L, text.data(), text.size());
+  lua_pushvalue(L, kPattern);
+  lua_call(L, 2, 1);
+  const bool found = !lua_isnil(L, -1);
+  lua_pop(L, 2);
+  return found;
+}
+
+int answered(lua_State* L, int, lua_KContext ref) {
+  luaL_unref(L, LUA_REGISTRYINDEX, static_cast<int>(ref));
+  Script& self = Script::of(L);
+  const auto& heard = self.stage().world.heard();
+  const auto before = static_cast<std::size_t>(lua_tointeger(L, kHeard));
+  const bool came = heard.size() > before;
+  const std::string answer = came ? heard[before] : "";
+  const bool good = came && matches(L, answer);
+  const double now_s = static_cast<double>(self.stage().now_ns) * 1e-9;
+  const double took_s = good ? now_s - lua_tonumber(L, kSince) : std::nan("");
+  const std::string note = !came ? "no answer" : "it said: " + answer;
+  self.judge({took_s, Dimension::time, std::string("answer to '") + lua_tostring(L, kLine) + "'"},
+             How::at_most, std::nullopt, check_limit(L, kLimit, Dimension::time),
+             lua_tostring(L, kPlace), now_s, note);
+  lua_pushlstring(L, answer.data(), answer.size());
+  return 1;
+}
+
+// t:ask(line [, pattern [, limit]]) -> the answer's text; "" if none came.
+int ask(lua_State* L) {
+  Script& self = Script::of(L);
+  Stage& stage = self.stage();
+  const std::string line = check_text(L, kLine, "a line");
+  if (!lua_isnoneornil(L, kPattern)) check_text(L, kPattern, "a pattern");
+  lua_settop(L, kLimit);
+  if (lua_isnil(L, kLimit)) {
+    lua_pushstring(L, "200 ms");
+    lua_replace(L, kLimit);
+  }
+  const std::int64_t limit_ns = check_duration_ns(L, kLimit);
+  const std::size_t before = stage.world.heard().size();
+  if (!stage.world.say(line)) raise(L, "nobody listens to lines here", "t:ask is for stands");
+  lua_pushstring(L, place_of(L).c_str());
+  lua_pushinteger(L, static_cast<lua_Integer>(before));
+  lua_pushnumber(L, static_cast<double>(stage.now_ns) * 1e-9);
+  lua_pushinteger(L, static_cast<lua_Integer>(before));
+  lua_pushcclosure(L, heard_more, 1);
+  const int ref = luaL_ref(L, LUA_REGISTRYINDEX);
+  self.wait_until(stage.now_ns + limit_ns, ref);
+  return lua_yieldk(L, 0, ref, answered);
+}
+
+}  // namespace
+
+void add_text_calls(lua_State* L) {
+  const luaL_Reg calls[] = {{"ask", ask}, {nullptr, nullptr}};
+  luaL_setfuncs(L, calls, 0);
+}
+
+}  // namespace whirl::plan
