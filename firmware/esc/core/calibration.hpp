@@ -25,10 +25,20 @@ struct MotorConstants {
   float max_braking_A = 15.0f;  // of the winding, regenerated
 };
 
-struct StaticMap {  // free air: T = a2 w^2 + a1 w, Q = q2 w^2
+// Shaft torque by the current that the bus sees over the duty: Q = (Kq0 + Kq1 i) i - drag. While a
+// phase hands over, current returns to the bus or circles outside it: the windings carry more than
+// bus current over duty, the more so the larger it is. That is Kq1.
+struct TorqueMap {
+  float Kq0_NmpA = 0.01005f;
+  float Kq1_NmpA2 = 0.0f;
+  float drag_Nm = 0.01005f;
+};
+
+struct StaticMap {  // free air: T = a2 w^2 + a1 w, Q = q2 w^2 + q1 w
   float a2 = 1.6314e-5f;
   float a1 = -1.4052e-3f;
   float q2 = 2.3e-7f;
+  float q1 = 0.0f;
 };
 
 struct CurrentSense {
@@ -38,6 +48,7 @@ struct CurrentSense {
 
 struct Calibration {
   MotorConstants motor;
+  TorqueMap torque;
   StaticMap free_air;
   CurrentSense sense;
   ThrustModel rotor{};  // all zero: not identified, modes 4 and 5 fall back to the static map

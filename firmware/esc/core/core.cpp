@@ -1,6 +1,6 @@
 #include "firmware/esc/core/core.hpp"
 
-#include <cmath>
+#include "firmware/esc/core/thrust_demand.hpp"
 
 namespace fw::esc {
 namespace {
@@ -75,15 +75,11 @@ float Core::speed_for(float value) const {
     case Mode::speed:
       return value;
     case Mode::thrust_by_speed:
-      return (-map.a1 + std::sqrt(map.a1 * map.a1 + 4.0f * map.a2 * value)) / (2.0f * map.a2);
-    case Mode::power: {
-      const float CP = estimator_.CP() > 0.0f ? estimator_.CP() : map.q2;
-      return std::cbrt(value / CP);
-    }
-    case Mode::thrust_by_power: {
-      const float CT = estimator_.CT() > 0.0f ? estimator_.CT() : map.a2;
-      return std::sqrt(value / CT);
-    }
+      return speed_for_thrust_radps(map, value, 1.0f);
+    case Mode::power:
+      return speed_for_power_radps(map, value, estimator_.power_ratio());
+    case Mode::thrust_by_power:
+      return speed_for_thrust_radps(map, value, estimator_.thrust_ratio());
     case Mode::duty:
     case Mode::servo:
       return 0.0f;

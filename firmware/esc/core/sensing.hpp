@@ -4,20 +4,32 @@
 
 namespace fw::esc {
 
-// The amplifier's offset wanders by amperes: averaged whenever the motor stands without current.
+// The amplifier's offset wanders by amperes: averaged whenever the motor stands without current, from
+// anew at every rest.
 class ZeroCurrent {
  public:
   void note(float current_A) {
-    // 0.1 s at first, then 2 s: a quick start and a quiet value.
-    const float blend = settled_ms_ < 500 ? 0.01f : 0.0005f;
-    if (settled_ms_ < 500) ++settled_ms_;
-    offset_A_ += blend * (current_A - offset_A_);
+    if (rest_ms_ < kLongest_ms) ++rest_ms_;
+    if (known_before_ && rest_ms_ <= kDecay_ms) return;
+    // The mean of this rest so far; what was known before counts as much as a short rest.
+    const std::uint16_t n = known_before_ ? rest_ms_ - kDecay_ms + kTrust_ms : rest_ms_;
+    offset_A_ += (current_A - offset_A_) / static_cast<float>(n);
+    known_ = true;
+  }
+  void turns() {  // the motor is driven: the rest is over
+    rest_ms_ = 0;
+    known_before_ = known_;
   }
   float offset_A() const { return offset_A_; }
 
  private:
+  static constexpr std::uint16_t kDecay_ms = 20;      // until amplifier and windings are quiet
+  static constexpr std::uint16_t kTrust_ms = 50;      // weight of the rests before
+  static constexpr std::uint16_t kLongest_ms = 2000;  // of the mean: a wandering offset is followed
+
   float offset_A_ = 0.0f;
-  std::uint16_t settled_ms_ = 0;
+  std::uint16_t rest_ms_ = 0;
+  bool known_ = false, known_before_ = false;
 };
 
 // Speed from zero crossings, once per millisecond: half the last one, half the new one

@@ -1,8 +1,11 @@
 // Thrust of the turning rotor from what the ESC measures: aerodynamic power from current and speed,
 // inflow from power, thrust from inflow.
 //
-//   Law     Pam = Kt (i - i0) w - Ir w w'; CP = Pam / w^3, smoothed; CT by ThrustSolver; T = CT w^2
-//   Where power decides nothing about inflow, CT of free air is used and `observable` says so.
+//   Law     Pam (power_balance.hpp); CP = Pam / w^3, smoothed, over its value in still air at this
+//           speed; inflow and CT by ThrustSolver; T = CT w^2
+//   Scale   the model gives the shape over inflow, the static map thrust and power in still air: so
+//           both follow the Reynolds number, and in still air both controllers agree
+//   Where power decides nothing about inflow, CT of free air is used and observable() says so.
 //   Source  [Bangura 2017, eq. 5.4 and Algorithm 1]
 #pragma once
 #include "firmware/esc/core/calibration.hpp"
@@ -14,31 +17,45 @@ class ThrustEstimator {
  public:
   ThrustEstimator(const Calibration& calibration, float period_s);
 
-  // current_A: of the winding, measured; voltage_V: applied over the last period.
+  // current_A: of the bus over duty, measured; voltage_V: applied over the last period.
   void update(float voltage_V, float speed_radps, float current_A);
   void restart(float speed_radps);
 
   float power_W() const { return power_W_; }  // aerodynamic, at this moment
   float CP() const { return CP_; }            // smoothed
-  float CT() const { return CT_; }            // smoothed; never 0 after the first update
+  float CT() const { return CT_; }
   float thrust_N() const { return thrust_N_; }
+  // Over still air at the same speed, smoothed; 1 where nothing is known.
+  float power_ratio() const { return power_ratio_; }
+  float thrust_ratio() const { return thrust_ratio_; }
   float current_A() const { return current_.current_A(); }
   float acceleration_radps2() const { return speed_.acceleration_radps2(); }
   bool observable() const { return last_.status == Estimate::converged; }
   const ThrustEstimate& solution() const { return last_; }
+  // How far one ampere of the bus too much would shift the estimated thrust, at a duty.
+  float thrust_per_ampere(float duty) const;
 
  private:
-  float free_air_CT(float speed_radps) const;
+  float free_air_CT(float w) const {
+    return calibration_.free_air.a2 + calibration_.free_air.a1 / w;
+  }
+  float free_air_CP(float w) const {
+    return calibration_.free_air.q2 + calibration_.free_air.q1 / w;
+  }
 
   Calibration calibration_;
   float period_s_;
   CurrentFilter current_;
   SpeedFilter speed_;
   ThrustSolver solver_;
+  RotorPoint still_;  // the model's own still air
   ThrustEstimate last_{};
+  float speed_radps_ = 0.0f;
   float power_W_ = 0.0f;
   float CP_ = 0.0f;
   float CT_ = 0.0f;
+  float power_ratio_ = 1.0f;
+  float thrust_ratio_ = 1.0f;
   float thrust_N_ = 0.0f;
 };
 

@@ -20,67 +20,65 @@ RotorPoint at_inflow(const ThrustModel& m, float ls) {
 
 ThrustSolver::ThrustSolver(const ThrustModel& model, const Bounds& bounds)
     : model_(model), bounds_(bounds) {
-  constexpr int kScan = 64;
-  ls_first_ = ls_turn_ = bounds.ls_max;
-  CP_first_ = CP_turn_ = CP_last_ = 0.0f;
   bool any = false;
-  for (int i = 0; i <= kScan; ++i) {
-    const float ls =
-        bounds.ls_min + (bounds.ls_max - bounds.ls_min) * static_cast<float>(i) / kScan;
-    const RotorPoint point = at_inflow(model, ls);
-    if (!point.real) continue;
-    if (!any) {
-      ls_first_ = ls;
-      CP_first_ = point.CP;
+  for (std::uint8_t i = 0; i <= kCells; ++i) {
+    const RotorPoint point = at_inflow(model, node_ls(i));
+    if (!point.real) {
+      if (any) break;
+      continue;
     }
-    if (!any || point.CP > CP_turn_) {
-      ls_turn_ = ls;
-      CP_turn_ = point.CP;
-    }
-    CP_last_ = point.CP;
-    bounds_.ls_max = ls;
+    CP_[i] = point.CP;
+    CT_[i] = point.CT;
+    if (!any) first_ = turn_ = i;
+    if (CP_[i] > CP_[turn_]) turn_ = i;
     any = true;
+    last_ = i;
   }
+  std::uint8_t i = turn_;
+  while (i < last_ && CP_[i + 1] < CP_[i]) ++i;
+  last_ = i;
 }
 
 ThrustEstimate ThrustSolver::solve(float CP_measured) {
   ThrustEstimate result;
   if (!(CP_measured > 0.0f)) return result;
-  if (CP_measured >= CP_turn_ || shared_by_two(CP_measured)) {
+  if (CP_measured >= CP_[turn_] || shared_by_two(CP_measured)) {
     result.status = Estimate::not_observable;
     return result;
   }
-  if (CP_measured <= CP_last_) return result;  // more inflow than the model was made for
-  // Secant between the bounds in which CP falls from CP_turn_ to CP_last_.
-  float low = ls_turn_, high = bounds_.ls_max;
-  const auto inside = [&](float x) { return x > low && x < high ? x : 0.5f * (low + high); };
-  float x0 = inside(ls_ - bounds_.start_distance);
-  float x1 = inside(ls_);
-  if (x1 == x0) x1 = inside(x0 + bounds_.start_distance);
-  float f0 = 0.0f;
+  if (CP_measured <= CP_[last_]) return result;  // more inflow than the model was made for
+  int cell = turn_;
+  while (CP_[cell + 1] >= CP_measured) ++cell;
+  return search(cell, CP_measured);
+}
+
+// Secant between two nodes: power is too large at the lower one and too small at the upper one.
+ThrustEstimate ThrustSolver::search(int cell, float CP_measured) {
+  ThrustEstimate result;
+  float low = node_ls(cell), high = node_ls(cell + 1);
+  float f_low = CP_measured - CP_[cell], f_high = CP_measured - CP_[cell + 1];
+  result.slope = (CP_[cell + 1] - CP_[cell]) / (high - low);
+  result.leverage = (CT_[cell + 1] / CT_[cell] - 1.0f) / (CP_[cell + 1] / CP_[cell] - 1.0f);
+  if (std::fabs(result.leverage) > bounds_.most_leverage) {
+    result.status = Estimate::not_observable;
+    return result;
+  }
+  const auto secant = [&] { return low - f_low * (high - low) / (f_high - f_low); };
+  float x = ls_ > low && ls_ < high ? ls_ : secant();
   for (int k = 1; k <= kMaxIterations; ++k) {
-    const float x = k == 1 ? x0 : x1;
     const RotorPoint point = at_inflow(model_, x);
     const float f = CP_measured - point.CP;
-    (f < 0.0f ? low : high) = x;  // too much power: more inflow needed
-    if (k == 1) {
-      f0 = f;
-      continue;
-    }
     result.iterations = static_cast<std::uint8_t>(k);
-    result.slope = -(f - f0) / (x1 - x0);
     if (std::fabs(f) <= bounds_.tolerance * CP_measured) {
-      const float flat = bounds_.flat * CP_measured / (bounds_.ls_max - bounds_.ls_min);
-      result.status =
-          std::fabs(result.slope) < flat ? Estimate::not_observable : Estimate::converged;
+      result.status = Estimate::converged;
       result.CT = point.CT;
       result.ls = ls_ = x;
       return result;
     }
-    const float next = result.slope != 0.0f ? x1 + f / result.slope : low;  // low: bisect
-    x0 = x1;
-    f0 = f;
-    x1 = inside(next);
+    const bool lower = f < 0.0f;  // more inflow is needed than x
+    (lower ? low : high) = x;
+    (lower ? f_low : f_high) = f;
+    x = secant();
   }
   result.status = Estimate::no_convergence;
   return result;

@@ -5,10 +5,13 @@
 //           c0..c4 were identified with
 //   Model   CT = c1 (c2 - lambda), lambda = li + ls; CT = c4 li lambda; kappa = d0 + d1 CT;
 //           CP = c3 + CT (kappa li + ls) c0               [Bangura 2017, eq. 4.64, 5.8 to 5.11]
+//   Method  the secant of Algorithm 1 between two nodes of a table, which hold the solution from the
+//           start: at most kMaxIterations evaluations of the model, from any state
 //   Valid   axial flow with the stream going down through the disc (lambda > 0), mu^2 << 1.
 //   Error   the inverse of the forward model to 1e-3 relative in thrust (tests/thrust_model_test.cpp)
-//   Left out  vortex ring and windmill: reported as not observable or outside the model, never guessed
+//   Left out vortex ring and windmill: reported as not observable or outside the model, never guessed
 #pragma once
+#include <array>
 #include <cstdint>
 
 namespace fw::esc {
@@ -39,19 +42,19 @@ struct ThrustEstimate {
   std::uint8_t iterations = 0;  // evaluations of the forward model
   float CT = 0.0f;              // valid if converged
   float ls = 0.0f;              // valid if converged
-  float slope = 0.0f;           // dCP/dls at the solution: what a watt can tell about inflow
+  float slope = 0.0f;           // dCP/dls around the solution: what a watt can tell about inflow
+  float leverage = 0.0f;        // relative change of thrust over relative change of power there
 };
 
 class ThrustSolver {
  public:
   struct Bounds {
-    float ls_min = -0.02f;
+    float ls_min = -0.008f;  // half a metre per second up: momentum theory still holds
     float ls_max = 0.16f;
-    float start_distance = 0.004f;  // Delta: between the two starts
-    float tolerance = 2e-4f;        // of CP, relative
-    float flat = 0.05f;             // |dCP/dls| under flat * CP / (ls_max - ls_min) decides nothing
+    float tolerance = 1e-4f;     // of CP, relative
+    float most_leverage = 8.0f;  // beyond, half a percent of power is four percent of thrust
   };
-  static constexpr int kMaxIterations = 20;
+  static constexpr int kMaxIterations = 6;
 
   ThrustSolver(const ThrustModel& model, const Bounds& bounds);
   explicit ThrustSolver(const ThrustModel& model) : ThrustSolver(model, Bounds{}) {}
@@ -61,18 +64,23 @@ class ThrustSolver {
   void restart(float ls = 0.0f) { ls_ = ls; }
 
   // Power falls with inflow from here on, and rises (or is undefined) before: where two inflows meet.
-  float turning_inflow() const { return ls_turn_; }
+  float turning_inflow() const { return node_ls(turn_); }
 
  private:
-  bool shared_by_two(float CP) const { return CP >= CP_first_ && ls_turn_ > ls_first_; }
+  static constexpr int kCells = 16;
+
+  float node_ls(int i) const {
+    return bounds_.ls_min + (bounds_.ls_max - bounds_.ls_min) * static_cast<float>(i) / kCells;
+  }
+  bool shared_by_two(float CP) const { return turn_ > first_ && CP >= CP_[first_]; }
+  ThrustEstimate search(int cell, float CP_measured);
 
   ThrustModel model_;
   Bounds bounds_;
-  float ls_first_;  // lowest inflow with a real solution
-  float CP_first_;
-  float ls_turn_;
-  float CP_turn_;
-  float CP_last_;
+  std::array<float, kCells + 1> CP_{}, CT_{};  // at the nodes
+  std::uint8_t first_ = 0;                     // lowest node with a real solution
+  std::uint8_t turn_ = 0;                      // node with the largest CP
+  std::uint8_t last_ = 0;                      // CP falls from turn_ to here
   float ls_ = 0.0f;
 };
 

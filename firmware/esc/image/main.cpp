@@ -70,7 +70,11 @@ __attribute__((noinline)) void control_task() {
   if (i2c_slave::take_setpoint(v)) core->on_setpoint(v);
   Sensed sensed = drive.sense();
   if (drive.tripped()) core->latch(Latched::over_current);
-  if (!drive.energised() && core->at_rest()) zero.note(sensed.bus_current_A);
+  if (drive.energised()) {
+    zero.turns();
+  } else if (core->at_rest()) {
+    zero.note(sensed.bus_current_A);
+  }
   const float raw_current_A = sensed.bus_current_A;
   sensed.bus_current_A -= zero.offset_A();
   const Drive wanted = core->tick(sensed);

@@ -49,6 +49,7 @@ TEST(ThrustSolver, InvertsTheModelWhereverPowerDeterminesInflow) {
     if (found.status == Estimate::not_observable) continue;
     ASSERT_EQ(found.status, Estimate::converged) << ls;
     EXPECT_LE(found.iterations, 6) << ls;
+    EXPECT_GT(found.leverage, 0.0f) << "downdraft takes both thrust and power: " << ls;
     EXPECT_TRUE(near(found.CT, truth.CT, stated(2e-3 * truth.CT, "CP tolerance over its slope")));
     ++solved;
   }
@@ -62,7 +63,7 @@ TEST(ThrustSolver, SaysSoWhereTwoInflowsShareOnePower) {
   ThrustSolver solver(m);
   ASSERT_GT(solver.turning_inflow(), 0.0f) << "this rotor's power must have a maximum for the test";
   const float ls = solver.turning_inflow();
-  EXPECT_TRUE(near(at_inflow(m, ls).li + ls, 0.2, stated(0.003, "grid of the scan")));
+  EXPECT_TRUE(near(at_inflow(m, ls).li + ls, 0.2, stated(0.008, "cells of the table")));
   const float CP = at_inflow(m, 0.0f).CP;
   EXPECT_EQ(solver.solve(CP).status, Estimate::not_observable);
   const float above_all = 1.05f * at_inflow(m, solver.turning_inflow()).CP;
@@ -84,7 +85,7 @@ TEST(ThrustSolver, FollowsAJumpFromAnyStart) {
     const RotorPoint truth = at_inflow(m, 0.11f);
     const ThrustEstimate found = solver.solve(truth.CP);
     ASSERT_EQ(found.status, Estimate::converged);
-    EXPECT_LE(found.iterations, ThrustSolver::kMaxIterations);
+    EXPECT_LE(found.iterations, 6);
     EXPECT_TRUE(near(found.CT, truth.CT, stated(2e-3 * truth.CT, "CP tolerance over its slope")));
   }
 }

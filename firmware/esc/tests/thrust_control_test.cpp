@@ -1,0 +1,208 @@
+// Modes 4 and 5 in closed loop with a rotor in moving air, the shunt's noise and a sagging supply.
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "firmware/esc/core/core.hpp"
+#include "firmware/esc/core/power_balance.hpp"
+#include "firmware/esc/core/thrust_demand.hpp"
+#include "harness/base/near.hpp"
+
+namespace fw::esc {
+namespace {
+
+using whirl::near;
+using whirl::stated;
+
+// The rotor of [Bangura 2017, table 5.3] with the c4 that closes its hover: at 490 rad/s and 4.2 m/s
+// thrust falls by a sixth and power by a tenth; power rises in an updraft.
+constexpr ThrustModel kRotor{.c0 = 0.0724f,
+                             .c1 = 6.149e-5f,
+                             .c2 = 0.2993f,
+                             .c3 = 1.2998e-8f,
+                             .c4 = 1.54e-3f,
+                             .d0 = 4.2959f,
+                             .d1 = -1.7154e5f};
+constexpr float kRadius_m = 0.127f;
+
+Calibration calibrated(Mode mode) {
+  Calibration c;
+  c.mode = mode;
+  c.motor.overlap_ohm_s = 0.0f;  // the bench has no commutation
+  c.rotor = kRotor;
+  c.free_air = {.a2 = at_inflow(kRotor, 0.0f).CT, .a1 = 0.0f, .q2 = at_inflow(kRotor, 0.0f).CP};
+  c.identified = true;
+  return c;
+}
+
+class Bench {
+ public:
+  explicit Bench(Mode mode) : core(calibrated(mode)) {}
+
+  // Set-points as the bus sends them: one every 20 ms.
+  void hold(double value, int ms) {
+    const Range range = range_of(core.mode());
+    const auto v = static_cast<std::uint16_t>(
+        std::lround(1.0 + 2046.0 * (value - range.min) / (range.max - range.min)));
+    for (int i = 0; i < ms; ++i) {
+      if (i % 20 == 0) core.on_setpoint(value > 0.0 ? v : std::uint16_t{0});
+      const Drive drive = core.tick(sensed());
+      for (int k = 0; k < 50; ++k) step(drive, 2e-5);
+      thrust_log.push_back(thrust_N());
+      peak_A = std::max(peak_A, current_A);
+    }
+  }
+  void start(double value) {
+    hold(0.0, 600);
+    hold(value, 2000);
+  }
+  double mean_thrust_N(int ms) const {
+    double sum = 0.0;
+    for (std::size_t i = thrust_log.size() - static_cast<std::size_t>(ms); i < thrust_log.size();
+         ++i) {
+      sum += thrust_log[i];
+    }
+    return sum / ms;
+  }
+  RotorPoint point() const {
+    return at_inflow(kRotor, static_cast<float>(down_mps / (std::max(speed, 50.0) * kRadius_m)));
+  }
+  double thrust_N() const { return point().CT * speed * speed; }
+  double power_W() const { return point().CP * speed * speed * speed; }
+
+  Core core;
+  double speed = 0.0, current_A = 0.0, peak_A = 0.0, down_mps = 0.0, bus_V = 16.4;
+  double shunt_noise_A = 0.0, shunt_offset_A = 0.0;
+  std::vector<double> thrust_log;
+
+ private:
+  Sensed sensed() {
+    return {.bus_voltage_V = static_cast<float>(bus_V),
+            .bus_current_A =
+                static_cast<float>(bus_A_ + shunt_offset_A + shunt_noise_A * normal_(random_)),
+            .speed_radps = static_cast<float>(speed),
+            .in_sync = speed > 100.0};
+  }
+  void step(const Drive& drive, double dt) {
+    const double applied_V = drive.duty * bus_V;
+    current_A += dt / 1e-4 * (applied_V - 0.01005 * speed - 0.16 * current_A);
+    if (!drive.energised) current_A = 0.0;
+    bus_A_ = drive.duty * current_A;
+    const double friction_Nm = speed > 1.0 ? 0.01005 : 0.0;
+    speed += dt / 3.752e-5 * (0.01005 * current_A - friction_Nm - point().CP * speed * speed);
+    speed = std::max(speed, 0.0);
+  }
+
+  double bus_A_ = 0.0;
+  std::mt19937 random_{1};
+  std::normal_distribution<double> normal_;
+};
+
+TEST(ThrustByPower, HoldsThrustInADowndraftThatTheRpmControllerGivesWayTo) {
+  for (double down : {0.8, 2.2, 4.2}) {
+    Bench by_rpm(Mode::thrust_by_speed), by_power(Mode::thrust_by_power);
+    for (Bench* bench : {&by_rpm, &by_power}) {
+      bench->start(3.2);
+      bench->down_mps = down;
+      bench->hold(3.2, 1500);
+    }
+    const double lost = 3.2 - by_rpm.mean_thrust_N(500), off = 3.2 - by_power.mean_thrust_N(500);
+    EXPECT_GT(lost, 0.03 * down * 3.2);
+    EXPECT_LT(std::abs(off), 0.005 * 3.2) << down;
+    EXPECT_TRUE(by_power.core.estimator().observable());
+    const float ls = by_power.core.estimator().solution().ls;
+    EXPECT_TRUE(near(ls, down / (by_power.speed * kRadius_m), stated(0.002, "set-point, filters")));
+  }
+}
+
+TEST(ThrustByPower, AnUpdraftLeavesItWithTheStaticMapAndItSaysSo) {
+  Bench by_rpm(Mode::thrust_by_speed), by_power(Mode::thrust_by_power);
+  for (Bench* bench : {&by_rpm, &by_power}) {
+    bench->start(3.2);
+    bench->down_mps = -2.0;
+    bench->hold(3.2, 1500);
+  }
+  EXPECT_FALSE(by_power.core.estimator().observable());
+  EXPECT_TRUE(
+      near(by_power.mean_thrust_N(500), by_rpm.mean_thrust_N(500), stated(0.01, "same map")));
+}
+
+TEST(ThrustByPower, RisesAsTheRpmControllerDoesOnAnySupply) {
+  for (double volts : {14.0, 15.7, 16.8}) {
+    Bench bench(Mode::thrust_by_power);
+    bench.shunt_noise_A = 0.01;
+    bench.start(2.0);
+    bench.bus_V = volts;
+    bench.hold(2.0, 500);
+    const std::size_t start = bench.thrust_log.size();
+    bench.hold(3.2, 600);
+    const auto reaches = [&](double T) {
+      return std::find_if(bench.thrust_log.begin() + static_cast<long>(start),
+                          bench.thrust_log.end(), [&](double x) { return x >= T; }) -
+             bench.thrust_log.begin();
+    };
+    EXPECT_LT(reaches(3.08) - reaches(2.12), 50) << volts << " V";
+    EXPECT_LT(*std::max_element(bench.thrust_log.begin() + static_cast<long>(start),
+                                bench.thrust_log.end()),
+              3.2 + 0.10 * 1.2);
+    for (std::size_t i = start + 150; i < bench.thrust_log.size(); ++i) {
+      ASSERT_TRUE(near(bench.thrust_log[i], 3.2, stated(0.064, "2 % after 150 ms"))) << i - start;
+    }
+    EXPECT_LT(bench.peak_A, 21.0);
+  }
+}
+
+TEST(ThrustByPower, StaysQuietUnderTheNoiseOfTheShunt) {
+  Bench bench(Mode::thrust_by_power);
+  bench.shunt_noise_A = 0.01;  // of a millisecond's mean
+  bench.down_mps = 3.0;
+  bench.start(3.2);
+  bench.hold(3.2, 3000);
+  const double mean = bench.mean_thrust_N(2000);
+  double square = 0.0;
+  for (std::size_t i = bench.thrust_log.size() - 2000; i < bench.thrust_log.size(); ++i) {
+    square += (bench.thrust_log[i] - mean) * (bench.thrust_log[i] - mean);
+  }
+  EXPECT_LT(std::sqrt(square / 2000), 0.01 * 3.2);
+}
+
+// The sensitivity that is told is the one that an offset really has.
+TEST(ThrustByPower, KnowsWhatAnAmpereTooMuchDoesToIt) {
+  Bench right(Mode::thrust_by_power), wrong(Mode::thrust_by_power);
+  wrong.shunt_offset_A = 0.01;
+  for (Bench* bench : {&right, &wrong}) {
+    bench->down_mps = 3.0;
+    bench->start(3.2);
+    bench->hold(3.2, 1000);
+  }
+  // Too much current reads as too little inflow, so thrust is believed larger than it is and falls.
+  const double shift_N = wrong.mean_thrust_N(500) - right.mean_thrust_N(500);
+  const float duty =
+      static_cast<float>((0.01005 * right.speed + 0.16 * right.current_A) / right.bus_V);
+  const double told_N = -0.01 * right.core.estimator().thrust_per_ampere(duty);
+  EXPECT_LT(shift_N, -0.01);
+  EXPECT_TRUE(near(shift_N, told_N, stated(0.25 * std::abs(told_N), "a secant for a slope")));
+}
+
+TEST(Power, HoldsTheAerodynamicPowerInMovingAir) {
+  for (double down : {0.0, 4.0}) {
+    Bench bench(Mode::power);
+    bench.start(18.0);
+    bench.down_mps = down;
+    bench.hold(18.0, 2000);
+    EXPECT_TRUE(near(bench.power_W(), 18.0, stated(0.1, "set-point step of 0.03 W, filters")));
+  }
+}
+
+TEST(ThrustDemand, InvertsTheStaticMaps) {
+  const StaticMap map{.a2 = 1.6e-5f, .a1 = -1.4e-3f, .q2 = 2.1e-7f, .q1 = -4e-6f};
+  for (float w : {200.0f, 450.0f, 700.0f}) {
+    const float T = 0.8f * (map.a2 * w + map.a1) * w, P = 0.9f * (map.q2 * w + map.q1) * w * w;
+    EXPECT_TRUE(near(speed_for_thrust_radps(map, T, 0.8f), w, stated(1e-4 * w, "float")));
+    EXPECT_TRUE(near(speed_for_power_radps(map, P, 0.9f), w, stated(1e-4 * w, "Newton twice")));
+  }
+}
+
+}  // namespace
+}  // namespace fw::esc
