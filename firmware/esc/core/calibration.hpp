@@ -25,12 +25,12 @@ struct MotorConstants {
   float max_braking_A = 15.0f;  // of the winding, regenerated
 };
 
-// Shaft torque by the current that the bus sees over the duty: Q = (Kq0 + Kq1 i) i - drag. While a
-// phase hands over, current returns to the bus or circles outside it: the windings carry more than
-// bus current over duty, the more so the larger it is. That is Kq1.
-struct TorqueMap {
-  float Kq0_NmpA = 0.01005f;
-  float Kq1_NmpA2 = 0.0f;
+// What of the electrical power does not reach the air at constant speed: (loss_ohm i + loss_V) i + drag
+// w, with i the bus current over the duty. Resistance, diodes and commutation are all in it, as one
+// bridge with one PWM pattern has them.
+struct LossMap {
+  float loss_ohm = 0.12f;
+  float loss_V = 0.25f;
   float drag_Nm = 0.01005f;
 };
 
@@ -48,7 +48,7 @@ struct CurrentSense {
 
 struct Calibration {
   MotorConstants motor;
-  TorqueMap torque;
+  LossMap losses;
   StaticMap free_air;
   CurrentSense sense;
   ThrustModel rotor{};  // all zero: not identified, modes 4 and 5 fall back to the static map

@@ -32,7 +32,8 @@ void ThrustEstimator::restart(float speed_radps) {
 void ThrustEstimator::update(float voltage_V, float speed_radps, float current_A) {
   current_.update(voltage_V, speed_radps, current_A);
   speed_.update(current_.current_A(), speed_radps);
-  const float w = speed_radps_ = speed_radps;
+  const float w = speed_radps;
+  voltage_V_ = voltage_V;
   if (!(w > kMinSpeed_radps)) {
     last_ = {};
     power_W_ = thrust_N_ = CP_ = CT_ = 0.0f;
@@ -41,7 +42,8 @@ void ThrustEstimator::update(float voltage_V, float speed_radps, float current_A
   }
   const float acceleration_Nm = calibration_.motor.inertia_kgm2 * speed_.acceleration_radps2();
   const float torque_Nm =
-      shaft_torque_Nm(calibration_.torque, current_.current_A()) - acceleration_Nm;
+      aerodynamic_power_W(calibration_.losses, voltage_V, current_.current_A(), w) / w -
+      acceleration_Nm;
   power_W_ = torque_Nm * w;
   const float ratio = torque_Nm / (w * w * free_air_CP(w));
   // While the rotor accelerates, the inertial term dominates and its error with it: trust it less.
@@ -62,7 +64,7 @@ void ThrustEstimator::update(float voltage_V, float speed_radps, float current_A
 float ThrustEstimator::thrust_per_ampere(float duty) const {
   if (!observable() || !(power_W_ > 0.0f) || !(duty > 0.0f)) return 0.0f;
   const float watts =
-      power_per_bus_ampere_W(calibration_.torque, current_.current_A(), speed_radps_, duty);
+      power_per_bus_ampere_W(calibration_.losses, voltage_V_, current_.current_A(), duty);
   return thrust_N_ * last_.leverage * watts / power_W_;
 }
 

@@ -50,7 +50,7 @@ class ThrustEstimator {
   ThrustSolver solver_;
   RotorPoint still_;  // the model's own still air
   ThrustEstimate last_{};
-  float speed_radps_ = 0.0f;
+  float voltage_V_ = 0.0f;
   float power_W_ = 0.0f;
   float CP_ = 0.0f;
   float CT_ = 0.0f;

@@ -105,6 +105,7 @@ Calibration in_mode(Mode mode) {
   Calibration calibration;
   calibration.mode = mode;
   calibration.motor.overlap_ohm_s = 0.0f;  // the bench below has no commutation
+  calibration.losses = {.loss_ohm = 0.16f, .loss_V = 0.0f, .drag_Nm = 0.01005f};
   calibration.free_air = {.a2 = 1.3165e-5f, .a1 = 0.0f, .q2 = 2.32e-7f};
   return calibration;
 }

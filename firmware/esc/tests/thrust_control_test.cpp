@@ -30,6 +30,7 @@ Calibration calibrated(Mode mode) {
   Calibration c;
   c.mode = mode;
   c.motor.overlap_ohm_s = 0.0f;  // the bench has no commutation
+  c.losses = {.loss_ohm = 0.16f, .loss_V = 0.0f, .drag_Nm = 0.01005f};
   c.rotor = kRotor;
   c.free_air = {.a2 = at_inflow(kRotor, 0.0f).CT, .a1 = 0.0f, .q2 = at_inflow(kRotor, 0.0f).CP};
   c.identified = true;
