@@ -4,19 +4,9 @@
 #include <cstdlib>
 
 namespace whirl::base {
-namespace {
-
-bool failed = false;
-
-}  // namespace
-
-bool check_has_failed() {
-  return failed;
-}
 
 void check_failed(const char* condition, const char* file, int line, const char* names,
                   const std::string& values) {
-  failed = true;
   std::fprintf(stderr, "%s:%d: check failed: %s", file, line, condition);
   if (!values.empty()) std::fprintf(stderr, "  with %s = %s", names, values.c_str());
   std::fprintf(stderr, "\nThis is a bug in whirl, not in your plan or firmware.\n");

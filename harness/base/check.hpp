@@ -12,9 +12,6 @@ namespace whirl::base {
 [[noreturn]] void check_failed(const char* condition, const char* file, int line, const char* names,
                                const std::string& values);
 
-// For a handler of SIGABRT: it was one of these, and it has been told in words.
-bool check_has_failed();
-
 template <typename... Values>
 std::string list_values(const Values&... values) {
   std::ostringstream out;

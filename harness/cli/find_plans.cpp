@@ -12,7 +12,8 @@ namespace fs = std::filesystem;
 
 bool is_data_folder(const fs::path& path) {
   const std::string name = path.filename().string();
-  return name == "boards" || name == "vehicles" || name == "propellers" || name == "include";
+  return name == "boards" || name == "vehicles" || name == "propellers" || name == "include" ||
+         name == "calibrations";
 }
 
 void collect(const fs::path& folder, std::vector<std::string>& files) {

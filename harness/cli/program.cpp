@@ -1,6 +1,7 @@
 // The command line. CLI11 stays in this file: its header is a heavy one.
 #include <CLI/CLI.hpp>
 
+#include "harness/cli/calibrate_command.hpp"
 #include "harness/cli/composition.hpp"
 #include "harness/cli/doctor.hpp"
 #include "harness/cli/history_command.hpp"
@@ -23,6 +24,8 @@ constexpr const char* kExamples = R"(Examples:
   whirl list                                   what plans there are
   whirl sweep test_plans/vehicles/hp_quad.lua  motor, propeller and hover point in figures and curves
   whirl validate                               the plant over its reference points
+  whirl calibrate esc test_plans/calibrations/hk_10x4.5.lua
+                                               constants of an ESC, its motor and its propeller
   whirl history hover                          how the margins went, run by run
   whirl doctor                                 what is missing on this machine
 
@@ -76,6 +79,15 @@ int run_program(int argc, char** argv, const Composition& composition) {
 
   auto* validate = app.add_subcommand("validate", "the plant against its references");
 
+  CalibrateOptions calibration;
+  auto* calibrates = app.add_subcommand("calibrate", "bench procedures that find constants");
+  calibrates->require_subcommand(1);
+  auto* esc = calibrates->add_subcommand(
+      "esc", "motor, current sense and propeller of an ESC on the thrust stand");
+  esc->add_option("file", calibration.file, "what stands there (test_plans/calibrations/*.lua)")
+      ->required();
+  esc->add_option("--write", calibration.write, "the constants as a file that plans include");
+
   auto* doctor = app.add_subcommand("doctor", "check tools and versions");
 
   try {
@@ -88,6 +100,10 @@ int run_program(int argc, char** argv, const Composition& composition) {
   if (*past) return history_command(history, composition.results);
   if (*sweeps) return sweep_command(sweep, composition);
   if (*validate) return validate_command(composition);
+  if (*calibrates) {
+    calibration.command = "whirl calibrate esc " + calibration.file;
+    return calibrate_esc_command(calibration, composition);
+  }
   if (*doctor) return doctor_command(composition.root);
   return run_command(options, composition);
 }

@@ -183,6 +183,8 @@ void StandWorld::name_signals() {
   add_signal("thrust", D::force, "truth", [this] { return loads_.thrust_N; });
   add_signal("cell_thrust", D::force, "as the load cell reads it",
              [this] { return weighed_.thrust_N; });
+  add_signal("cell_torque", D::torque, "as the load cell reads it",
+             [this] { return weighed_.torque_Nm; });
   add_signal("torque", D::torque, "of the air on the shaft",
              [this] { return loads_.shaft_torque_Nm; });
   add_signal("speed", D::angular_rate, "of the shaft", [this] { return shaft_.speed_radps; });

@@ -1,0 +1,157 @@
+#include <algorithm>
+
+#include "harness/calibrate/identify.hpp"
+
+namespace whirl::calibrate {
+namespace {
+
+constexpr double kShortest_duty = 0.02;
+constexpr std::size_t kWindow = 25;  // samples over which the momentum's change is taken
+
+struct Moment {  // of a motor: what the three regressions need
+  double voltage_V, current_A, speed_radps;
+};
+
+Moment moment(const Sample& s) {
+  return {s.duty * s.bus_V, s.bus_A / s.duty, s.speed_radps};
+}
+
+std::vector<SteadyPoint> turning(const StandData& data) {
+  std::vector<SteadyPoint> points = data.still;
+  points.insert(points.end(), data.blown.begin(), data.blown.end());
+  points.insert(points.end(), data.zero.begin(), data.zero.end());
+  return points;
+}
+
+Problem line_problem(const std::vector<SteadyPoint>& points) {
+  Problem p{"torque constant",
+            "winding current",
+            "A",
+            {},
+            {{"no_load", "A", {}}, {"per torque", "A/(N m)", {}}}};
+  for (const SteadyPoint& x : points) {
+    p.y.push_back(x.meter_A / x.duty);
+    p.columns[0].x.push_back(1.0);
+    p.columns[1].x.push_back(x.torque_Nm);
+  }
+  return p;
+}
+
+Problem map_problem(const std::vector<SteadyPoint>& points) {
+  Problem p{"torque map",
+            "shaft torque",
+            "N m",
+            {},
+            {{"kq0", "N m/A", {}}, {"kq1", "N m/A2", {}}, {"drag", "N m", {}}}};
+  for (const SteadyPoint& x : points) {
+    const double amps = x.meter_A / x.duty;
+    p.y.push_back(x.torque_Nm);
+    p.columns[0].x.push_back(amps);
+    p.columns[1].x.push_back(amps * amps);
+    p.columns[2].x.push_back(-1.0);
+  }
+  return p;
+}
+
+Problem voltage_problem(const std::vector<Sample>& samples) {
+  Problem p{"motor voltage",
+            "motor voltage",
+            "V",
+            {},
+            {{"ke", "V s/rad", {}}, {"resistance", "ohm", {}}, {"overlap", "ohm s/rad", {}}},
+            {},
+            true};
+  for (const Sample& s : samples) {
+    const Moment m = moment(s);
+    p.y.push_back(m.voltage_V);
+    p.columns[0].x.push_back(m.speed_radps);
+    p.columns[1].x.push_back(m.current_A);
+    p.columns[2].x.push_back(m.speed_radps * m.current_A);
+  }
+  return p;
+}
+
+// The motor's torque over a window of time: what the rotor gained and what the air took.
+void add_windows(Problem& p, const MotorFit& motor, const std::vector<Sample>& samples) {
+  for (std::size_t i = 0; i + kWindow < samples.size(); i += kWindow) {
+    double impulse = 0.0, square = 0.0;
+    for (std::size_t k = i; k < i + kWindow; ++k) {
+      const Moment a = moment(samples[k]), b = moment(samples[k + 1]);
+      const double half_s = 0.5 * (samples[k + 1].t_s - samples[k].t_s);
+      impulse += half_s * (motor.torque_Nm(a.current_A) + motor.torque_Nm(b.current_A));
+      square += half_s * (a.speed_radps * a.speed_radps + b.speed_radps * b.speed_radps);
+    }
+    p.y.push_back(impulse);
+    p.columns[0].x.push_back(samples[i + kWindow].speed_radps - samples[i].speed_radps);
+    p.columns[1].x.push_back(square);
+  }
+}
+
+Problem impulse_problem(const StandData& data, const SenseFit& sense, const MotorFit& motor) {
+  Problem p{"inertia",
+            "motor's impulse",
+            "N m s",
+            {},
+            {{"inertia", "kg m2", {}}, {"air", "N m s2/rad2", {}}},
+            {},
+            true};
+  for (std::vector<Sample> samples : {data.steps, data.sinusoid}) {
+    for (Sample& s : samples) s.bus_A = sense.true_A(s.bus_A);
+    add_windows(p, motor, samples);
+  }
+  return p;
+}
+
+Result<Done> check_duty(const StandData& data) {
+  const auto wrong = [](const auto& x) { return !(x.duty >= kShortest_duty); };
+  const auto points = turning(data);
+  if (std::none_of(points.begin(), points.end(), wrong) &&
+      std::none_of(data.steps.begin(), data.steps.end(), wrong) &&
+      std::none_of(data.sinusoid.begin(), data.sinusoid.end(), wrong)) {
+    return Done{};
+  }
+  return Error{ErrorKind::bad_input, "fit of the motor", "the bridge was off at a point",
+               "did the ESC stop the motor?"};
+}
+
+}  // namespace
+
+Result<MotorFit> fit_motor(const StandData& data, const SenseFit& sense) {
+  if (auto good = check_duty(data); !good) return good.error();
+  const std::vector<SteadyPoint> points = turning(data);
+  auto line = solve(line_problem(points));
+  if (!line) return line.error();
+  auto map = solve(map_problem(points));
+  if (!map) return map.error();
+  std::vector<Sample> samples = data.sinusoid;
+  for (Sample& s : samples) s.bus_A = sense.true_A(s.bus_A);
+  for (const SteadyPoint& x : data.still) {
+    samples.push_back({0.0, x.duty, x.speed_radps, x.meter_A, x.esc_V});
+  }
+  auto voltage = solve(voltage_problem(samples));
+  if (!voltage) return voltage.error();
+
+  MotorFit motor;
+  motor.map = map.value();
+  motor.torque = line.value();
+  motor.voltage = voltage.value();
+  motor.kq0 = motor.map["kq0"];
+  motor.kq1 = motor.map["kq1"];
+  motor.drag = motor.map["drag"];
+  motor.torque_constant = inverse(motor.torque, "per torque", "kt", "N m/A");
+  motor.no_load_current = motor.torque["no_load"];
+  motor.back_emf = motor.voltage["ke"];
+  motor.resistance = motor.voltage["resistance"];
+  motor.overlap = motor.voltage["overlap"];
+  auto impulse = solve(impulse_problem(data, sense, motor));
+  if (!impulse) return impulse.error();
+  motor.impulse = impulse.value();
+  motor.inertia = motor.impulse["inertia"];
+  for (const Coefficient* c :
+       {&motor.torque_constant, &motor.back_emf, &motor.resistance, &motor.inertia}) {
+    if (auto good = physical(*c, 0.0); !good) return good.error();
+  }
+  return motor;
+}
+
+}  // namespace whirl::calibrate

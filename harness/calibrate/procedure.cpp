@@ -1,0 +1,244 @@
+#include "harness/calibrate/procedure.hpp"
+
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+
+namespace whirl::calibrate {
+namespace {
+
+constexpr std::int64_t kBoot_ms = 200, kStop_ms = 3000, kStart_ms = 2500;
+constexpr unsigned kArmed = 1, kUncalibrated = 1u << 6;
+constexpr double kStart_duty = 0.13;
+constexpr double kMost_wind_mps = 19.0;
+
+Error failed(const std::string& what, const std::string& cure = "") {
+  return {ErrorKind::bad_input, "stand", what, cure};
+}
+
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", value);
+  return text;
+}
+
+class Mean {  // of what the instruments and the ESC say
+ public:
+  void add(const Instruments& read) {
+    sum_.thrust_N += read.thrust_N;
+    sum_.torque_Nm += read.torque_Nm;
+    sum_.current_A += read.current_A;
+    sum_.voltage_V += read.voltage_V;
+    ++reads_;
+  }
+  void add(const io::EscSample& told) {
+    duty_ += told.duty;
+    speed_ += told.speed_radps;
+    current_ += told.raw_current_A - told.zero_current_A;
+    voltage_ += told.bus_voltage_V;
+    ++tells_;
+  }
+  bool told() const { return tells_ > 0.0; }
+  SteadyPoint point(double wind_mps) const {
+    return {wind_mps,
+            duty_ / tells_,
+            speed_ / tells_,
+            current_ / tells_,
+            voltage_ / tells_,
+            sum_.current_A / reads_,
+            sum_.voltage_V / reads_,
+            sum_.thrust_N / reads_,
+            sum_.torque_Nm / reads_};
+  }
+
+ private:
+  Instruments sum_;
+  double duty_ = 0.0, speed_ = 0.0, current_ = 0.0, voltage_ = 0.0;
+  double reads_ = 0.0, tells_ = 0.0;
+};
+
+class Procedure {
+ public:
+  Procedure(Bench& bench, const Setup& setup, const Teller& tell)
+      : bench_(bench), setup_(setup), tell_(tell) {
+    data_.radius_m = 0.5 * setup.diameter_m;
+    data_.density_kgpm3 = setup.density_kgpm3;
+  }
+
+  Result<StandData> go() {
+    for (const auto step :
+         {&Procedure::power_up, &Procedure::rest, &Procedure::start_motor, &Procedure::still,
+          &Procedure::steps, &Procedure::sinusoid, &Procedure::blown, &Procedure::zero,
+          &Procedure::stop_motor, &Procedure::rest}) {
+      if (auto good = (this->*step)(); !good) return good.error();
+    }
+    return std::move(data_);
+  }
+
+ private:
+  Result<Done> power_up() {
+    tell_("powering up");
+    if (auto good = bench_.run(kBoot_ms); !good) return good;
+    if (auto good = bench_.command("{ silence = true }"); !good) return good;
+    if (auto good = bench_.must("watch 0"); !good) return good;
+    if (auto good = bench_.must("stream " + number(kStream_Hz)); !good) return good;
+    return bench_.run(setup_.warm_up_ms);
+  }
+
+  Result<Done> rest() {
+    tell_("at rest");
+    return measure(0.0, data_.rest, false);
+  }
+
+  Result<Done> start_motor() {
+    tell_("starting");
+    if (auto good = bench_.must("arm"); !good) return good;
+    if (auto good = turn(kStart_duty); !good) return good;
+    return bench_.run(kStart_ms);
+  }
+
+  Result<Done> stop_motor() {
+    tell_("stopping");
+    if (auto good = bench_.must("stop"); !good) return good;
+    if (auto good = bench_.blow(0.0); !good) return good;
+    return bench_.run(kStop_ms);
+  }
+
+  Result<Done> turn(double duty) { return bench_.must("duty " + number(100.0 * duty)); }
+
+  Result<Done> still() {
+    for (const double duty : setup_.still) {
+      tell_("still air, duty " + number(100.0 * duty) + " %");
+      if (auto good = turn(duty); !good) return good;
+      if (auto good = measure(0.0, data_.still, true); !good) return good;
+    }
+    return Done{};
+  }
+
+  Result<Done> blown() {
+    for (const double wind_mps : setup_.winds_mps) {
+      if (auto good = bench_.blow(wind_mps); !good) return good;
+      for (const double duty : setup_.blown) {
+        tell_("wind " + number(wind_mps) + " m/s, duty " + number(100.0 * duty) + " %");
+        if (auto good = turn(duty); !good) return good;
+        if (auto good = measure(wind_mps, data_.blown, true); !good) return good;
+      }
+    }
+    return Done{};
+  }
+
+  // The wind is raised until thrust changes its sign; two more points lie beyond.
+  Result<Done> zero() {
+    if (auto good = turn(setup_.blown.front()); !good) return good;
+    double wind_mps = setup_.winds_mps.back();
+    for (int beyond = 0; beyond < 2;) {
+      wind_mps += 0.5;
+      if (wind_mps > kMost_wind_mps) return failed("no wind up to 19 m/s takes the thrust away");
+      tell_("towards zero thrust, wind " + number(wind_mps) + " m/s");
+      if (auto good = bench_.blow(wind_mps); !good) return good;
+      if (bench_.instruments().thrust_N > kNear_N) continue;
+      if (auto good = measure(wind_mps, data_.zero, true); !good) return good;
+      if (data_.zero.back().thrust_N < 0.0) ++beyond;
+    }
+    return Done{};
+  }
+
+  // The stream's samples while `during` runs; the motor must keep turning.
+  template <typename F>
+  Result<Done> listen(const std::function<void(const io::EscSample&)>& sink, bool turning,
+                      F during) {
+    unsigned flags = kArmed;
+    bench_.on_sample([&](const io::EscSample& told) {
+      flags &= told.flags;
+      sink(told);
+    });
+    const Result<Done> done = during();
+    bench_.on_sample(nullptr);
+    if (!done || !turning || (flags & kArmed) != 0) return done;
+    return failed("the ESC has stopped the motor", "smaller steps of duty in the file may help");
+  }
+
+  Result<Done> measure(double wind_mps, std::vector<SteadyPoint>& into, bool turning) {
+    if (auto good = bench_.run(setup_.settle_ms); !good) return good;
+    Mean mean;
+    bench_.on_step([&](const Bench& bench) { mean.add(bench.instruments()); });
+    const auto done = listen([&](const io::EscSample& told) { mean.add(told); }, turning,
+                             [&] { return bench_.run(setup_.measure_ms); });
+    bench_.on_step(nullptr);
+    if (!done) return done;
+    if (!mean.told()) return failed("the ESC's stream is silent");
+    into.push_back(mean.point(wind_mps));
+    return Done{};
+  }
+
+  template <typename Law>  // duty by time
+  Result<Done> follow(std::int64_t duration_ms, std::int64_t every_ms, std::vector<Sample>& into,
+                      Law law) {
+    const auto sink = [&](const io::EscSample& told) {
+      into.push_back({1e-3 * told.tick, told.duty, told.speed_radps,
+                      told.raw_current_A - told.zero_current_A, told.bus_voltage_V});
+    };
+    return listen(sink, true, [&]() -> Result<Done> {
+      for (std::int64_t ms = 0; ms < duration_ms; ms += every_ms) {
+        const double duty = law(1e-3 * static_cast<double>(ms));
+        if (auto good = bench_.type("duty " + number(100.0 * duty)); !good) return good;
+        if (auto good = bench_.run(every_ms); !good) return good;
+      }
+      return Done{};
+    });
+  }
+
+  Result<Done> steps() {
+    tell_("steps of duty");
+    if (auto good = turn(setup_.low_duty); !good) return good;
+    if (auto good = bench_.run(setup_.settle_ms); !good) return good;
+    return follow(kTransient_ms, 500, data_.steps, [this](double t_s) {
+      return std::fmod(t_s, 1.0) < 0.5 ? setup_.high_duty : setup_.low_duty;
+    });
+  }
+
+  Result<Done> sinusoid() {
+    tell_("duty as a sinusoid");
+    const double middle = 0.5 * (setup_.low_duty + setup_.high_duty);
+    if (auto good = turn(middle); !good) return good;
+    if (auto good = bench_.run(setup_.settle_ms); !good) return good;
+    return follow(kTransient_ms, 10, data_.sinusoid, [&](double t_s) {
+      return middle +
+             (setup_.high_duty - middle) * std::sin(2.0 * std::numbers::pi * kSwing_Hz * t_s);
+    });
+  }
+
+  static constexpr double kNear_N = 0.25;  // of zero thrust
+  static constexpr double kStream_Hz = 500.0, kSwing_Hz = 2.0;
+  static constexpr std::int64_t kTransient_ms = 5000;
+
+  Bench& bench_;
+  const Setup& setup_;
+  const Teller& tell_;
+  StandData data_;
+};
+
+}  // namespace
+
+Result<StandData> measure_all(Bench& bench, const Setup& setup, const Teller& tell) {
+  auto data = Procedure(bench, setup, tell).go();
+  bench.on_step(nullptr);
+  return data;
+}
+
+Result<Done> store(Bench& bench, const std::vector<std::string>& lines) {
+  for (const std::string& line : lines) {
+    if (auto good = bench.must(line); !good) return good;
+  }
+  for (const char* line : {"identified 1", "save"}) {
+    if (auto good = bench.must(line); !good) return good;
+  }
+  unsigned flags = kUncalibrated;
+  bench.on_sample([&](const io::EscSample& told) { flags = told.flags; });
+  const auto done = bench.run(100);
+  bench.on_sample(nullptr);
+  if (!done || (flags & kUncalibrated) == 0) return done;
+  return failed("the ESC still says that it is not calibrated");
+}
+
+}  // namespace whirl::calibrate

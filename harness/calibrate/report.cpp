@@ -1,0 +1,128 @@
+#include "harness/calibrate/report.hpp"
+
+#include <cmath>
+#include <cstdio>
+
+#include "firmware/esc/core/thrust_model.hpp"
+
+namespace whirl::calibrate {
+namespace {
+
+template <typename... T>
+std::string format(const char* form, T... values) {
+  char text[256];
+  std::snprintf(text, sizeof text, form, values...);
+  return text;
+}
+
+struct Setting {
+  const char* name;
+  double value;
+};
+
+std::vector<Setting> settings(const Calibration& c) {
+  std::vector<Setting> all = {
+      {"gain", c.sense.gain.value},
+      {"offset", c.sense.offset.value},
+      {"kt", c.motor.back_emf.value},
+      {"no_load", c.motor.no_load_current.value},
+      {"resistance", c.motor.resistance.value},
+      {"overlap", c.motor.overlap.value},
+      {"inertia", c.motor.inertia.value},
+      {"a2", c.still.a2.value},
+      {"a1", c.still.a1.value},
+      {"q2", c.still.q2.value},
+      {"c0", c.rotor.c0.value},
+      {"c1", c.rotor.c1.value},
+      {"c2", c.rotor.c2.value},
+      {"c3", c.rotor.c3.value},
+      {"c4", c.rotor.c4},
+      {"d0", c.rotor.d0.value},
+      {"d1", c.rotor.d1.value},
+  };
+  return all;
+}
+
+std::string row(const Coefficient& c) {
+  return format("  %-14s %13.5g  +- %-10.2g %s\n", c.name.c_str(), c.value, c.half_width,
+                c.unit.c_str());
+}
+
+std::string block(const Fit& fit, const std::vector<Coefficient>& rows) {
+  std::string text =
+      format("%s: R2 %.5f, residual %.3g %s, condition %.0f, %d points\n", fit.name.c_str(), fit.r2,
+             fit.residual_rms, fit.unit.c_str(), fit.condition, static_cast<int>(fit.y.size()));
+  for (const Coefficient& c : rows) text += row(c);
+  return text;
+}
+
+fw::esc::ThrustModel model_of(const RotorFit& rotor) {
+  const auto f = [](double x) { return static_cast<float>(x); };
+  return {f(rotor.c0.value), f(rotor.c1.value), f(rotor.c2.value), f(rotor.c3.value),
+          f(rotor.c4),       f(rotor.d0.value), f(rotor.d1.value)};
+}
+
+}  // namespace
+
+Result<Calibration> identify(StandData data) {
+  auto sense = fit_sense(data);
+  if (!sense) return sense.error();
+  auto motor = fit_motor(data, sense.value());
+  if (!motor) return motor.error();
+  auto still = fit_still_air(data);
+  if (!still) return still.error();
+  auto rotor = fit_rotor(data, motor.value(), still.value());
+  if (!rotor) return rotor.error();
+  return Calibration{std::move(data), sense.value(), motor.value(), still.value(), rotor.value()};
+}
+
+std::vector<std::string> lines(const Calibration& c) {
+  std::vector<std::string> out;
+  for (const Setting& s : settings(c)) out.push_back(format("set %s %.7g", s.name, s.value));
+  return out;
+}
+
+std::string lua_file(const Calibration& c, const std::string& made_by) {
+  std::string text =
+      "-- Made by: " + made_by + "\n-- What the ESC is told over its serial line.\nreturn {\n";
+  for (const std::string& line : lines(c)) text += "  \"" + line + "\",\n";
+  return text + "}\n";
+}
+
+std::string table(const Calibration& c) {
+  std::string text =
+      block(c.sense.fit, {c.sense.gain, c.sense.offset}) +
+      block(c.motor.torque, {c.motor.torque_constant, c.motor.no_load_current}) +
+      block(c.motor.voltage, {c.motor.back_emf, c.motor.resistance, c.motor.overlap});
+  text += block(c.motor.impulse, {c.motor.inertia}) +
+          block(c.motor.map, {c.motor.kq0, c.motor.kq1, c.motor.drag});
+  text += block(c.still.thrust, {c.still.a2, c.still.a1}) +
+          block(c.still.torque, {c.still.q2, c.still.q1}) + block(c.rotor.zero, {c.rotor.c3}) +
+          block(c.rotor.power, {c.rotor.c0, c.rotor.d0, c.rotor.d1}) +
+          block(c.rotor.line, {c.rotor.c1, c.rotor.c2}) +
+          format("  %-14s %13.5g  computed\n", "c4", c.rotor.c4);
+  text += "thrust found back from power:\n    wind    rpm   thrust   kappa   error\n";
+  const std::vector<double> errors = found_back(c.rotor);
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    const RotorPoint& p = c.rotor.points[i];
+    text += format("  %6.2f %6.0f %8.3f %7.3f  ", p.wind_mps, p.speed_radps * 9.549297, p.thrust_N,
+                   p.kappa);
+    text +=
+        std::isnan(errors[i]) ? "power does not tell\n" : format("%6.2f %%\n", 100.0 * errors[i]);
+  }
+  return text;
+}
+
+std::vector<double> found_back(const RotorFit& rotor) {
+  std::vector<double> errors;
+  for (const RotorPoint& p : rotor.points) {
+    fw::esc::ThrustSolver solver(model_of(rotor));
+    const fw::esc::ThrustEstimate e = solver.solve(static_cast<float>(p.CP));
+    errors.push_back(e.status == fw::esc::Estimate::converged
+                         ? static_cast<double>(e.CT) / p.CT - 1.0
+                         : std::nan(""));
+  }
+  return errors;
+}
+
+}  // namespace whirl::calibrate

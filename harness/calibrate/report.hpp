@@ -1,0 +1,34 @@
+// What a calibration tells: a table for the terminal, charts for the page, lines for the ESC.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "harness/calibrate/identify.hpp"
+#include "harness/calibrate/rotor_fit.hpp"
+#include "results/charts.hpp"
+
+namespace whirl::calibrate {
+
+struct Calibration {
+  StandData data;
+  SenseFit sense;
+  MotorFit motor;
+  StillAirFit still;
+  RotorFit rotor;
+};
+
+Result<Calibration> identify(StandData data);
+
+// "set kt 0.01005", in the ESC's own words and units.
+std::vector<std::string> lines(const Calibration& calibration);
+// The same as a Lua file that plans include; `made_by`: the command that wrote it.
+std::string lua_file(const Calibration& calibration, const std::string& made_by);
+
+std::string table(const Calibration& calibration);
+std::vector<results::Chart> charts(const Calibration& calibration);
+
+// Thrust found back from each point's power, as the ESC will do it: error over thrust; NaN where the
+// ESC's solver finds power to tell nothing about inflow.
+std::vector<double> found_back(const RotorFit& rotor);
+
+}  // namespace whirl::calibrate

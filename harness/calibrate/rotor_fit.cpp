@@ -1,0 +1,163 @@
+#include "harness/calibrate/rotor_fit.hpp"
+
+#include <cmath>
+#include <numbers>
+
+namespace whirl::calibrate {
+namespace {
+
+Error refuse(const std::string& what, const std::string& cure) {
+  return {ErrorKind::bad_input, "fit of the rotor", what, cure};
+}
+
+class Scale {  // to the middle speed, by the maps of still air
+ public:
+  Scale(const StillAirFit& still, double middle_radps) : still_(still), middle_(middle_radps) {}
+  double CT(double CT, double w) const { return CT * still_.CT(middle_) / still_.CT(w); }
+  double CP(double CP, double w) const { return CP * still_.CP(middle_) / still_.CP(w); }
+
+ private:
+  const StillAirFit& still_;
+  double middle_;
+};
+
+RotorPoint point_of(const SteadyPoint& x, double radius_m, const MotorFit& motor,
+                    const Scale& scale) {
+  const double w = x.speed_radps, square = w * w;
+  RotorPoint p{};
+  p.wind_mps = x.wind_mps;
+  p.speed_radps = w;
+  p.thrust_N = x.thrust_N;
+  p.CT = scale.CT(x.thrust_N / square, w);
+  p.CP = scale.CP(motor.torque_Nm(x.meter_A / x.duty) / square, w);
+  p.ls = x.wind_mps / (w * radius_m);
+  return p;
+}
+
+Result<std::vector<RotorPoint>> points_of(const std::vector<SteadyPoint>& steady, double radius_m,
+                                          const MotorFit& motor, const Scale& scale,
+                                          bool with_thrust) {
+  std::vector<RotorPoint> points;
+  for (const SteadyPoint& x : steady) {
+    if (!(x.speed_radps > 0.0)) return refuse("a point's rotor stands still", "");
+    points.push_back(point_of(x, radius_m, motor, scale));
+    if (!(points.back().CP > 0.0) || (with_thrust && !(points.back().CT > 0.0))) {
+      return refuse("a point has no positive thrust and power", "less wind or more speed");
+    }
+  }
+  return points;
+}
+
+double mean_speed(const std::vector<SteadyPoint>& points) {
+  double sum = 0.0;
+  for (const SteadyPoint& x : points) sum += x.speed_radps;
+  return points.empty() ? 0.0 : sum / static_cast<double>(points.size());
+}
+
+// CP where CT is zero: a line through points about it.
+Result<Fit> fit_zero(const std::vector<RotorPoint>& zero) {
+  Problem p{
+      "profile power at zero thrust", "CP", "W s3", {}, {{"c3", "W s3", {}}, {"slope", "", {}}}};
+  double lowest = 1.0, highest = -1.0;
+  for (const RotorPoint& x : zero) {
+    p.y.push_back(x.CP);
+    p.columns[0].x.push_back(1.0);
+    p.columns[1].x.push_back(x.CT);
+    lowest = std::min(lowest, x.thrust_N);
+    highest = std::max(highest, x.thrust_N);
+  }
+  if (!(lowest <= 0.0 && highest >= 0.0)) {
+    return refuse("no point has zero thrust between others", "more wind: see `zero` in the file");
+  }
+  return solve(p);
+}
+
+Result<Fit> fit_power(const std::vector<RotorPoint>& points, double c3) {
+  Problem p{"aerodynamic power",
+            "CP - c3",
+            "W s3",
+            {},
+            {{"c0", "m", {}}, {"c0 d0", "m", {}}, {"c0 d1", "m/CT", {}}}};
+  for (const RotorPoint& x : points) {
+    p.y.push_back(x.CP - c3);
+    p.columns[0].x.push_back(x.CT * x.ls);
+    p.columns[1].x.push_back(x.CT * x.li);
+    p.columns[2].x.push_back(x.CT * x.CT * x.li);
+  }
+  return solve(p);
+}
+
+Result<Fit> fit_line(const std::vector<RotorPoint>& points) {
+  Problem p{"thrust over inflow", "CT", "N s2", {}, {{"c1 c2", "N s2", {}}, {"-c1", "N s2", {}}}};
+  for (const RotorPoint& x : points) {
+    p.y.push_back(x.CT);
+    p.columns[0].x.push_back(1.0);
+    p.columns[1].x.push_back(x.li + x.ls);
+  }
+  return solve(p);
+}
+
+Result<Done> check_physical(const RotorFit& fit) {
+  for (const Coefficient* c : {&fit.c0, &fit.c1, &fit.c2, &fit.c3}) {
+    if (auto good = physical(*c, 0.0); !good) return good;
+  }
+  for (const RotorPoint& x : fit.points) {
+    const double kappa = fit.d0.value + fit.d1.value * x.CT;
+    if (kappa > 1.0) continue;
+    return refuse(
+        "kappa comes out as " + std::to_string(kappa) + ", below 1: less than ideal power",
+        "is the current sense calibrated, are wind and radius right?");
+  }
+  return Done{};
+}
+
+}  // namespace
+
+double induced_inflow(double CT, double ls, double c4) {
+  return 0.5 * (-ls + std::sqrt(ls * ls + 4.0 * CT / c4));
+}
+
+Result<RotorFit> fit_rotor(const StandData& data, const MotorFit& motor, const StillAirFit& still) {
+  RotorFit fit;
+  const double R = data.radius_m;
+  fit.middle_radps = mean_speed(data.blown);
+  if (!(fit.middle_radps > 0.0)) return refuse("there are no points in wind", "see `winds`");
+  const Scale scale(still, fit.middle_radps);
+  std::vector<SteadyPoint> steady = data.still;
+  steady.insert(steady.end(), data.blown.begin(), data.blown.end());
+  auto points = points_of(steady, R, motor, scale, true);
+  if (!points) return points.error();
+  const auto zero = points_of(data.zero, R, motor, scale, false);
+  if (!zero) return zero.error();
+  fit.c4 = 2.0 * data.density_kgpm3 * std::numbers::pi * R * R * R * R;
+  fit.points = points.value();
+  for (RotorPoint& x : fit.points) x.li = induced_inflow(x.CT, x.ls, fit.c4);
+
+  auto of_zero = fit_zero(zero.value());
+  if (!of_zero) return of_zero.error();
+  fit.zero = of_zero.value();
+  fit.c3 = fit.zero["c3"];
+
+  auto of_power = fit_power(fit.points, fit.c3.value);
+  if (!of_power) return of_power.error();
+  fit.power = of_power.value();
+  fit.c0 = fit.power["c0"];
+  fit.d0 = quotient(fit.power, "c0 d0", "c0", "d0", "");
+  fit.d1 = quotient(fit.power, "c0 d1", "c0", "d1", "1/CT");
+  for (RotorPoint& x : fit.points) {
+    x.kappa = ((x.CP - fit.c3.value) / (fit.c0.value * x.CT) - x.ls) / x.li;
+  }
+
+  auto of_line = fit_line(fit.points);
+  if (!of_line) return of_line.error();
+  fit.line = of_line.value();
+  fit.c1 = fit.line["-c1"];
+  fit.c1.name = "c1";
+  fit.c1.value = -fit.c1.value;
+  fit.c2 = quotient(fit.line, "c1 c2", "-c1", "c2", "");
+  fit.c2.value = -fit.c2.value;
+  if (auto good = check_physical(fit); !good) return good.error();
+  return fit;
+}
+
+}  // namespace whirl::calibrate

@@ -1,0 +1,9 @@
+-- The stock board with its motor and the propeller of the "HP quad". Constants:
+--   whirl calibrate esc test_plans/calibrations/hk_10x4.5.lua --write test_plans/esc/include/hk_10x4.5_calibration.lua
+return {
+  kind = "calibration",
+  image = "esc", board = "esc32v2",
+  stand = { prop = "hk_10x4.5", supply = "16.4 V" },
+  diameter = "10 in",
+  warm_up = "100 s", -- the current sense's offset settles
+}
