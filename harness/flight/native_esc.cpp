@@ -94,7 +94,7 @@ double NativeEsc::control_voltage(const Sensed& sensed) {
   const double kt = params_.back_emf_Vspradps;
   const double i_d = params_.no_load_current_A + params_.torque_Nmps2prad2 * wd * wd / kt;
   const double error = wd - speed_radps_;
-  const double voltage = kt * wd + params_.resistance_ohm * i_d + params_.kp_Vspradps * error;
+  const double voltage = kt * wd + ohm(wd) * i_d + params_.kp_Vspradps * error;
   // Anti-windup: the integral moves only while what it asks for is given, or back from the limit.
   const double next = integral_V_ + params_.ki_Vprad * error * kPeriod_s;
   const double asked = voltage + next;
@@ -107,7 +107,7 @@ double NativeEsc::limited(double voltage, const Sensed& sensed) {
   const double emf = params_.back_emf_Vspradps * sensed.speed_radps;
   const double low = std::max(0.0, emf - params_.brake_current_A * params_.resistance_ohm);
   const double high =
-      std::min(bus_voltage_V_, emf + params_.max_current_A * params_.resistance_ohm);
+      std::min(bus_voltage_V_, emf + params_.max_current_A * ohm(sensed.speed_radps));
   const double given = std::clamp(voltage, std::min(low, high), high);
   saturated_ = given != voltage;
   return given;

@@ -20,7 +20,7 @@ struct EscParams {
   io::EscMode mode = io::EscMode::thrust_by_rpm;
   // Beliefs about motor and propeller.
   double back_emf_Vspradps = 0.01005;
-  double resistance_ohm = 0.16;
+  double resistance_ohm = 0.12, commutation_ohm_s = 8e-5;  // the second per rad/s of the shaft
   double no_load_current_A = 1.0;
   double torque_Nmps2prad2 = 2.3e-7;  // shaft torque over speed squared
   double thrust_linear_Nprpm = -1.4715e-4, thrust_square_Nprpm2 = 1.789e-7;
@@ -70,6 +70,9 @@ class NativeEsc {
   void protect(std::int64_t t_ns, const Sensed& sensed);
   void disarm();
   Drive drive(const Sensed& sensed);
+  double ohm(double speed_radps) const {  // of a running winding
+    return params_.resistance_ohm + params_.commutation_ohm_s * speed_radps;
+  }
   double control_voltage(const Sensed& sensed);
   double limited(double voltage, const Sensed& sensed);
   double speed_for_thrust(double thrust_N) const;

@@ -79,7 +79,7 @@ MotorBooks AveragedMotor::step(const Drive& drive, const ShaftLoad& load, double
 }
 
 void AveragedMotor::prepare(double dt_s) {
-  if (params_.six_step_overlap) find_overlap();
+  find_overlap();
   const double ohm = resistance_ + overlap_.drop_ohm;
   if (dt_s == prepared_dt_s_ && ohm == prepared_ohm_) return;
   prepared_dt_s_ = dt_s;
@@ -95,7 +95,7 @@ double AveragedMotor::bus_charge_per_volt(const Drive& drive, double dt_s) const
 // Between commutations the pair's current recovers from I/2 to I, as an exponential towards
 // `towards`; all figures per I. With x the sector's time over L/R.
 void AveragedMotor::find_overlap() {
-  const double electrical_radps = params_.pole_pairs * speed_;
+  const double electrical_radps = params_.pole_pairs * std::max(0.0, speed_ + 0.5 * rise_radps_);
   const double x = kPi / 3.0 / std::max(electrical_radps, 1.0) * resistance_ / params_.inductance_H;
   const double fade = std::exp(-x), left = 1.0 - fade;
   const double towards = (1.0 - 0.5 * fade) / left, gap = towards - 0.5;
@@ -199,7 +199,7 @@ AveragedMotor::Trial AveragedMotor::attempt(const Drive& drive, const ShaftLoad&
     books.bus_charge_C = drive.bus_V > 0.0 ? books.electrical_in_J / drive.bus_V : 0.0;
   } else {
     const double taken_J = drive.bus_V * drive.duty * books.winding_charge_C;
-    books.electrical_in_J = params_.six_step_overlap ? taken_J - given_back_J : taken_J;
+    books.electrical_in_J = taken_J - given_back_J;
     books.bus_charge_C = drive.bus_V > 0.0 ? books.electrical_in_J / drive.bus_V : 0.0;
   }
   books.air_torque_Nm = load.quadratic_Nm_s2 * mean * mean + load.constant_Nm;

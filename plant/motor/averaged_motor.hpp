@@ -1,7 +1,7 @@
 // The motor as a duty sees it: mean voltages and currents of a PWM period, torque, speed.
 //
 //   Units   SI; line-to-line, as MotorParams
-//   Overlap (only if asked for) Six-step commutation moves the current between phases against their
+//   Overlap Six-step commutation moves the current between phases against their
 //           inductance. The pair's current dips to half at every commutation and recovers with L/R:
 //           on the mean this is a voltage drop (3/pi) w_e (L/2) I that takes no power, some more
 //           copper loss, and a bus current below duty x winding current. PWM ripple heats too.
@@ -13,7 +13,8 @@
 //           discontinuous conduction
 //   Error   power balance to round-off, closed forms to 1e-6 (tests/averaged_motor_test.cpp); speed
 //           within 1 % of the switched face up to duty 0.4 (tests/switched_motor_test.cpp)
-//   Left out magnetic saturation, current fed back through diodes at overspeed, timing other than
+//   Left out the ripple that runs dry after a commutation under diode freewheeling (speed up to 4 % low
+//           about its edge), magnetic saturation, current fed back through diodes at overspeed, timing other than
 //           neutral
 #pragma once
 #include "plant/motor/motor_params.hpp"
@@ -59,7 +60,10 @@ class AveragedMotor {
   };
   void prepare(double dt_s);  // what depends on the state and the step, but not on the voltage
   Trial attempt(const Drive& drive, const ShaftLoad& load, double dt_s) const;
-  void accept(const Trial& trial) { speed_ = trial.speed_radps, current_ = trial.current_A; }
+  void accept(const Trial& trial) {
+    rise_radps_ = trial.speed_radps - speed_;
+    speed_ = trial.speed_radps, current_ = trial.current_A;
+  }
   double bus_charge_per_volt(const Drive& drive, double dt_s) const;  // its slope, shaft held
 
   void block();  // the shaft is held and stands still from now on
@@ -71,6 +75,7 @@ class AveragedMotor {
   double current_A() const { return current_; }
   double winding_temperature_K() const { return temperature_K_; }
   double resistance_ohm() const { return resistance_; }
+  double running_ohm() const { return resistance_ + overlap_.drop_ohm; }  // what the mean sees
   const MotorParams& params() const { return params_; }
 
  private:
@@ -87,7 +92,7 @@ class AveragedMotor {
   void diode_limit(const Drive& drive, double dt_s, Winding& winding) const;
 
   MotorParams params_;
-  double speed_ = 0.0;
+  double speed_ = 0.0, rise_radps_ = 0.0;  // the second over the last sub-step
   double current_ = 0.0;
   double temperature_K_;
   double resistance_;

@@ -41,7 +41,7 @@ TEST(PowerBus, VoltageAndCurrentsAgreeWithOhmAtEveryStep) {
   }
 }
 
-// Four held shafts behind one resistance: V = V0 / (1 + 4 D^2 r / R), by hand.
+// Four held shafts behind one resistance: each takes D^2 / R and the heat of its ripple, by hand.
 TEST(PowerBus, FourStalledMotorsShareOnePack) {
   Rig rig;
   Battery pack(lab_supply(16.0, 0.05));
@@ -49,10 +49,13 @@ TEST(PowerBus, FourStalledMotorsShareOnePack) {
   for (auto& drive : rig.drives) drive.duty = 0.5;
   BusDraw draw;
   for (int k = 0; k < 400; ++k) draw = rig.step(pack, 0.0);
-  EXPECT_TRUE(near(draw.bus_V, 16.0 / (1.0 + 4.0 * 0.25 * 0.05 / 0.16), stated(1e-8, "settled")));
+  const double R = 0.12, ripple_ApV = 0.25 / (2.2e-5 * 20e3);  // peak to peak
+  const double per_volt = 0.25 / R + R * ripple_ApV * ripple_ApV / 12.0;
+  EXPECT_TRUE(near(draw.bus_V, 16.0 / (1.0 + 4.0 * 0.05 * per_volt),
+                   stated(2e-4, "a turn per second counts as standing")));
 }
 
-TEST(PowerBus, BusCurrentIsDutyTimesWindingCurrent) {
+TEST(PowerBus, BusCurrentIsDutyTimesWindingCurrentLessWhatCommutationGivesBack) {
   Rig rig;
   Battery pack(lab_supply(16.4, 0.0));
   for (auto& drive : rig.drives) drive.duty = 0.3;
@@ -60,7 +63,9 @@ TEST(PowerBus, BusCurrentIsDutyTimesWindingCurrent) {
   for (int k = 0; k < 40000; ++k) rig.step(pack, 0.0);
   const double winding = rig.books[0].winding_charge_C / 1.25e-4;
   EXPECT_GT(winding, 3.0);
-  EXPECT_TRUE(near(rig.books[0].bus_charge_C / 1.25e-4, 0.3 * winding, round_off(8, winding)));
+  const double bus = rig.books[0].bus_charge_C / 1.25e-4;
+  EXPECT_LT(bus, 0.3 * winding);
+  EXPECT_GT(bus, 0.95 * 0.3 * winding);
 }
 
 TEST(PowerBus, BrakingFeedsThePack) {

@@ -15,9 +15,9 @@ return {
   avionics_current = "250 mA",
   motor = { -- Turnigy D2836/9 with ESC32v2 and leads, line to line
     kv_rpm_per_V = 950,
-    resistance = "160 mohm",
+    resistance = "120 mohm",
     winding_resistance = "70 mohm",
-    inductance = "100 uH",
+    inductance = "22 uH",
     no_load_current = "1 A",
     inertia = "3.752e-5 kg m2", -- with propeller
     pole_pairs = 7,

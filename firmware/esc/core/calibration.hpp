@@ -14,11 +14,11 @@ namespace fw::esc {
 
 struct MotorConstants {
   float Kt_NmpA = 0.01005f;  // and back-EMF, V s
-  float resistance_ohm = 0.16f;
-  float inductance_H = 1e-4f;
+  float resistance_ohm = 0.12f;
+  float inductance_H = 2.2e-5f;
   // Moving the current from phase to phase against the inductance takes (3/pi) w_e L/2 per ampere:
   // like a resistance that grows with speed. Here for 7 pole pairs, per rad/s of the shaft.
-  float overlap_ohm_s = 3.34e-4f;
+  float overlap_ohm_s = 8e-5f;
   float no_load_current_A = 1.0f;
   float inertia_kgm2 = 3.752e-5f;
   float max_current_A = 20.0f;  // of the winding

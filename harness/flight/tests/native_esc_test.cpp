@@ -163,10 +163,11 @@ TEST(NativeEsc, DutyModeIsOpenLoop) {
   Stand stand(params);
   stand.arm();
   stand.command(io::setpoint_of_value(EscMode::duty, 40.0), 2000);
-  // 40 % of 16.4 V - 60 % of a diode's 0.7 V = Ke w + R (i0 + k w^2 / Kt): solved by hand for w.
+  // 40 % of 16.4 V - 60 % of a diode's 0.7 V = Ke w + R (i0 + k w^2 / Kt): solved by hand for w. The
+  // motor's 0.12 ohm looks like 0.16 when commutated at 5000 RPM.
   const double a = 0.16 * 2.0e-7 / 0.01005, b = 0.01005, c = 0.16 - 0.4 * 16.4 + 0.6 * 0.7;
   const double w = (-b + std::sqrt(b * b - 4 * a * c)) / (2 * a);
-  EXPECT_TRUE(near(stand.motor.speed_radps(), w, stated(0.005 * w, "ripple")));
+  EXPECT_TRUE(near(stand.motor.speed_radps(), w, stated(0.01 * w, "0.155 to 0.165 ohm")));
 }
 
 TEST(Arming, NeedsTwentyFiveZerosInARow) {

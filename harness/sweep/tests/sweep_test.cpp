@@ -24,18 +24,21 @@ TEST(Sweep, ElectricalPowerIsShaftPowerAndTheNamedLosses) {
   }
 }
 
-// A lossless chopper: bus current = duty x winding current.
-TEST(Sweep, BusCurrentIsDutyTimesWindingCurrent) {
+// A chopper draws duty x winding current, less what each commutation hands back to the bus.
+TEST(Sweep, BusCurrentIsDutyTimesWindingCurrentLessWhatCommutationsGiveBack) {
   const DrivePoint p = drive_point(quad(), 8.2, 16.4);
-  EXPECT_TRUE(near(p.bus_A, 0.5 * p.winding_A, stated(1e-6, "the steady state of a chopper")));
+  EXPECT_LT(p.bus_A, 0.5 * p.winding_A);
+  EXPECT_GT(p.bus_A, 0.93 * 0.5 * p.winding_A);
 }
 
-// Back-EMF, resistance: V = Ke w + R i, with the datasheet's Kv and the thesis's 0.16 ohm.
+// Back-EMF, resistance: V = Ke w + R i, with the datasheet's Kv and what the thesis's points show of
+// R on a running motor.
 TEST(Sweep, TheMotorsVoltageEquationHolds) {
   const DrivePoint p = drive_point(quad(), 6.0, 16.4);
   const double ke = 60.0 / (2.0 * std::numbers::pi * 950.0);
-  EXPECT_TRUE(near(p.voltage_V, ke * p.speed_radps + 0.16 * p.winding_A,
-                   stated(1e-4, "steady to 1e-7 of the speed")));
+  const double apparent_ohm = (p.voltage_V - ke * p.speed_radps) / p.winding_A;
+  EXPECT_GT(apparent_ohm, 0.12);
+  EXPECT_LT(apparent_ohm, 0.18);
 }
 
 // [Bangura2017]: 3950 rpm at 0.9 kg by its static thrust fit, 1.25 to 1.45 A of bus current.
