@@ -6,6 +6,8 @@ namespace fw::esc {
 namespace {
 
 constexpr float kStart_V = 2.0f;           // below, the rotor turns too slowly to be sensed
+constexpr float kLeast_V = 1.2f;           // a shorter on-time would leave nothing to sample
+constexpr float kHeld_radps = 100.0f;      // whatever the duty: slower, and commutation gets lost
 constexpr float kSlowest_radps = 60.0f;    // under this, speed control has nothing to hold on to
 constexpr std::uint16_t kStart_ms = 1500;  // longest start-up before it counts as a stall
 constexpr std::uint16_t kSyncLoss_ms = 50;
@@ -139,11 +141,15 @@ Drive Core::regulate(float value) {
   VoltageDemand demand{};
   if (calibration_.mode == Mode::duty) {
     demand = within_current_limits(calibration_.motor, value * bus_V, sensed_.speed_radps, bus_V);
+    // At little duty the current has gaps and the rotor would slow down until nothing is sensed.
+    const float held_V = speed_control_.update(kHeld_radps, sensed_.speed_radps, bus_V).voltage_V;
+    if (demand.voltage_V < held_V) demand = {held_V, true};
   } else {
     wanted_radps_ = speed_for(value);
     if (wanted_radps_ < kSlowest_radps) wanted_radps_ = kSlowest_radps;
     demand = speed_control_.update(wanted_radps_, sensed_.speed_radps, bus_V);
   }
+  if (demand.voltage_V < kLeast_V) demand = {kLeast_V, true};
   saturated_ = demand.saturated;
   return {demand.voltage_V / bus_V, true};
 }
