@@ -25,6 +25,7 @@ class I2cTarget {
   virtual std::uint8_t read(Nanoseconds now) = 0;     // byte that the master clocks out next
   virtual void acked(bool ack, Nanoseconds now) = 0;  // the master's answer to that byte
   virtual void stop(Nanoseconds now) = 0;             // STOP condition
+  virtual void abandoned(Nanoseconds /*now*/) {}  // the clock has gone in mid-transfer, for good
 };
 
 // A slave on SPI. Chip select is a wire (see wire.hpp); the board wires it to select().

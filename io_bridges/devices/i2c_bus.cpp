@@ -76,6 +76,10 @@ std::uint8_t I2cBus::read(bool ack, Nanoseconds now) {
   return byte;
 }
 
+void I2cBus::abandon(Nanoseconds now) {
+  for (I2cTarget* target : addressed_) target->abandoned(now);
+}
+
 void I2cBus::stop(Nanoseconds now) {
   if (!busy_) return;
   for (I2cTarget* target : addressed_) target->stop(now);

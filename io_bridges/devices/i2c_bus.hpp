@@ -68,6 +68,8 @@ class I2cBus {
   void answer(bool ack, Nanoseconds now);
   std::uint8_t read(bool ack, Nanoseconds now);  // both at once
   void stop(Nanoseconds now);
+  // The controller has let go of both lines without a STOP: the bus stays busy until the next one.
+  void abandon(Nanoseconds now);
   // Told at each STOP: a controller that waits for a free bus may try again.
   void on_free(std::function<void(Nanoseconds)> free) { on_free_.push_back(std::move(free)); }
 

@@ -13,12 +13,7 @@ I2cMaster::I2cMaster(EventQueue& queue, I2cBus& bus, double rate_Hz, Nanoseconds
       bit_ns_(1e9 / rate_Hz),
       timeout_ns_(timeout_ns),
       step_(queue, [this] { step(); }),
-      timeout_(queue, [this] {
-        reply_.timed_out = true;
-        step_.cancel();
-        waits_ = false;
-        finish();
-      }) {
+      timeout_(queue, [this] { give_up(); }) {
   bus_.scl().watch([this](bool level, Nanoseconds) {
     if (level) clock_may_run();
   });
@@ -49,24 +44,38 @@ void I2cMaster::bits(Phase phase, int count) {
   clock_may_run();
 }
 
+// The clock is held in the middle of a byte: its last bit waits.
+void I2cMaster::hold() {
+  resumes_ = true;
+  bits(phase_, 1);
+}
+
+bool I2cMaster::may_run() {
+  if (owns_) return bus_.scl().level();
+  return abandoned_ ? bus_.scl().level() && bus_.sda().level() : bus_.idle();
+}
+
 void I2cMaster::clock_may_run() {
   const Nanoseconds now = queue_.now();
-  if (!waits_ || !(owns_ ? bus_.scl().level() : bus_.idle())) return;
+  if (!waits_ || !may_run()) return;
   waits_ = false;
   timeout_.cancel();
   if (owns_) reply_.stretched_ns = std::max(reply_.stretched_ns, now - waits_since_);
-  if (phase_ == Phase::reading) reply_.bytes.push_back(bus_.fetch(now));
+  if (phase_ == Phase::reading && !resumes_) reply_.bytes.push_back(bus_.fetch(now));
+  resumes_ = false;
   step_.at(std::max(now, bus_.released_ns()) + std::llround(count_ * bit_ns_));
 }
 
 void I2cMaster::step() {
   const Nanoseconds now = queue_.now();
+  if (owns_ && !bus_.scl().level()) return hold();
   switch (phase_) {
     case Phase::idle:
       return;
     case Phase::starting:
-      if (!owns_ && !bus_.idle()) return bits(Phase::starting, 1);  // somebody was faster
+      if (!may_run()) return bits(Phase::starting, 1);  // somebody was faster
       owns_ = true;
+      abandoned_ = false;
       bus_.start(now);
       return bits(Phase::addressing, 9);
     case Phase::addressing:
@@ -103,6 +112,16 @@ void I2cMaster::next() {
     return bits(Phase::reading, 9);
   }
   bits(Phase::stopping, 1);
+}
+
+void I2cMaster::give_up() {
+  reply_.timed_out = true;
+  step_.cancel();
+  waits_ = resumes_ = false;
+  if (owns_) bus_.abandon(queue_.now());
+  abandoned_ = abandoned_ || owns_;
+  owns_ = false;
+  finish();
 }
 
 void I2cMaster::finish() {

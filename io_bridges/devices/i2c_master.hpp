@@ -3,7 +3,8 @@
 //   Does     one transfer at a time: START, address, bytes out; or address, bytes in; or both with a
 //            repeated START between; STOP. One event per byte
 //   Clock    a byte neither begins nor ends while a target holds SCL low
-//   Gives up when the bus is not free, or SCL is held, longer than the timeout
+//   Gives up when the bus is not free, or SCL is held, longer than the timeout. Without a clock there
+//            is no STOP: it lets go of the lines, and its next START is a repeated one to the targets
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -44,6 +45,9 @@ class I2cMaster {
 
   void step();
   void clock_may_run();
+  bool may_run();
+  void hold();
+  void give_up();
   void bits(Phase phase, int count);
   void address_sent();
   void next();
@@ -55,10 +59,12 @@ class I2cMaster {
   Nanoseconds timeout_ns_;
   Event step_, timeout_;
   Phase phase_ = Phase::idle;
-  bool reading_ = false;  // the running half
-  bool owns_ = false;     // between our START and STOP
+  bool reading_ = false;    // the running half
+  bool owns_ = false;       // between our START and STOP
+  bool abandoned_ = false;  // our START has had no STOP
   bool waits_ = false;
-  int count_ = 0;  // bits of the step that waits
+  bool resumes_ = false;  // waits inside a byte, not before it
+  int count_ = 0;         // bits of the step that waits
   Nanoseconds waits_since_ = 0;
   std::size_t written_ = 0;
   I2cRequest request_;

@@ -1,5 +1,6 @@
 // A throttle source on the board's I2C bus: does the harness's orders one after another, each not
-// before its time, and tells how each went.
+// before its time, and tells how each went. What comes 10 ms late because the bus was stuck is not
+// sent any more: it counts as timed out.
 #pragma once
 #include <cstdint>
 #include <deque>
@@ -26,6 +27,7 @@ class I2cOrders {
     io::I2cRequest request;
   };
   void next();
+  void report(std::uint32_t number, const io::I2cReply& reply);
   void done(std::uint32_t number, const io::I2cReply& reply);
 
   io::EventQueue& events_;

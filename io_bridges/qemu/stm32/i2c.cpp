@@ -36,6 +36,7 @@ void I2c::clear_state() {
   sr1_ = sr1_seen_ = 0;
   cr1_ &= ~(START | STOP | ACK | POS | PEC);
   pins_.scl.drive(Drive::none, chip_.events.now());
+  pins_.sda.drive(Drive::none, chip_.events.now());
   if (owned) bus_.stop(chip_.events.now());  // both lines rise: the others see a STOP
 }
 

@@ -6,10 +6,12 @@
 //             through as well
 //   Clock     a byte neither begins nor ends while SCL is low: a slave that stretches, a stuck
 //             line. As a slave it stretches through its SCL pin (NOSTRETCH = 0)
+//             A transmitter whose clock goes away holds its bit, SDA low unless it sends FF, until PE
+//             or SWRST frees it
 //   Lines     START waits for SDA and SCL high; SDA low under a sent 1 loses arbitration (ARLO)
 //   Findings  START with SCL or SDA not muxed, FREQ that is not PCLK1, a rate its mode forbids
 //   Left out  10-bit addresses, SMBus (PEC, ARP, ALERT, TIMEOUT), misplaced conditions (BERR),
-//             rise time (TRISE is stored), analog filter
+//             the nine clocks that free an abandoned transmitter, rise time (TRISE is stored), analog filter
 #pragma once
 #include "io_bridges/devices/i2c_bus.hpp"
 #include "io_bridges/qemu/stm32/signal.hpp"
@@ -87,6 +89,7 @@ class I2c final : public WordBlock, private io::I2cTarget {
   std::uint8_t read(Nanoseconds now) override;
   void acked(bool ack, Nanoseconds now) override;
   void stop(Nanoseconds now) override;
+  void abandoned(Nanoseconds now) override;
   using WordBlock::read;
   using WordBlock::write;
   void load_slave_shift();

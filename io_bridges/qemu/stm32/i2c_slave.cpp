@@ -68,6 +68,11 @@ void I2c::acked(bool ack, Nanoseconds) {
   update();
 }
 
+void I2c::abandoned(Nanoseconds now) {
+  const bool sending = slave_ == Slave::transmitter && shift_full_;
+  if (sending && shift_ != 0xFF) pins_.sda.drive(Drive::low, now);
+}
+
 // STOPF tells of a STOP after an acknowledged transfer; a NACK ended it already (AF).
 void I2c::stop(Nanoseconds) {
   if (slave_ == Slave::none) return;

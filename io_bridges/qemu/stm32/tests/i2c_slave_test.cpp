@@ -222,5 +222,49 @@ TEST(I2cSlave, AnOwnStartWaitsForTheOthersStop) {
   EXPECT_EQ(bench.file.bytes[0x10], 0x99);
 }
 
+// The clock goes away inside a byte and the master gives up: no STOP, and the bit that was being sent
+// stays on the wire until the block is set up anew.
+TEST(I2cSlave, ATransmitterWhoseClockIsGoneKeepsItsBitUntilItIsDisabled) {
+  SlaveBench bench;
+  bench.send(0x29, {}, 3);
+  bench.clear_addr();
+  bench.put(kDr, 0x00);
+  bench.run(5'000);  // two bits of nine
+  bench.bus().scl().force(io::Drive::low, bench.now());
+  bench.run(26'000'000);
+  ASSERT_TRUE(bench.done);
+  EXPECT_TRUE(bench.reply.timed_out);
+  bench.bus().scl().force(io::Drive::none, bench.now());
+  EXPECT_FALSE(bench.bus().sda().level());
+  EXPECT_EQ(bench.get(kSr1) & STOPF, 0u);
+  EXPECT_EQ(bench.get(kSr2) & 2u, 2u);  // BUSY
+  bench.put(kCr1, 0);
+  EXPECT_TRUE(bench.bus().sda().level());
+  bench.put(kCr1, 1);
+  bench.put(kCr1, 1 | ACK);
+  bench.send(0x29, {0x12});
+  bench.clear_addr();
+  EXPECT_EQ(bench.take(), 0x12);
+  bench.clear_stopf();
+  bench.finish();
+  EXPECT_FALSE(bench.reply.timed_out);
+}
+
+TEST(I2cSlave, AByteInWhichTheClockIsHeldEndsWhenItRuns) {
+  SlaveBench bench;
+  bench.send(0x29, {0x77});
+  bench.clear_addr();
+  bench.run(5'000);
+  bench.bus().scl().force(io::Drive::low, bench.now());
+  bench.run(100'000);
+  EXPECT_EQ(bench.get(kSr1) & RXNE, 0u);
+  bench.bus().scl().force(io::Drive::none, bench.now());
+  EXPECT_EQ(bench.take(), 0x77);
+  bench.clear_stopf();
+  bench.finish();
+  EXPECT_TRUE(bench.reply.acked);
+  EXPECT_GE(bench.reply.stretched_ns, 70'000);  // 100 us but for the bits that had to come anyhow
+}
+
 }  // namespace
 }  // namespace whirl::stm32
