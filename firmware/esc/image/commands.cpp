@@ -3,6 +3,7 @@
 #include <array>
 
 #include "firmware/esc/core/parameters.hpp"
+#include "firmware/esc/image/i2c_slave.hpp"
 #include "firmware/esc/image/registers.hpp"
 #include "firmware/esc/image/serial.hpp"
 #include "firmware/esc/image/stream.hpp"
@@ -126,7 +127,9 @@ bool get(std::string_view name, Settings& settings) {
     std::int32_t value;
   } whole[] = {{"mode", static_cast<std::int32_t>(settings.calibration.mode)},
                {"motor", static_cast<std::int32_t>(settings.motor_number)},
-               {"identified", settings.calibration.identified ? 1 : 0}};
+               {"identified", settings.calibration.identified ? 1 : 0},
+               {"i2c_rejected", static_cast<std::int32_t>(i2c_slave::rejected())},
+               {"i2c_restarts", static_cast<std::int32_t>(i2c_slave::restarts())}};
   for (const auto& entry : whole) {
     if (!all && entry.name != name) continue;
     Line().text(entry.name).text(" ").number(entry.value);

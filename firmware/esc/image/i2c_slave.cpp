@@ -12,6 +12,7 @@ namespace {
 using namespace f103;
 
 constexpr std::uint32_t kPclk1_MHz = 36;
+constexpr std::uint32_t kStuck_ms = 25;
 
 struct Wire {
   std::uint8_t address = 0;
@@ -25,6 +26,9 @@ struct Wire {
   bool fresh = false;
   bool write_rejected = false;  // since the last read
   std::uint32_t rejected = 0;
+  std::uint32_t events = 0, seen_events = 0;
+  std::uint32_t idle_ms = 0;  // busy without an event
+  std::uint32_t restarts = 0;
 };
 constinit Wire wire;
 
@@ -53,6 +57,7 @@ void send_next() {
 }
 
 void on_event() {
+  ++wire.events;
   const std::uint32_t sr1 = I2C2::SR1::read();
   if ((sr1 & I2C2::ADDR) != 0) {
     if (!wire.transmitting) judge_write();  // a repeated START ends a write, too
@@ -81,6 +86,17 @@ void on_error() {
   }
 }
 
+void set_up() {
+  I2C2::CR1::write(I2C2::SWRST);
+  I2C2::CR1::write(0);
+  I2C2::CR2::write(kPclk1_MHz | I2C2::ITEVTEN | I2C2::ITBUFEN | I2C2::ITERREN);
+  I2C2::CCR::write(1u << 15 | 30);  // as a slave only the filters matter; fast mode
+  I2C2::TRISE::write(12);
+  I2C2::OAR1::write(bit(14) | static_cast<std::uint32_t>(wire.address) << 1);
+  I2C2::CR1::write(I2C2::PE);
+  I2C2::CR1::write(I2C2::PE | I2C2::ACK);
+}
+
 }  // namespace
 
 void start(std::uint8_t address_7bit) {
@@ -89,14 +105,7 @@ void start(std::uint8_t address_7bit) {
   RCC::APB1ENR::set(RCC::I2C2EN);
   GPIOB::configure(10, kAlternateOpenDrain);
   GPIOB::configure(11, kAlternateOpenDrain);
-  I2C2::CR1::write(I2C2::SWRST);
-  I2C2::CR1::write(0);
-  I2C2::CR2::write(kPclk1_MHz | I2C2::ITEVTEN | I2C2::ITBUFEN | I2C2::ITERREN);
-  I2C2::CCR::write(1u << 15 | 30);  // as a slave only the filters matter; fast mode
-  I2C2::TRISE::write(12);
-  I2C2::OAR1::write(bit(14) | static_cast<std::uint32_t>(address_7bit) << 1);
-  I2C2::CR1::write(I2C2::PE);
-  I2C2::CR1::write(I2C2::PE | I2C2::ACK);
+  set_up();
   Nvic<Irq::I2C2_EV>::enable(kPriorityI2c);
   Nvic<Irq::I2C2_ER>::enable(kPriorityI2c);
 }
@@ -112,6 +121,24 @@ bool take_setpoint(std::uint16_t& v) {
   v = wire.setpoint;
   wire.fresh = false;
   return fresh;
+}
+
+void supervise() {
+  const hal::InterruptLock lock;
+  const bool quiet = wire.events == wire.seen_events;
+  wire.seen_events = wire.events;
+  const bool stuck = quiet && (I2C2::SR2::read() & I2C2::BUSY) != 0;
+  wire.idle_ms = stuck ? wire.idle_ms + 1 : 0;
+  if (wire.idle_ms < kStuck_ms) return;
+  wire.idle_ms = 0;
+  wire.received_count = 0;
+  wire.transmitting = false;
+  ++wire.restarts;
+  set_up();
+}
+
+std::uint32_t restarts() {
+  return wire.restarts;
 }
 
 std::uint32_t rejected() {

@@ -66,6 +66,7 @@ void start_tick() {
 namespace fw::esc {
 
 __attribute__((noinline)) void control_task() {
+  i2c_slave::supervise();
   std::uint16_t v = 0;
   if (i2c_slave::take_setpoint(v)) core->on_setpoint(v);
   Sensed sensed = drive.sense();

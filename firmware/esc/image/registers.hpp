@@ -132,7 +132,7 @@ struct I2C2 {
   static constexpr std::uint32_t ITERREN = bit(8), ITEVTEN = bit(9), ITBUFEN = bit(10);
   static constexpr std::uint32_t ADDR = bit(1), STOPF = bit(4), RXNE = bit(6), TXE = bit(7),
                                  BERR = bit(8), ARLO = bit(9), AF = bit(10), OVR = bit(11);
-  static constexpr std::uint32_t TRA = bit(2);
+  static constexpr std::uint32_t BUSY = bit(1), TRA = bit(2);
 };
 
 struct USART1 {
