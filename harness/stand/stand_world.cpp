@@ -1,9 +1,11 @@
 #include "harness/stand/stand_world.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <numbers>
+#include <sstream>
 
 #include "harness/base/check.hpp"
 #include "harness/lua/table.hpp"
@@ -28,6 +30,27 @@ const Wish kWishes[] = {
     {"thrust", Dimension::force, 1.0, {io::EscMode::thrust_by_rpm, io::EscMode::thrust_by_power}},
     {"power", Dimension::power, 1.0, {io::EscMode::power}},
 };
+
+// { bytes = "5A 03 C1", read = 6, times = 10, every = "20 ms", shift = "7 us" }
+Throttle::Raw read_raw(const lua::Table& wish) {
+  Throttle::Raw raw;
+  std::istringstream words(wish.text_or("bytes", ""));
+  for (std::string word; words >> word;) {
+    unsigned byte = 0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), byte, 16);
+    if (error != std::errc{} || end != word.data() + word.size() || byte > 0xFF) {
+      wish.refuse("bytes", "'" + word + "' is no byte", "write them as \"5A 03 C1\"");
+    }
+    raw.write.push_back(static_cast<std::uint8_t>(byte));
+  }
+  raw.read = static_cast<std::uint16_t>(wish.integer_or("read", 0, 0, 255));
+  raw.times = wish.integer_or("times", 1, 1, 1'000'000);
+  raw.every_ns = std::max(kStep_ns, wish.duration_ns_or("every", kStep_ns) / kStep_ns * kStep_ns);
+  raw.shift_ns = wish.duration_ns_or("shift", 0);
+  if (raw.write.empty() && raw.read == 0)
+    wish.refuse("bytes", "nothing to write and nothing to read");
+  return raw;
+}
 
 }  // namespace
 
@@ -126,6 +149,7 @@ Result<Done> StandWorld::command(const lua::Table& wish, std::int64_t /*now_ns*/
   }
   if (wish.has("stop") && wish.flag_or("stop", true)) throttle_.set(0);
   if (wish.has("silence")) throttle_.silence(wish.flag_or("silence", true));
+  if (wish.has("i2c_raw")) throttle_.send_raw(read_raw(wish.table("i2c_raw")));
   if (wish.has("line")) line_.say(wish.text("line"));
   if (wish.has("brake")) {
     brake_Nm_ = wish.quantity("brake", Dimension::torque, lua::between(0.0, 10.0));
@@ -213,6 +237,17 @@ void StandWorld::name_signals() {
   });
   add_signal("i2c_refused", D::none, "orders without a good answer",
              [this] { return static_cast<double>(throttle_.told().refused); });
+  add_signal("i2c_stretch", D::time, "longest hold of SCL in the latest transfers",
+             [this] { return throttle_.told().stretched_s; });
+  add_signal("i2c_raw_replies", D::none, "to raw transfers",
+             [this] { return static_cast<double>(throttle_.raw_told().replies); });
+  add_signal("i2c_raw_acked", D::none, "raw transfers acknowledged in all bytes",
+             [this] { return static_cast<double>(throttle_.raw_told().acked); });
+  add_signal("i2c_raw_bytes", D::none, "of the last raw read",
+             [this] { return throttle_.raw_told().read_bytes; });
+  add_signal("i2c_raw_good", D::none,
+             "1: the last raw read had a status, its CRC and only FF after",
+             [this] { return throttle_.raw_told().read_good; });
   add_signal("shoot_through", D::none, "times that both switches of a leg were on",
              [this] { return static_cast<double>(shots_); });
   for (EscLine::Named& told : line_.signals()) {

@@ -6,6 +6,8 @@
 //   Command  t:command { thrust = "2 N" } { duty = "20 %" } { speed = "3500 rpm" }
 //            { power = "12 W" } over I2C in the ESC's mode (StandParams::mode); { stop = true };
 //            { silence = true }: no more set-points; { line = "status" }: over the serial line;
+//            { i2c_raw = { bytes = "5A 03 C1", read = 6, times = 10, every = "20 ms", shift = "7 us" } }:
+//            as it stands, each time 7 us later in its millisecond;
 //            { brake = "0.5 N m" }: holds the shaft, "0 N m" lets go
 //   Gust     t:gust { down = "2 m/s", edge = "300 ms" [, duration = "5 s"] }: the flow generator
 //   Faults   supply_dip (value: volts below)

@@ -1,10 +1,13 @@
 #include "harness/stand/throttle.hpp"
 
+#include <algorithm>
+
 namespace whirl::stand {
 namespace {
 
 constexpr std::int64_t kMs = 1'000'000;
 constexpr std::int64_t kWrite_every_ns = 20 * kMs, kRead_every_ns = 50 * kMs;
+constexpr std::size_t kStatusBytes = 6;
 constexpr std::int64_t kBoot_ns = 100 * kMs;  // nobody answers before
 
 }  // namespace
@@ -21,14 +24,47 @@ void Throttle::send(std::int64_t t_ns, io::Batch& sensed) {
     const auto bytes = io::pack_setpoint(address_, v_);
     order(t_ns, 0, bytes.data(), bytes.size(), sensed);
   }
+  send_next_raw(t_ns, sensed);
   // Half a millisecond beside the writes.
   if (t_ns % kRead_every_ns == 0) order(t_ns + kMs / 2, 6, nullptr, 0, sensed);
+}
+
+void Throttle::send_next_raw(std::int64_t t_ns, io::Batch& sensed) {
+  if (raw_.empty() || t_ns < raw_.front().next_ns) return;
+  Raw& raw = raw_.front();
+  raw_numbers_.push_back(sent_);
+  order(t_ns + raw.offset_ns, raw.read, raw.write.data(),
+        static_cast<std::uint32_t>(raw.write.size()), sensed);
+  raw.next_ns = t_ns + raw.every_ns;
+  raw.offset_ns = (raw.offset_ns + raw.shift_ns) % kMs;
+  if (--raw.times <= 0) raw_.pop_front();
+}
+
+void Throttle::take_raw(const io::I2cReplyHead& head, std::span<const std::uint8_t> bytes) {
+  ++raw_told_.replies;
+  if (head.acked != 0 && head.timed_out == 0) ++raw_told_.acked;
+  if (bytes.empty()) return;
+  raw_told_.read_bytes = static_cast<double>(bytes.size());
+  raw_told_.read_good = std::nan("");
+  if (bytes.size() < kStatusBytes) return;
+  const auto rest = bytes.subspan(kStatusBytes);
+  const bool filled = std::all_of(rest.begin(), rest.end(), [](auto b) { return b == 0xFF; });
+  const bool good = io::unpack_status(address_, bytes.first(kStatusBytes)).has_value();
+  raw_told_.read_good = filled && good ? 1.0 : 0.0;
 }
 
 void Throttle::take(const io::Reader& message) {
   if (message.header().port != bus_) return;
   const auto head = message.as<io::I2cReplyHead>();
   const auto bytes = message.tail_after(sizeof head);
+  const std::int64_t step = message.header().t_ns / kMs;
+  const double stretched_s = static_cast<double>(head.stretched_ns) * 1e-9;
+  told_.stretched_s = step == told_step_ ? std::max(told_.stretched_s, stretched_s) : stretched_s;
+  told_step_ = step;
+  if (!raw_numbers_.empty() && raw_numbers_.front() == head.number) {
+    raw_numbers_.pop_front();
+    return take_raw(head, bytes);
+  }
   ++told_.replies;
   if (head.acked == 0 || head.timed_out != 0) {
     ++told_.refused;

@@ -1,5 +1,5 @@
 -- The set-points' wire spoiled for a while or for ever: nothing wrong is obeyed, rejected writes are told.
--- Left out: writes of a wrong length (the stand's source cannot send them), stuck lines.
+-- Lines stuck low for a while: the slave answers again when they are free. Wrong bytes: i2c_raw.lua.
 include "include/start.lua"
 
 local function wire_plan(name, run)
@@ -61,4 +61,54 @@ end)
 
 wire_plan("i2c_flipped_bits_lasting", function(t)
   goes_off(t, "every set-point flipped", { kind = "i2c_flip_bit", bus = "i2c2", value = 4 })
+end)
+
+-- Until the next whole 100 ms: a write begins there, and a read half a millisecond later.
+local function align(t)
+  local past = math.floor(t:now().value * 1000 + 0.5) % 100
+  if past > 0 then t:wait((100 - past) .. " ms") end
+end
+
+-- The line goes low in the middle of a write, of a read, or between.
+local function recovers(name, kind, duration)
+  wire_plan(name, function(t)
+    start(t, "2 N")
+    for _, when in ipairs { { "in a write", "100050 us" }, { "in a read", "100600 us" }, { "between", "105 ms" } } do
+      align(t)
+      t:step("stuck " .. when[1])
+      local record = t:record({ "thrust" }, "500 ms", function()
+        t:fault { kind = kind, bus = "i2c2", start = when[2], duration = duration }
+      end)
+      t:expect(record:max "thrust", "highest thrust, stuck " .. when[1]):at_most "2.3 N"
+      t:expect(record:min "thrust", "lowest thrust, stuck " .. when[1]):at_least "1.8 N"
+      local refused = t:value("i2c_refused").value
+      t:wait "500 ms"
+      t:expect(t:value("i2c_refused").value - refused, "orders refused once the line is free"):equal(0)
+      t:expect(t:value "armed", "still armed"):equal(1)
+    end
+    t:command { thrust = "3 N" }
+    t:within("150 ms", function(s) return s.thrust_N > 2.9 end, "set-points are heard again")
+  end)
+end
+recovers("i2c_stuck_sda_short", "i2c_stuck_sda", "300 ms")
+recovers("i2c_stuck_scl_short", "i2c_stuck_scl", "300 ms")
+recovers("i2c_stuck_scl_blink", "i2c_stuck_scl", "2 ms")
+
+wire_plan("i2c_stuck_sda_lasting", function(t)
+  goes_off(t, "data stuck for ever", { kind = "i2c_stuck_sda", bus = "i2c2" })
+end)
+
+wire_plan("i2c_stuck_scl_lasting", function(t)
+  goes_off(t, "clock stuck for ever", { kind = "i2c_stuck_scl", bus = "i2c2" })
+end)
+
+-- Off while the line is stuck; when it is free the zeros arm again.
+wire_plan("i2c_stuck_scl_long", function(t)
+  goes_off(t, "clock stuck for 1.5 s", { kind = "i2c_stuck_scl", bus = "i2c2", duration = "1500 ms" })
+  t:wait "1 s"
+  t:expect(t:value "armed", "disarmed"):equal(0)
+  t:command { stop = true }
+  t:within("2 s", function(s) return s.armed == 1 end, "armed again")
+  t:command { thrust = "2 N" }
+  t:within("3 s", function(s) return s.thrust_N > 1.9 end, "turns again")
 end)

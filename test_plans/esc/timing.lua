@@ -1,5 +1,5 @@
 -- The image keeps its times while the rotor turns and changes its speed, at up to 4 N (5200 RPM).
--- Left out: from the pin to the entry of an interrupt, the other modes, I2C stretching.
+-- Left out: from the pin to the entry of an interrupt, the other modes.
 include "include/start.lua"
 
 plan "timing_budgets" {

@@ -29,6 +29,14 @@ StandParams params(const std::string& text = R"({ prop = "hk_10x4.5", supply = "
   return read.value();
 }
 
+// The golden frame of esc_stream_test.cpp: 16.25 V, 418.5 rad/s, inflow 0.0625, converged.
+const std::vector<std::uint8_t> kFrame = {
+    0xA5, 0x5A, 0x01, 0xA5, 0x78, 0x56, 0x34, 0x12, 0x00, 0x00, 0x82, 0x41, 0x00, 0x00,
+    0xC0, 0x3F, 0x00, 0x00, 0x80, 0x3E, 0x00, 0x00, 0xA0, 0x3F, 0x00, 0x00, 0xA0, 0x40,
+    0x00, 0x00, 0xE0, 0x3E, 0x00, 0x40, 0xD1, 0x43, 0x00, 0x00, 0xD2, 0x43, 0x00, 0x00,
+    0x48, 0xC1, 0x00, 0x00, 0xAE, 0x41, 0xB0, 0x0F, 0xA1, 0x34, 0xBD, 0x37, 0x86, 0x37,
+    0x00, 0x00, 0x30, 0x40, 0x00, 0x00, 0x80, 0x3D, 0x00, 0x04, 0x41, 0x05, 0xB4, 0x2E};
+
 struct Bench {
   explicit Bench(const StandParams& stand = params()) : world(stand, 1) {}
 
@@ -44,11 +52,18 @@ struct Bench {
         happened.add(io::Kind::i2c_reply, 2, t_ns - kMs / 2, head);
       }
       replies.clear();
+      if (!serial.empty()) {
+        happened.add(io::Kind::uart_received, 1, t_ns - kMs / 2, serial.data(),
+                     static_cast<std::uint32_t>(serial.size()));
+        serial.clear();
+      }
       world.step(t_ns, happened, sensed);
       for (io::Reader r(sensed.bytes()); r.next();) keep(r);
     }
   }
   void keep(const io::Reader& r) {
+    if (r.header().kind == io::Kind::uart_frame)
+      typed.append(r.payload().begin(), r.payload().end());
     if (r.header().kind == io::Kind::shaft_load) load = r.as<io::ShaftLoad>();
     if (r.header().kind != io::Kind::i2c_order) return;
     const auto order = r.as<io::I2cOrder>();
@@ -76,6 +91,8 @@ struct Bench {
   std::vector<std::int64_t> writes_ns, reads_ns;
   std::vector<std::uint8_t> last_write;
   std::vector<io::I2cReplyHead> replies;
+  std::vector<std::uint8_t> serial;  // from the board in the next step
+  std::string typed;                 // to it
   bool answers = false;
   std::int64_t t_ns = 0;
 };
@@ -172,6 +189,51 @@ TEST(Stand, MotorAndShuntOfThePlanReachTheBoardsPowerStage) {
   is("torque_constant", 60.0 / (2.0 * std::numbers::pi * 950.0));
   is("shunt.gain_error", -0.05);
   EXPECT_FALSE(with_stage(board, 2, stand.stage));  // no such motor
+}
+
+TEST(Stand, RawTransfersGoOutAsTheyStandAndMoveThroughTheirMillisecond) {
+  Bench b;
+  b.run_until(200 * kMs, 0.0);
+  b.writes_ns.clear();
+  ASSERT_TRUE(b.world
+                  .command(table(R"({ silence = true, i2c_raw = { bytes = "5A 3 c1 00", times = 3,
+                                      every = "7 ms", shift = "400 us" } })"),
+                           b.t_ns)
+                  .ok());
+  b.run_until(300 * kMs, 0.0);
+  EXPECT_EQ(b.last_write, (std::vector<std::uint8_t>{0x5A, 0x03, 0xC1, 0x00}));
+  const std::int64_t first = 201 * kMs + kMs / 4;
+  EXPECT_EQ(b.writes_ns, (std::vector<std::int64_t>{first, first + 7 * kMs + 400'000,
+                                                    first + 14 * kMs - 200'000}));
+  EXPECT_FALSE(b.world.command(table(R"({ i2c_raw = { bytes = "5A G1" } })"), b.t_ns).ok());
+  EXPECT_FALSE(b.world.command(table("{ i2c_raw = {} }"), b.t_ns).ok());
+}
+
+TEST(Stand, StreamedSignalsAreNoNumbersBeforeAndLongAfterAFrame) {
+  Bench b;
+  b.run_until(10 * kMs, 0.0);
+  EXPECT_TRUE(std::isnan(b.signal("esc_speed")));
+  b.serial = kFrame;
+  b.run_until(20 * kMs, 0.0);
+  EXPECT_EQ(b.signal("esc_speed"), 418.5);
+  EXPECT_EQ(b.signal("esc_inflow"), 0.0625);
+  EXPECT_EQ(b.signal("esc_observable"), 1.0);
+  b.run_until(105 * kMs, 0.0);
+  EXPECT_EQ(b.signal("esc_bus_voltage"), 16.25);
+  b.run_until(115 * kMs, 0.0);
+  EXPECT_TRUE(std::isnan(b.signal("esc_bus_voltage")));
+  EXPECT_EQ(b.signal("esc_frames_lost"), 0.0);
+}
+
+TEST(Stand, LinesGoOutWithTheirEndAndAnswersAreKept) {
+  Bench b;
+  ASSERT_TRUE(b.world.say("get kt"));
+  b.run_until(10 * kMs, 0.0);
+  EXPECT_EQ(b.typed, "get kt\r\n");
+  for (const char c : std::string("kt 1e-2\r\nok\r\n"))
+    b.serial.push_back(static_cast<std::uint8_t>(c));
+  b.run_until(20 * kMs, 0.0);
+  EXPECT_EQ(b.world.heard(), (std::vector<std::string>{"kt 1e-2", "ok"}));
 }
 
 TEST(Stand, MistakesAreNamed) {
