@@ -31,9 +31,8 @@ FlightWorld::FlightWorld(const FlightParams& params, std::uint64_t seed)
                   seed) {}
 
 FlightWorld::FlightWorld(const FlightParams& params, plant::RotorSet rotors, std::uint64_t seed)
-    : vehicle_(params.vehicle, std::move(rotors), seed),
-      escs_(4, NativeEsc(params.esc)),
-      capture_(params.capture, seed) {
+    : vehicle_(params.vehicle, std::move(rotors), seed), capture_(params.capture, seed) {
+  for (int motor = 1; motor <= 4; ++motor) escs_.emplace_back(params.esc, seed, motor);
   name_signals();
 }
 
@@ -56,7 +55,7 @@ void FlightWorld::take(const io::Batch& happened) {
     if (header.kind == io::Kind::esc_setpoint) {
       WHIRL_CHECK(header.port >= 1 && header.port <= 4, header.port);
       const auto setpoint = reader.as<io::EscSetpoint>();
-      escs_[header.port - 1u].write(setpoint.value, setpoint.valid != 0, header.t_ns);
+      if (setpoint.valid != 0) escs_[header.port - 1u].write(setpoint.value);
     } else if (header.kind == io::Kind::uart_received && header.port == kRadioPort) {
       station_.receive(reader.payload(), header.t_ns);
     }
@@ -68,15 +67,8 @@ void FlightWorld::move(std::int64_t t_ns) {
   apply_faults(now_ns_);
   const plant::VehicleState& before = vehicle_.state();
   for (int i = 0; i < 4; ++i) {
-    const plant::MotorState& motor = before.motors[static_cast<std::size_t>(i)];
-    const NativeEsc::Drive drive =
-        escs_[static_cast<std::size_t>(i)].step(now_ns_, {.bus_voltage_V = before.bus_voltage_V,
-                                                          .speed_radps = motor.speed_radps,
-                                                          .bus_current_A = motor.bus_current_A,
-                                                          .winding_peak_A = motor.winding_peak_A,
-                                                          .blocked = motor.blocked});
-    vehicle_.command(
-        i, {drive.duty, drive.braking ? plant::Freewheel::synchronous : plant::Freewheel::diode});
+    const auto n = static_cast<std::size_t>(i);
+    vehicle_.command(i, escs_[n].step(now_ns_, before.motors[n], before.bus_voltage_V));
   }
   vehicle_.step(kStep_s);
 }
@@ -95,9 +87,7 @@ void FlightWorld::tell(std::int64_t t_ns, io::Batch& sensed) {
   sensed.add(io::Kind::body_motion, 0, t_ns, motion);
 
   for (std::size_t i = 0; i < 4; ++i) {
-    const io::EscStatus status = escs_[i].status();
-    sensed.add(io::Kind::esc_state, static_cast<std::uint16_t>(i + 1), t_ns,
-               io::EscState{status.bus_current_A, status.speed_rpm, status.flags, {}});
+    sensed.add(io::Kind::esc_state, static_cast<std::uint16_t>(i + 1), t_ns, escs_[i].status());
   }
   const auto send = [&sensed](std::int64_t at_ns, std::span<const std::uint8_t> frame) {
     sensed.add(io::Kind::uart_frame, kRadioPort, at_ns, frame.data(),

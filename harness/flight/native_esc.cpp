@@ -2,130 +2,87 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
-
-#include "harness/base/check.hpp"
+#include <string>
 
 namespace whirl::flight {
 namespace {
 
-constexpr double kPeriod_s = 1e-3;
-constexpr double kRpm_per_radps = 30.0 / std::numbers::pi;
-constexpr double kTurning_radps = 30.0;
+constexpr std::int64_t kTick_ns = 1'000'000;
+constexpr int kHeld_ms = 185;  // alignment and forced steps, see Start
+// The ESC32v2: 12 bits of 3.3 V behind 1.5/11.5 dividers and a shunt of 0.5 mohm with gain 50.9.
+constexpr double kVolts_per_count = 3.3 / 4096.0 * 11.5 / 1.5;
+constexpr double kAmperes_per_count = 3.3 / 4096.0 / (0.5e-3 * 50.9);
+constexpr int kSamples = 20;          // per tick: one in each PWM period
+constexpr double kPwm_counts = 3600;  // 72 MHz / 20 kHz
+constexpr double kTrip_A = 24.0;
+constexpr int kTripSamples = 3;
+
+double counts(double volts_or_amperes, double per_count) {
+  return std::clamp(std::floor(volts_or_amperes / per_count), 0.0, 4095.0);
+}
 
 }  // namespace
 
-NativeEsc::NativeEsc(const EscParams& params) : params_(params) {
-  WHIRL_CHECK(params.mode == io::EscMode::duty || params.mode == io::EscMode::rpm ||
-              params.mode == io::EscMode::thrust_by_rpm);
-}
+NativeEsc::NativeEsc(const EscParams& params, std::uint64_t seed, int number)
+    : core_(params.calibration),
+      shunt_(params.shunt, seed, "esc" + std::to_string(number) + ".shunt"),
+      crossings_(params.pole_pairs) {}
 
-void NativeEsc::write(std::uint16_t v, bool valid, std::int64_t t_ns) {
-  if (!valid) return;
-  last_valid_ns_ = t_ns;
-  v_ = v;
-  zeros_ = v == 0 ? zeros_ + 1 : 0;
-  if (zeros_ < params_.arming_zeros) return;
-  if (trouble_ != Trouble::cut) trouble_ = Trouble::none;  // a row of zeros clears a latched fault
-  const bool at_rest = speed_radps_ < kTurning_radps;
-  if (at_rest && trouble_ == Trouble::none && bus_voltage_V_ >= params_.arming_voltage_V) {
-    armed_ = true;
+// The mean of a tick's samples; the bridge's own trip looks at each of them.
+float NativeEsc::sense_current(double bus_current_A) {
+  double sum_A = 0.0;
+  for (int i = 0; i < kSamples; ++i) {
+    shunt_.flow(bus_current_A, 1e-9 * static_cast<double>(kTick_ns) / kSamples);
+    const double sample_A = counts(shunt_.sample_A(), kAmperes_per_count) * kAmperes_per_count;
+    sum_A += sample_A;
+    over_ =
+        energised_ && sample_A - static_cast<double>(zero_.offset_A()) > kTrip_A ? over_ + 1 : 0;
+    if (over_ >= kTripSamples) tripped_ = true;
   }
+  return static_cast<float>(sum_A / kSamples);
 }
 
-void NativeEsc::cut() {
-  trouble_ = Trouble::cut;
-  disarm();
+bool NativeEsc::following() const {
+  return energised_ && energised_ms_ > kHeld_ms;
 }
 
-void NativeEsc::disarm() {
-  armed_ = false;
-  zeros_ = 0;
-  v_ = 0;
-  integral_V_ = 0.0;
-}
-
-void NativeEsc::filter(const Sensed& sensed) {
-  speed_radps_ += 0.5 * (sensed.speed_radps - speed_radps_);
-  const double blend = -std::expm1(-kPeriod_s / params_.current_filter_s);
-  current_A_ += blend * (sensed.bus_current_A - current_A_);
-  bus_voltage_V_ = sensed.bus_voltage_V;
-}
-
-void NativeEsc::protect(std::int64_t t_ns, const Sensed& sensed) {
-  const bool at_rest = speed_radps_ < kTurning_radps;
-  low_voltage_ =
-      bus_voltage_V_ < (at_rest && !armed_ ? params_.arming_voltage_V : params_.low_voltage_V);
-  if (armed_ && t_ns - last_valid_ns_ >= params_.watchdog_ns) disarm();
-  if (sensed.winding_peak_A > params_.trip_current_A) trouble_ = Trouble::over_current;
-  if (armed_ && v_ > 0 && sensed.blocked) trouble_ = Trouble::desync;
-  if (trouble_ != Trouble::none && armed_) disarm();
-}
-
-NativeEsc::Drive NativeEsc::step(std::int64_t t_ns, const Sensed& sensed) {
-  filter(sensed);
-  protect(t_ns, sensed);
-  return drive(sensed);
-}
-
-NativeEsc::Drive NativeEsc::drive(const Sensed& sensed) {
-  saturated_ = false;
-  if (!armed_ || v_ == 0 || bus_voltage_V_ <= 0.0) {
-    integral_V_ = 0.0;
-    wanted_speed_radps_ = 0.0;
-    return {};
+plant::MotorCommand NativeEsc::step(std::int64_t now_ns, const plant::MotorState& motor,
+                                    double bus_voltage_V) {
+  if (following()) {
+    crossings_.turn(now_ns - kTick_ns, now_ns, last_speed_radps_, motor.speed_radps);
+  } else {
+    crossings_.restart();
   }
-  const double voltage = limited(control_voltage(sensed), sensed);
-  return {.duty = voltage / bus_voltage_V_, .braking = params_.mode != io::EscMode::duty};
+  last_speed_radps_ = motor.speed_radps;
+  const bool in_sync = crossings_.in_sync();
+
+  if (fresh_) core_.on_setpoint(setpoint_);
+  fresh_ = false;
+  fw::esc::Sensed sensed;
+  sensed.bus_voltage_V =
+      static_cast<float>(counts(bus_voltage_V, kVolts_per_count) * kVolts_per_count);
+  sensed.bus_current_A = sense_current(motor.bus_current_A);
+  sensed.speed_radps = speed_.update(static_cast<float>(crossings_.speed_radps()), in_sync);
+  sensed.in_sync = in_sync;
+  if (tripped_) core_.latch(fw::esc::Latched::over_current);
+  tripped_ = false;
+  if (cut_) core_.latch(fw::esc::Latched::desync);
+  if (!energised_ && core_.at_rest()) zero_.note(sensed.bus_current_A);
+  sensed.bus_current_A -= zero_.offset_A();
+
+  const fw::esc::Drive drive = core_.tick(sensed);
+  energised_ms_ = drive.energised ? energised_ms_ + 1 : 0;
+  energised_ = drive.energised;
+  if (!following()) return {};
+  const double duty = std::clamp(static_cast<double>(drive.duty), 0.0, 1.0);
+  return {std::floor(duty * kPwm_counts) / kPwm_counts, plant::Freewheel::diode};
 }
 
-double NativeEsc::speed_for_thrust(double thrust_N) const {
-  const double a = params_.thrust_square_Nprpm2, b = params_.thrust_linear_Nprpm;
-  return (-b + std::sqrt(b * b + 4.0 * a * thrust_N)) / (2.0 * a) / kRpm_per_radps;
-}
-
-double NativeEsc::control_voltage(const Sensed& sensed) {
-  const double value = io::value_of_setpoint(params_.mode, v_);
-  if (params_.mode == io::EscMode::duty) return value / 100.0 * bus_voltage_V_;
-
-  const double wd =
-      params_.mode == io::EscMode::rpm ? value / kRpm_per_radps : speed_for_thrust(value);
-  wanted_speed_radps_ = wd;
-  const double kt = params_.back_emf_Vspradps;
-  const double i_d = params_.no_load_current_A + params_.torque_Nmps2prad2 * wd * wd / kt;
-  const double error = wd - speed_radps_;
-  const double voltage = kt * wd + ohm(wd) * i_d + params_.kp_Vspradps * error;
-  // Anti-windup: the integral moves only while what it asks for is given, or back from the limit.
-  const double next = integral_V_ + params_.ki_Vprad * error * kPeriod_s;
-  const double asked = voltage + next;
-  const double given = limited(asked, sensed);
-  if (asked == given || (asked > given) == (error < 0.0)) integral_V_ = next;
-  return voltage + integral_V_;
-}
-
-double NativeEsc::limited(double voltage, const Sensed& sensed) {
-  const double emf = params_.back_emf_Vspradps * sensed.speed_radps;
-  const double low = std::max(0.0, emf - params_.brake_current_A * params_.resistance_ohm);
-  const double high =
-      std::min(bus_voltage_V_, emf + params_.max_current_A * ohm(sensed.speed_radps));
-  const double given = std::clamp(voltage, std::min(low, high), high);
-  saturated_ = given != voltage;
-  return given;
-}
-
-io::EscStatus NativeEsc::status() const {
-  using Flag = io::EscFlag;
-  io::EscStatus status{current_A_, speed_radps_ * kRpm_per_radps, 0};
-  const auto raise = [&status](bool on, std::uint8_t flag) {
-    if (on) status.flags |= flag;
-  };
-  raise(armed_, Flag::kArmed);
-  raise(speed_radps_ >= kTurning_radps, Flag::kTurning);
-  raise(saturated_, Flag::kSaturated);
-  raise(trouble_ == Trouble::over_current, Flag::kOverCurrent);
-  raise(low_voltage_, Flag::kUnderVoltage);
-  raise(trouble_ == Trouble::desync || trouble_ == Trouble::cut, Flag::kDesync);
-  return status;
+io::EscState NativeEsc::status() const {
+  return {static_cast<double>(core_.bus_current_A()),
+          static_cast<double>(core_.speed_radps() / fw::esc::kRadps_per_rpm),
+          core_.flags(),
+          {}};
 }
 
 }  // namespace whirl::flight

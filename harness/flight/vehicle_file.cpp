@@ -1,7 +1,9 @@
 #include "harness/flight/vehicle_file.hpp"
 
+#include <map>
 #include <numbers>
 
+#include "firmware/esc/core/parameters.hpp"
 #include "harness/flight/propeller_file.hpp"
 #include "harness/lua/table.hpp"
 
@@ -72,18 +74,44 @@ void read_battery(const Table& t, plant::BatteryParams& b) {
                                                b.initial_depth_of_discharge, between(0.0, 1.0));
 }
 
+// The numbers by the names of the image's `set`, SI without units.
+void read_calibration(const Table& t, fw::esc::Calibration& c) {
+  for (const fw::esc::Parameter& parameter : fw::esc::kParameters) {
+    float& value = parameter.in(c);
+    value = static_cast<float>(t.number_or(parameter.name, static_cast<double>(value)));
+  }
+  c.identified = t.flag_or("identified", c.identified);
+}
+
+void read_shunt(const Table& t, plant::CurrentShuntParams& s) {
+  const double offset_A = t.quantity_or("offset", Dimension::current, -1.0, at_least(0.0));
+  if (offset_A >= 0.0) s.offset_low_A = s.offset_high_A = offset_A;
+  s.gain_tolerance =
+      t.quantity_or("gain_tolerance", Dimension::ratio, s.gain_tolerance, between(0.0, 0.5));
+  s.warm_up_A = t.quantity_or("warm_up", Dimension::current, s.warm_up_A, at_least(0.0));
+  s.wander_A = t.quantity_or("wander", Dimension::current, s.wander_A, at_least(0.0));
+  s.noise_A = t.quantity_or("noise", Dimension::current, s.noise_A, at_least(0.0));
+}
+
 void read_esc(const Table& t, EscParams& e) {
-  const std::string mode = t.choice("mode", {"duty", "rpm", "thrust_by_rpm"});
-  e.mode = mode == "duty"  ? io::EscMode::duty
-           : mode == "rpm" ? io::EscMode::rpm
-                           : io::EscMode::thrust_by_rpm;
-  e.max_current_A = t.quantity_or("max_current", Dimension::current, e.max_current_A, above(0.0));
-  e.brake_current_A =
-      t.quantity_or("brake_current", Dimension::current, e.brake_current_A, at_least(0.0));
-  e.arming_voltage_V =
-      t.quantity_or("arming_voltage", Dimension::voltage, e.arming_voltage_V, at_least(0.0));
-  e.kp_Vspradps = t.number_or("kp_V_s_per_rad", e.kp_Vspradps, at_least(0.0));
-  e.ki_Vprad = t.number_or("ki_V_per_rad", e.ki_Vprad, at_least(0.0));
+  using fw::esc::Mode;
+  const std::map<std::string, Mode> modes = {{"duty", Mode::duty},
+                                             {"rpm", Mode::speed},
+                                             {"thrust_by_rpm", Mode::thrust_by_speed},
+                                             {"power", Mode::power},
+                                             {"thrust_by_power", Mode::thrust_by_power}};
+  fw::esc::Calibration& c = e.calibration;
+  if (t.has("calibration")) read_calibration(t.table("calibration"), c);
+  if (t.has("shunt")) read_shunt(t.table("shunt"), e.shunt);
+  const auto mode =
+      modes.find(t.choice("mode", {"duty", "rpm", "thrust_by_rpm", "power", "thrust_by_power"}));
+  if (mode != modes.end()) c.mode = mode->second;
+  const auto into = [&t](const char* key, Dimension dimension, float& value, lua::Range range) {
+    value = static_cast<float>(t.quantity_or(key, dimension, static_cast<double>(value), range));
+  };
+  into("max_current", Dimension::current, c.motor.max_current_A, above(0.0));
+  into("brake_current", Dimension::current, c.motor.max_braking_A, at_least(0.0));
+  into("arming_voltage", Dimension::voltage, c.arming_voltage_V, at_least(0.0));
 }
 
 void read_capture(const Table& t, CaptureParams& c) {
@@ -114,6 +142,7 @@ Result<FlightParams> read_vehicle(const std::string& path) {
   read_motor(t.table("motor"), p.vehicle.motor);
   read_battery(t.table("battery"), p.vehicle.battery);
   read_esc(t.table("esc"), p.esc);
+  p.esc.pole_pairs = p.vehicle.motor.pole_pairs;
   if (t.has("capture")) read_capture(t.table("capture"), p.capture);
   const std::string propeller = t.text("propeller");
   if (const auto good = t.finish(); !good) return good.error();

@@ -10,6 +10,7 @@
 #include "harness/base/near.hpp"
 #include "harness/flight/tests/paths.hpp"
 #include "harness/lua/table.hpp"
+#include "io_bridges/protocols/esc_codec.hpp"
 
 namespace whirl::flight {
 namespace {

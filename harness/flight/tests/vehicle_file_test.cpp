@@ -14,18 +14,29 @@ namespace {
 
 const std::string kVehicles = std::string(kSourceFolder) + "/test_plans/vehicles/";
 
-// hp_quad.lua with one passage replaced, in a folder of its own; answers with the complaint.
-std::string complaint_about(const std::string& passage, const std::string& instead) {
+// hp_quad.lua with one passage replaced, in a folder of its own.
+Result<FlightParams> read_changed(const std::string& passage, const std::string& instead) {
   std::stringstream text;
   text << std::ifstream(kVehicles + "hp_quad.lua").rdbuf();
   std::string changed = text.str();
   const auto at = changed.find(passage);
   EXPECT_NE(at, std::string::npos) << passage;
   changed.replace(at, passage.size(), instead);
-  const auto folder = std::filesystem::path(::testing::TempDir()) / "whirl_vehicle_file_test";
-  std::filesystem::create_directories(folder);
-  std::ofstream(folder / "quad.lua") << changed;
-  const auto result = read_vehicle((folder / "quad.lua").string());
+  // Its own paths lead to the propellers and to the polars.
+  const auto root = std::filesystem::path(::testing::TempDir()) / "whirl_vehicle_file_test";
+  std::filesystem::create_directories(root / "test_plans/vehicles");
+  for (const char* folder : {"test_plans/propellers", "plant"}) {
+    if (std::filesystem::exists(root / folder)) continue;
+    std::filesystem::create_directory_symlink(std::string(kSourceFolder) + "/" + folder,
+                                              root / folder);
+  }
+  const std::filesystem::path file = root / "test_plans/vehicles/quad.lua";
+  std::ofstream(file) << changed;
+  return read_vehicle(file.string());
+}
+
+std::string complaint_about(const std::string& passage, const std::string& instead) {
+  const auto result = read_changed(passage, instead);
   return result ? "none" : result.error().message();
 }
 
@@ -43,7 +54,28 @@ TEST(VehicleFile, HpQuadIsTheVehicleOfTheThesis) {
   EXPECT_LT(v.airframe.rotors[3].p_BP_B_m.y(), -0.2);
   EXPECT_EQ(v.airframe.rotors[0].spin, 1);
   EXPECT_EQ(v.airframe.rotors[1].spin, -1);
-  EXPECT_EQ(params.value().esc.mode, io::EscMode::thrust_by_rpm);
+  const fw::esc::Calibration& c = params.value().esc.calibration;
+  EXPECT_EQ(c.mode, fw::esc::Mode::thrust_by_speed);
+  EXPECT_EQ(c.motor.max_current_A, 20.0f);
+  EXPECT_EQ(c.arming_voltage_V, 15.7f);
+  EXPECT_FALSE(c.identified);
+  EXPECT_EQ(params.value().esc.pole_pairs, 7);
+}
+
+TEST(VehicleFile, CalibrationHasTheNamesOfTheImagesSet) {
+  const auto params = read_changed(
+      "esc = { mode = \"thrust_by_rpm\"",
+      "esc = { calibration = { kt = 0.0101, c0 = 0.07, d1 = -1.7e5, identified = true }, "
+      "shunt = { offset = \"4.3 A\" }, mode = \"thrust_by_power\"");
+  ASSERT_TRUE(params.ok()) << params.error().message();
+  const EscParams& esc = params.value().esc;
+  EXPECT_EQ(esc.calibration.mode, fw::esc::Mode::thrust_by_power);
+  EXPECT_EQ(esc.calibration.motor.Kt_NmpA, 0.0101f);
+  EXPECT_EQ(esc.calibration.rotor.c0, 0.07f);
+  EXPECT_EQ(esc.calibration.rotor.d1, -1.7e5f);
+  EXPECT_TRUE(esc.calibration.identified);
+  EXPECT_EQ(esc.shunt.offset_low_A, 4.3);
+  EXPECT_EQ(esc.shunt.offset_high_A, 4.3);
 }
 
 TEST(VehicleFile, EachMistakeIsOneSentenceWithItsPlace) {
@@ -54,7 +86,9 @@ TEST(VehicleFile, EachMistakeIsOneSentenceWithItsPlace) {
       {"\"900 g\"", "\"-900 g\"", "quad.lua:7: mass: '-900 g' must be positive"},
       {"\"25 cm\"", "\"25 furlong\"", "furlong"},
       {"mass = ", "masse = ", "mass"},
-      {"\"thrust_by_rpm\"", "\"thrust_by_power\"", "esc.mode: 'thrust_by_power' is not known"},
+      {"\"thrust_by_rpm\"", "\"servo\"", "esc.mode: 'servo' is not known"},
+      {"esc = {", "esc = { calibration = { Kt = 0.01 },", "Kt"},
+      {"esc = {", "esc = { shunt = { gain_tolerance = \"70 %\" },", "gain_tolerance"},
       {"{ \"0.0125 kg m2\", ", "{ ", "needs three values"},
       {"hk_10x4.5.lua", "hk_99.lua", "hk_99.lua"},
   };
