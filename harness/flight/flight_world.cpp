@@ -58,6 +58,8 @@ void FlightWorld::take(const io::Batch& happened) {
       if (setpoint.valid != 0) escs_[header.port - 1u].write(setpoint.value);
     } else if (header.kind == io::Kind::uart_received && header.port == kRadioPort) {
       station_.receive(reader.payload(), header.t_ns);
+    } else if (header.kind == io::Kind::uart_delivered && header.port == kRadioPort) {
+      station_.delivered(reader.payload(), header.t_ns);
     }
   }
 }
@@ -110,17 +112,7 @@ Result<Done> FlightWorld::command(const lua::Table& wish, std::int64_t /*now_ns*
     const double height_m = wish.quantity("takeoff", Dimension::length, lua::above(0.0));
     if (height_m > 0.0) command_takeoff(height_m);
   }
-  if (wish.has("position") || wish.has("yaw")) {
-    Target target = station_.target().value_or(Target{vehicle_.state().p_WB_W_m, 0.0});
-    target.yaw_rad = wish.quantity_or("yaw", Dimension::angle, target.yaw_rad);
-    if (wish.has("position")) {
-      const lua::Table p = wish.table("position");
-      target.p_W_m = {p.quantity_or("north", Dimension::length, target.p_W_m.x()),
-                      p.quantity_or("east", Dimension::length, target.p_W_m.y()),
-                      -p.quantity_or("height", Dimension::length, -target.p_W_m.z())};
-    }
-    station_.set_target(target);
-  }
+  if (wish.has("position") || wish.has("yaw")) command_target(wish);
   if (wish.has("land") && wish.flag_or("land", true)) {
     station_.set_target(std::nullopt);
     station_.command(kLand, {});
@@ -130,12 +122,40 @@ Result<Done> FlightWorld::command(const lua::Table& wish, std::int64_t /*now_ns*
 
 void FlightWorld::command_takeoff(double height_m) {
   const plant::VehicleState& s = vehicle_.state();
-  station_.command(kTakeoff, {0, 0, 0, 0, 0, 0, static_cast<float>(height_m)});
   station_.set_target(
       Target{{s.p_WB_W_m.x(), s.p_WB_W_m.y(), -height_m}, roll_pitch_yaw_rad(s.q_WB).z()});
+  station_.command(kTakeoff, {0, 0, 0, 0, 0, 0, static_cast<float>(height_m)});
+}
+
+void FlightWorld::command_target(const lua::Table& wish) {
+  Target target = station_.target().value_or(Target{vehicle_.state().p_WB_W_m, 0.0});
+  target.yaw_rad = wish.quantity_or("yaw", Dimension::angle, target.yaw_rad);
+  if (wish.has("position")) {
+    const lua::Table p = wish.table("position");
+    target.p_W_m = {p.quantity_or("north", Dimension::length, target.p_W_m.x()),
+                    p.quantity_or("east", Dimension::length, target.p_W_m.y()),
+                    -p.quantity_or("height", Dimension::length, -target.p_W_m.z())};
+  }
+  if (!wish.has("speed")) return station_.set_target(target);
+  station_.move_target(target, wish.quantity("speed", Dimension::speed, lua::above(0.0)));
+}
+
+Result<Done> FlightWorld::add_jet(const lua::Table& wish) {
+  const lua::Table t = wish.table("jet");
+  plant::Jet jet;
+  jet.upward_mps = t.quantity("up", Dimension::speed);
+  jet.north_m = t.quantity_or("north", Dimension::length, 0.0);
+  jet.east_m = t.quantity_or("east", Dimension::length, 0.0);
+  jet.radius_m = t.quantity("radius", Dimension::length, lua::above(0.0));
+  jet.edge_m = t.quantity_or("edge", Dimension::length, jet.edge_m, lua::above(0.0));
+  if (jet.edge_m > 2.0 * jet.radius_m) t.refuse("edge", "wider than the jet itself");
+  if (auto good = wish.finish(); !good) return good;
+  vehicle_.add_jet(jet);
+  return Done{};
 }
 
 Result<Done> FlightWorld::gust(const lua::Table& wish, std::int64_t now_ns) {
+  if (wish.has("jet")) return add_jet(wish);
   plant::GustWindow gust;
   gust.wind_W_mps = {wish.quantity_or("north", Dimension::speed, 0.0),
                      wish.quantity_or("east", Dimension::speed, 0.0),

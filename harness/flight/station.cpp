@@ -31,7 +31,45 @@ void Station::send_pose(const CapturedPose& pose, const Send& send) {
   send(pose.sent_ns, io::encode(io::pack(message, sender_)));
 }
 
+// ---- What is commanded, and when it has passed the wire
+
+void Station::await(Awaited what) {
+  awaited_ = what;
+  carriers_.clear();
+  on_wire_ns_ = -1;
+  for (Pending& earlier : commands_) earlier.newest = false;
+}
+
+void Station::carry(const io::MavlinkFrame& frame, Awaited what) {
+  if (awaited_ == what) carriers_.push_back(io::encode(frame));
+}
+
+void Station::delivered(std::span<const std::uint8_t> frame, std::int64_t t_ns) {
+  const bool carries = std::any_of(carriers_.begin(), carriers_.end(), [frame](const auto& bytes) {
+    return std::equal(bytes.begin(), bytes.end(), frame.begin(), frame.end());
+  });
+  if (!carries) return;
+  on_wire_ns_ = t_ns;
+  awaited_ = Awaited::nothing;
+  carriers_.clear();
+}
+
+void Station::set_target(const std::optional<Target>& target) {
+  await(target ? Awaited::target : Awaited::nothing);
+  target_ = target;
+  goal_speed_mps_ = 0.0;
+}
+
+void Station::move_target(const Target& goal, double speed_mps) {
+  await(Awaited::target);
+  if (!target_) target_ = goal;
+  target_->yaw_rad = goal.yaw_rad;
+  goal_W_m_ = goal.p_W_m;
+  goal_speed_mps_ = speed_mps;
+}
+
 void Station::command(std::uint16_t command, const std::array<float, 7>& param) {
+  await(Awaited::command);
   Pending pending;
   pending.message.command = command;
   pending.message.param = param;
@@ -42,20 +80,33 @@ void Station::command(std::uint16_t command, const std::array<float, 7>& param) 
 }
 
 void Station::step(std::int64_t t_ns, const Send& send) {
-  if (target_ && t_ns >= next_target_ns_) {
-    io::SetPositionTargetLocalNed message;
-    message.time_boot_ms = static_cast<std::uint32_t>(t_ns / 1'000'000);
-    message.x = static_cast<float>(target_->p_W_m.x());
-    message.y = static_cast<float>(target_->p_W_m.y());
-    message.z = static_cast<float>(target_->p_W_m.z());
-    message.yaw = static_cast<float>(target_->yaw_rad);
-    message.type_mask = kPositionAndYaw;
-    message.target_system = message.target_component = kVehicle;
-    message.coordinate_frame = kLocalNed;
-    send(t_ns, io::encode(io::pack(message, sender_)));
-    next_target_ns_ = t_ns + kTargetPeriod_ns;
+  if (target_ && goal_speed_mps_ > 0.0) {
+    const Eigen::Vector3d left_m = goal_W_m_ - target_->p_W_m;
+    const double reach_m = goal_speed_mps_ * static_cast<double>(t_ns - last_step_ns_) * 1e-9;
+    target_->p_W_m += left_m.norm() <= reach_m ? left_m : left_m.normalized() * reach_m;
   }
-  if (commands_.empty() || t_ns < commands_.front().next_ns) return;
+  last_step_ns_ = t_ns;
+  if (target_ && t_ns >= next_target_ns_) send_target(t_ns, send);
+  if (!commands_.empty() && t_ns >= commands_.front().next_ns) send_command(t_ns, send);
+}
+
+void Station::send_target(std::int64_t t_ns, const Send& send) {
+  io::SetPositionTargetLocalNed message;
+  message.time_boot_ms = static_cast<std::uint32_t>(t_ns / 1'000'000);
+  message.x = static_cast<float>(target_->p_W_m.x());
+  message.y = static_cast<float>(target_->p_W_m.y());
+  message.z = static_cast<float>(target_->p_W_m.z());
+  message.yaw = static_cast<float>(target_->yaw_rad);
+  message.type_mask = kPositionAndYaw;
+  message.target_system = message.target_component = kVehicle;
+  message.coordinate_frame = kLocalNed;
+  const io::MavlinkFrame frame = io::pack(message, sender_);
+  carry(frame, Awaited::target);
+  send(t_ns, io::encode(frame));
+  next_target_ns_ = t_ns + kTargetPeriod_ns;
+}
+
+void Station::send_command(std::int64_t t_ns, const Send& send) {
   Pending& first = commands_.front();
   if (first.tries == kTries) {
     last_result_ = kUnanswered;
@@ -64,7 +115,9 @@ void Station::step(std::int64_t t_ns, const Send& send) {
   }
   first.message.confirmation = static_cast<std::uint8_t>(first.tries++);
   first.next_ns = t_ns + kRetry_ns;
-  send(t_ns, io::encode(io::pack(first.message, sender_)));
+  const io::MavlinkFrame frame = io::pack(first.message, sender_);
+  if (first.newest) carry(frame, Awaited::command);
+  send(t_ns, io::encode(frame));
 }
 
 void Station::receive(std::span<const std::uint8_t> bytes, std::int64_t t_ns) {

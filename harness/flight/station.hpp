@@ -1,7 +1,9 @@
 // The ground station: what a pilot's computer does on the radio, and what it knows of the vehicle.
 //
-//   Up    captured poses as VICON_POSITION_ESTIMATE; the target at 10 Hz once there is one;
-//         commands, repeated every 300 ms with a rising confirmation until COMMAND_ACK
+//   Up    captured poses as VICON_POSITION_ESTIMATE; the target at 10 Hz once there is one, moving
+//         straight to a new one where a speed is given; commands, repeated every 300 ms with a
+//         rising confirmation until COMMAND_ACK
+//   Wire  a command has passed when the first frame that carries it has reached the vehicle's UART
 //   Down  the vehicle's telemetry, last value of each; nothing is known before it was heard
 //   Ids   we are 255/190, the vehicle is 1/1
 #pragma once
@@ -43,13 +45,17 @@ class Station {
   Station();
 
   void send_pose(const CapturedPose& pose, const Send& send);
-  void set_target(const std::optional<Target>& target) { target_ = target; }
+  void set_target(const std::optional<Target>& target);
+  void move_target(const Target& goal, double speed_mps);  // from the present target on
   const std::optional<Target>& target() const { return target_; }
   // COMMAND_LONG; waits its turn behind an earlier one that is not yet acknowledged.
   void command(std::uint16_t command, const std::array<float, 7>& param);
   // What is due at t_ns: set-points and commands.
   void step(std::int64_t t_ns, const Send& send);
   void receive(std::span<const std::uint8_t> bytes, std::int64_t t_ns);
+  void delivered(std::span<const std::uint8_t> frame, std::int64_t t_ns);
+  // Of the newest of command(), set_target() and move_target(); -1: not yet.
+  std::int64_t on_wire_ns() const { return on_wire_ns_; }
 
   Telemetry telemetry(std::int64_t now_ns) const;
   bool command_pending() const { return !commands_.empty(); }
@@ -63,14 +69,25 @@ class Station {
     io::CommandLong message;
     std::int64_t next_ns = 0;
     int tries = 0;
+    bool newest = true;
   };
+  enum class Awaited : std::uint8_t { nothing, target, command };
+  void await(Awaited what);
+  void carry(const io::MavlinkFrame& frame, Awaited what);
+  void send_target(std::int64_t t_ns, const Send& send);
+  void send_command(std::int64_t t_ns, const Send& send);
   void hear(const io::MavlinkFrame& frame);
   void acknowledged(const io::CommandAck& ack);
 
   io::MavlinkSender sender_{255, 190, 0};
   io::MavlinkParser parser_;
   std::optional<Target> target_;
-  std::int64_t next_target_ns_ = 0;
+  Eigen::Vector3d goal_W_m_ = Eigen::Vector3d::Zero();
+  double goal_speed_mps_ = 0.0;
+  std::int64_t next_target_ns_ = 0, last_step_ns_ = 0;
+  Awaited awaited_ = Awaited::nothing;
+  std::vector<std::vector<std::uint8_t>> carriers_;  // frames that carry what is awaited
+  std::int64_t on_wire_ns_ = -1;
   std::deque<Pending> commands_;
   int last_result_ = kWaiting;
   Telemetry telemetry_;

@@ -30,6 +30,7 @@ void MavlinkLink::find(Nanoseconds now, std::string what) {
 }
 
 void MavlinkLink::send_frame(std::span<const std::uint8_t> bytes, Nanoseconds t_ns) {
+  if (bytes.empty()) return;
   const auto later = std::find_if(waiting_.begin(), waiting_.end(),
                                   [t_ns](const Waiting& w) { return w.t_ns > t_ns; });
   waiting_.insert(later, {t_ns, {bytes.begin(), bytes.end()}});
@@ -56,7 +57,7 @@ bool MavlinkLink::takes_air(std::size_t bytes, Nanoseconds now, const char* dire
 void MavlinkLink::next_frame() {
   const Nanoseconds now = queue_.now();
   while (!waiting_.empty() && waiting_.front().t_ns <= now) {
-    const std::vector<std::uint8_t> bytes = std::move(waiting_.front().bytes);
+    std::vector<std::uint8_t> bytes = std::move(waiting_.front().bytes);
     waiting_.pop_front();
     if (!takes_air(bytes.size(), now, "up")) continue;
     ++counts_.up;
@@ -68,7 +69,7 @@ void MavlinkLink::next_frame() {
     const Nanoseconds air_ns =
         std::llround(static_cast<double>(bytes.size()) / params_.air_bytes_per_s * 1e9);
     const bool idle = to_mcu_.empty();
-    to_mcu_.insert(to_mcu_.end(), bytes.begin(), bytes.end());
+    to_mcu_.push_back(std::move(bytes));
     if (idle) {
       byte_due_.at(std::max(now, air_free_ns_ - air_ns) +
                    std::llround(kBitsPerByte / params_.baud * 1e9));
@@ -78,10 +79,17 @@ void MavlinkLink::next_frame() {
 }
 
 void MavlinkLink::next_byte() {
-  const std::uint8_t value = to_mcu_.front();
-  to_mcu_.pop_front();
+  const std::uint8_t value = to_mcu_.front()[sent_];
+  const bool last = ++sent_ == to_mcu_.front().size();
+  std::vector<std::uint8_t> frame;
+  if (last) {
+    frame = std::move(to_mcu_.front());
+    to_mcu_.pop_front();
+    sent_ = 0;
+  }
   if (!to_mcu_.empty()) byte_due_.in(std::llround(kBitsPerByte / params_.baud * 1e9));
   send({.value = value}, {.baud = params_.baud});
+  if (last && delivered_) delivered_(frame, queue_.now());
 }
 
 void MavlinkLink::check_format(const UartFormat& format, Nanoseconds now) {

@@ -1,7 +1,8 @@
 // A telemetry radio between the MCU's UART and a ground station that talks MAVLink.
 //
 //   Up       frames given with their earliest time; each waits for the air, may be lost on it
-//            (seeded), then goes to the MCU byte by byte at the radio's own baud rate
+//            (seeded), then goes to the MCU byte by byte at the radio's own baud rate; its last stop
+//            bit is told
 //   Down     what the MCU sends is parsed; each whole frame is handed over with the time of its
 //            last stop bit, unless the air loses it
 //   Air      half duplex: both directions share air_bytes_per_s; a direction whose frames wait
@@ -40,6 +41,7 @@ class MavlinkLink : public UartPeer {
   MavlinkLink(EventQueue& queue, const Params& params, FindingSink findings);
 
   void on_frame(FrameSink sink) { sink_ = std::move(sink); }
+  void on_delivered(FrameSink sink) { delivered_ = std::move(sink); }
   // Bytes of one frame, to be sent no earlier than t_ns.
   void send_frame(std::span<const std::uint8_t> bytes, Nanoseconds t_ns);
   void receive(const UartByte& byte, const UartFormat& format, Nanoseconds now) override;
@@ -63,11 +65,12 @@ class MavlinkLink : public UartPeer {
   EventQueue& queue_;
   Params params_;
   FindingSink findings_;
-  FrameSink sink_;
+  FrameSink sink_, delivered_;
   MavlinkParser parser_;
   RandomStream up_loss_, down_loss_;
-  std::deque<Waiting> waiting_;      // uplink frames, in order of time
-  std::deque<std::uint8_t> to_mcu_;  // bytes under way on the serial line
+  std::deque<Waiting> waiting_;                   // uplink frames, in order of time
+  std::deque<std::vector<std::uint8_t>> to_mcu_;  // under way on the serial line
+  std::size_t sent_ = 0;                          // bytes of the first of them
   Event frame_due_, byte_due_;
   Nanoseconds air_free_ns_ = 0;
   Nanoseconds heard_ns_ = 0;

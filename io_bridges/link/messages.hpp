@@ -42,6 +42,7 @@ enum class Kind : std::uint16_t {
   shaft_state = 46,    // ShaftState: of a power stage, at each boundary
   i2c_reply = 47,      // I2cReplyHead + bytes read, port = bus number; t_ns: the STOP
   shoot_through = 48,  // ShootThrough, port = leg 0..2: both switches were on until t_ns
+  uart_delivered = 49,  // a uart_frame has passed the line to the board; t_ns: the last stop bit
 };
 
 // Ports of board_reset: stm32::ResetCause by number.

@@ -171,10 +171,52 @@ TEST(FlightWorld, SendsPosesAndCommandsOverTheRadio) {
   EXPECT_EQ(commands, 4);
 }
 
+TEST(FlightWorld, AJetBlowsWhereItIsAndNowhereElse) {
+  Flight flight;
+  flight.run(0.1);
+  ASSERT_TRUE(
+      flight.world.gust(wish("{ jet = { up = '3.5 m/s', radius = '35 cm', north = '2 m' } }"), 0)
+          .ok());
+  flight.run(0.1);
+  EXPECT_EQ(flight.value("wind_down"), 0.0);  // 2 m away
+  ASSERT_TRUE(flight.world.gust(wish("{ jet = { up = '1 m/s', radius = '35 cm' } }"), 0).ok());
+  flight.run(0.1);
+  EXPECT_TRUE(near(flight.value("wind_down"), -1.0, round_off(4, 1)));
+}
+
+TEST(FlightWorld, TellsWhenACommandHasReachedTheVehiclesUart) {
+  Flight flight;
+  flight.run(0.1);
+  EXPECT_LT(flight.world.command_on_wire_ns(), 0);
+  ASSERT_TRUE(flight.world.command(wish("{ position = { height = '1 m' } }"), flight.t_ns).ok());
+  std::vector<std::uint8_t> carrier;
+  for (int i = 0; i < 10 && carrier.empty(); ++i) {
+    flight.step();
+    io::Reader reader(flight.sensed.bytes());
+    while (reader.next()) {
+      const bool target =
+          reader.header().kind == io::Kind::uart_frame && reader.payload()[7] == 84;  // message id
+      if (target) carrier.assign(reader.payload().begin(), reader.payload().end());
+    }
+  }
+  ASSERT_FALSE(carrier.empty());
+  EXPECT_LT(flight.world.command_on_wire_ns(), 0);
+  io::Batch happened, sensed;
+  happened.add(io::Kind::uart_delivered, kRadioPort, flight.t_ns + 123'456, carrier.data(),
+               static_cast<std::uint32_t>(carrier.size()));
+  flight.world.step(flight.t_ns + kMs, happened, sensed);
+  EXPECT_EQ(flight.world.command_on_wire_ns(), flight.t_ns + 123'456);
+}
+
 TEST(FlightWorld, RefusesWishesItDoesNotUnderstand) {
   Flight flight;
-  for (const char* text : {"{ fly = true }", "{ takeoff = '1.1 kg' }", "{ takeoff = '-1 m' }"}) {
+  for (const char* text : {"{ fly = true }", "{ takeoff = '1.1 kg' }", "{ takeoff = '-1 m' }",
+                           "{ position = { north = '1 m' }, speed = '0 m/s' }"}) {
     EXPECT_FALSE(flight.world.command(wish(text), 0).ok()) << text;
+  }
+  for (const char* text : {"{ jet = { up = '3 m/s' } }", "{ jet = { radius = '1 m' } }",
+                           "{ jet = { up = '3 m/s', radius = '5 cm', edge = '20 cm' } }"}) {
+    EXPECT_FALSE(flight.world.gust(wish(text), 0).ok()) << text;
   }
   EXPECT_FALSE(flight.world.gust(wish("{ duration = '1 s' }"), 0).ok());
 }

@@ -183,5 +183,67 @@ TEST(Capture, AnglesFollowTheAerospaceOrder) {
   EXPECT_TRUE(near(rpy.z(), 0.3, round_off(10, 1)));
 }
 
+// The vehicle's UART sees what arrives: here every frame, 10 ms after it was sent.
+struct Line : Air {
+  std::vector<std::vector<std::uint8_t>> frames;
+
+  Line() {
+    send = [this](std::int64_t t_ns, std::span<const std::uint8_t> frame) {
+      times.push_back(t_ns);
+      frames.emplace_back(frame.begin(), frame.end());
+    };
+  }
+  void arrives(std::size_t i) { station.delivered(frames.at(i), times.at(i) + 10 * kMs); }
+};
+
+TEST(Station, ACommandHasPassedTheWireWhenTheFirstFrameThatCarriesItArrives) {
+  Line line;
+  line.station.set_target(Target{});
+  line.run(0, 50);
+  ASSERT_EQ(line.frames.size(), 1u);
+  line.arrives(0);
+  EXPECT_EQ(line.station.on_wire_ns(), 10 * kMs);
+
+  line.station.command(400, {1.0f});
+  EXPECT_LT(line.station.on_wire_ns(), 0);
+  line.run(50, 400);  // command at 50 and 350, targets at 100, 200 and 300 ms
+  ASSERT_EQ(line.times,
+            (std::vector<std::int64_t>{0, 50 * kMs, 100 * kMs, 200 * kMs, 300 * kMs, 350 * kMs}));
+  line.arrives(2);  // a target: not what was commanded last; the first try of the command is lost
+  EXPECT_LT(line.station.on_wire_ns(), 0);
+  line.arrives(5);
+  EXPECT_EQ(line.station.on_wire_ns(), 360 * kMs);
+}
+
+TEST(Station, ANewTargetHasPassedWithItsOwnFrame) {
+  Line line;
+  line.station.set_target(Target{});
+  line.run(0, 50);
+  line.station.set_target(Target{{1.0, 0.0, -1.1}, 0.0});
+  line.arrives(0);  // carries the old one
+  EXPECT_LT(line.station.on_wire_ns(), 0);
+  line.run(50, 150);
+  line.arrives(1);
+  EXPECT_EQ(line.station.on_wire_ns(), 110 * kMs);
+  line.station.command(400, {1.0f});
+  line.station.command(22, {});  // waits behind the first one
+  line.run(150, 160);
+  line.arrives(2);
+  EXPECT_LT(line.station.on_wire_ns(), 0);
+}
+
+TEST(Station, ATargetMovesStraightAtItsSpeedAndStops) {
+  Air air;
+  air.station.set_target(Target{{1.5, 0.0, -1.1}, 0.0});
+  air.run(0, 1000);
+  air.station.move_target(Target{{-1.5, 0.0, -1.1}, 0.0}, 0.3);
+  air.run(1000, 6000);  // 1.5 m in 5 s
+  EXPECT_TRUE(near(air.station.target()->p_W_m.x(), 0.0, stated(0.0004, "one step")));
+  air.run(6000, 12000);
+  EXPECT_EQ(air.station.target()->p_W_m.x(), -1.5);
+  const auto last = io::unpack<io::SetPositionTargetLocalNed>(air.sent.back());
+  EXPECT_EQ(last->x, -1.5f);
+}
+
 }  // namespace
 }  // namespace whirl::flight

@@ -19,6 +19,8 @@ struct Bench {
   std::vector<std::uint8_t> to_mcu;
   std::vector<Nanoseconds> times;
   std::vector<Nanoseconds> frames;
+  std::vector<std::vector<std::uint8_t>> delivered;
+  std::vector<Nanoseconds> delivered_at;
   MavlinkSender sender{1, 1, 0};
 
   explicit Bench(const MavlinkLink::Params& params = {})
@@ -28,6 +30,10 @@ struct Bench {
       times.push_back(queue.now());
     });
     link.on_frame([this](std::span<const std::uint8_t>, Nanoseconds t) { frames.push_back(t); });
+    link.on_delivered([this](std::span<const std::uint8_t> frame, Nanoseconds t) {
+      delivered.emplace_back(frame.begin(), frame.end());
+      delivered_at.push_back(t);
+    });
   }
   std::vector<std::uint8_t> heartbeat() {
     Heartbeat beat;
@@ -60,6 +66,23 @@ TEST(MavlinkLink, TwoFramesAtOnceFollowEachOther) {
   bench.link.send_frame(bench.heartbeat(), 0);
   bench.queue.run_until(1'000'000'000);
   EXPECT_EQ(bench.times.back(), 2 * static_cast<Nanoseconds>(first.size()) * kByte_ns);
+}
+
+TEST(MavlinkLink, TellsTheLastStopBitOfEachFrameThatReachedTheMcu) {
+  Bench bench;
+  const auto first = bench.heartbeat(), second = bench.heartbeat();
+  const auto bytes = static_cast<Nanoseconds>(first.size());
+  bench.link.send_frame(first, 5'000'000);
+  bench.link.send_frame(second, 5'000'000);
+  bench.queue.run_until(1'000'000'000);
+  EXPECT_EQ(bench.delivered, (std::vector<std::vector<std::uint8_t>>{first, second}));
+  const std::vector<Nanoseconds> at{5'000'000 + bytes * kByte_ns, 5'000'000 + 2 * bytes * kByte_ns};
+  EXPECT_EQ(bench.delivered_at, at);
+
+  Bench lossy({.uplink_loss = 1.0});
+  lossy.link.send_frame(first, 0);
+  lossy.queue.run_until(1'000'000'000);
+  EXPECT_TRUE(lossy.delivered.empty());
 }
 
 TEST(MavlinkLink, LosesTheStatedShareOfFramesAlikeForOneSeed) {

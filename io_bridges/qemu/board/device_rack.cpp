@@ -85,6 +85,11 @@ struct DeviceRack::Parts {
   Result<Done> add_mpu6000(const DeviceConfig& device, int number);
   Result<Done> add_esc(const DeviceConfig& device);
   Result<Done> add_radio(const DeviceConfig& device);
+  auto told(Kind kind, int uart) {
+    return [this, kind, uart](std::span<const std::uint8_t> bytes, io::Nanoseconds t_ns) {
+      site.happened.add(kind, port(uart), t_ns, bytes.data(), std::uint32_t(bytes.size()));
+    };
+  }
   Result<Done> add_serial(const DeviceConfig& device);
   Result<Done> add_i2c_master(const DeviceConfig& device);
   Result<Done> add_power_stage(const DeviceConfig& device);
@@ -249,10 +254,8 @@ Result<Done> DeviceRack::Parts::add_radio(const DeviceConfig& device) {
       return wrong(device, "unknown parameter '" + key + "'");
   }
   auto radio = std::make_unique<io::MavlinkLink>(site.events, params, site.finding);
-  radio->on_frame([this, name](std::span<const std::uint8_t> frame, io::Nanoseconds t_ns) {
-    site.happened.add(Kind::uart_received, port(name.number), t_ns, frame.data(),
-                      static_cast<std::uint32_t>(frame.size()));
-  });
+  radio->on_frame(told(Kind::uart_received, name.number));
+  radio->on_delivered(told(Kind::uart_delivered, name.number));
   uart_faults.push_back(
       std::make_unique<io::UartWireFaults>(site.events, faults, *radio, name.number, site.seed));
   if ((name.kind != "usart" && name.kind != "uart") || radios.count(name.number) != 0 ||
@@ -268,10 +271,7 @@ Result<Done> DeviceRack::Parts::add_serial(const DeviceConfig& device) {
   if (device.baud <= 0.0) return wrong(device, "needs a baud rate");
   auto serial =
       std::make_unique<io::SerialPort>(site.events, device.name, device.baud, site.finding);
-  serial->on_message([this, name](std::span<const std::uint8_t> bytes, io::Nanoseconds t_ns) {
-    site.happened.add(Kind::uart_received, port(name.number), t_ns, bytes.data(),
-                      static_cast<std::uint32_t>(bytes.size()));
-  });
+  serial->on_message(told(Kind::uart_received, name.number));
   uart_faults.push_back(
       std::make_unique<io::UartWireFaults>(site.events, faults, *serial, name.number, site.seed));
   if ((name.kind != "usart" && name.kind != "uart") || radios.count(name.number) != 0 ||
