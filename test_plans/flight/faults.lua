@@ -1,15 +1,7 @@
 -- One plan per class of fault, each in mid-hover: what the flight image does about it.
 -- told_state: 0 disarmed, 1 armed, 2 flying, 3 landing, 4 failsafe landing.
 
-local function hover(t)
-  t:within("8 s", function(s) return s.heartbeat_age_s < 1.5 end, "the first heartbeat")
-  t:wait "3 s"
-  t:command { arm = true }
-  t:within("4 s", function(s) return s.told_armed == 1 end, "armed")
-  t:command { takeoff = "1.1 m" }
-  t:within("6 s", function(s) return s.height_m > 1.0 end, "1 m high")
-  t:wait "3 s"
-end
+include "include/hover.lua"
 
 -- The set-points of these ESCs stay on time whatever happens to the others.
 local function on_time(t, escs)

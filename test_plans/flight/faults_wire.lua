@@ -1,14 +1,6 @@
 -- Faults that a sound flight survives without leaving its place: single bits, late answers, short
 -- silences, a sagging supply. What the image must do about lasting ones is in faults.lua.
-local function hover(t)
-  t:within("8 s", function(s) return s.heartbeat_age_s < 1.5 end, "the first heartbeat")
-  t:wait "3 s"
-  t:command { arm = true }
-  t:within("4 s", function(s) return s.told_armed == 1 end, "armed")
-  t:command { takeoff = "1.1 m" }
-  t:within("6 s", function(s) return s.height_m > 1.0 end, "1 m high")
-  t:wait "3 s"
-end
+include "include/hover.lua"
 
 -- The vehicle stays where it was while `fault` acts and for a second more.
 local function unmoved(name, fault, height)

@@ -48,10 +48,14 @@ plan "hover" {
     t:expect(gust:settled("10 cm", { offset = "0 m" }), "gust: back within 10 cm"):at_most "4 s"
 
     t:step "hover, judged"
-    local hover = t:record({ "height", "offset", "tilt" }, "10 s")
+    local hover = t:record({ "height", "offset", "tilt", "bus_current_1", "bus_current_2", "bus_current_3",
+                             "bus_current_4" }, "10 s")
     t:expect(hover:rms_error("height", "1.1 m"), "hover: height RMS error"):at_most "5 cm"
     t:expect(hover:rms_error("offset", "0 m"), "hover: sideways RMS error"):at_most "10 cm"
     t:expect(hover:rms "tilt", "hover: tilt RMS"):at_most "3 deg"
+    for motor = 1, 4 do
+      t:expect(hover:mean("bus_current_" .. motor), "hover: bus current of motor " .. motor):within("1.25 A", "1.45 A")
+    end
     tilt:stop()
 
     t:step "land"
