@@ -19,6 +19,7 @@ struct MotorConstants {
   // Moving the current from phase to phase against the inductance takes (3/pi) w_e L/2 per ampere:
   // like a resistance that grows with speed. Here for 7 pole pairs, per rad/s of the shaft.
   float overlap_ohm_s = 8e-5f;
+  float freewheel_V = 0.7f;  // diodes that carry the current while the PWM is off; 0: switches
   float no_load_current_A = 1.0f;
   float inertia_kgm2 = 3.752e-5f;
   float max_current_A = 20.0f;  // of the winding

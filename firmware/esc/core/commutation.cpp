@@ -16,13 +16,30 @@ Ticks since(Ticks now, Ticks then) {
 void Commutation::stop() {
   state_ = State::stopped;
   sectors_.fill(0);
-  good_ = missed_ = 0;
+  good_ = missed_ = unfit_ = 0;
   ordered_ = false;
+}
+
+void Commutation::join(Ticks now, std::uint8_t step, Ticks sector) {
+  stop();
+  state_ = State::running;
+  step_ = step;
+  sector_ = sector < config_.shortest_sector ? config_.shortest_sector : sector;
+  sectors_.fill(sector_);
+  good_ = kInARow;
+  commutated_at_ = sampled_at_ = now;
+  crossed_at_ = static_cast<Ticks>(now - sector_ / 2);
+  waited_ = sector_ / 2u;
+  crossing_known_ = true;
+  seen_before_ = false;
+  highest_counts_ = 0;
 }
 
 Commutation::Order Commutation::start(Ticks now) {
   stop();
   state_ = State::starting;
+  sampled_at_ = now;
+  waited_ = 0;
   sector_ = config_.align_sector;
   crossing_known_ = false;
   step_ = 1;  // step 0's field holds the rotor where step 2 ought to begin
@@ -36,6 +53,7 @@ Commutation::Order Commutation::order(Ticks at) {
 }
 
 Commutation::Order Commutation::on_commutated(Ticks now) {
+  if (!back_emf_fits() && state_ == State::running && unfit_ >= 2) lose();
   commutated_at_ = now;
   ordered_ = false;
   seen_before_ = false;
@@ -52,16 +70,35 @@ void Commutation::note_sector(Ticks length) {
 }
 
 void Commutation::lose() {
-  state_ = State::starting;
   ++bad_detections_;
-  good_ = missed_ = 0;
+  stop();
+}
+
+void Commutation::wait(Ticks now) {
+  constexpr std::uint32_t kFor_ever = 1u << 20;
+  if (waited_ < kFor_ever) waited_ += since(now, sampled_at_);
+  sampled_at_ = now;
+}
+
+// Half a sector off its crossing the floating phase lies half the back-EMF off the middle. A third of
+// that will do, for the last sample may come early; far more is a rotor that turns faster than told.
+bool Commutation::back_emf_fits() {
+  const auto seen = static_cast<std::uint32_t>(highest_counts_) * sector_;
+  highest_counts_ = 0;
+  const bool fits = 3 * seen > config_.flux_count_ticks && 2 * seen < 5 * config_.flux_count_ticks;
+  unfit_ = fits ? std::uint8_t{0} : static_cast<std::uint8_t>(unfit_ + 1);
+  if (!fits) good_ = 0;
+  return fits;
 }
 
 Commutation::Order Commutation::crossed(Ticks at) {
   if (crossing_known_) {
     const Ticks length = since(at, crossed_at_);
     const bool odd = length > 2u * sector_ || 2u * length < sector_;
-    if (state_ == State::running && odd && ++missed_ >= kInARow / 2) lose();
+    if (state_ == State::running && odd && ++missed_ >= kInARow / 2) {
+      lose();
+      return {};
+    }
     if (!odd) missed_ = 0;
     note_sector(length);
     if (good_ < kInARow && ++good_ == kInARow) state_ = State::running;
@@ -72,6 +109,7 @@ Commutation::Order Commutation::crossed(Ticks at) {
   }
   crossing_known_ = true;
   crossed_at_ = at;
+  waited_ = since(sampled_at_, at);
   const Ticks half = static_cast<Ticks>(sector_ / 2);
   return order(static_cast<Ticks>(at + half - share_of(sector_, config_.advance_share)));
 }
@@ -90,23 +128,29 @@ Commutation::Order Commutation::overtaken(Ticks now, int side, int bus_counts) {
 
 Commutation::Order Commutation::on_sample(Ticks now, int floating_counts, int bus_counts) {
   if (state_ == State::stopped) return {};
+  wait(now);
   // Positive before the crossing, negative after it, whatever the step.
   const auto side_in = [&](std::uint8_t step) {
     const int doubled = 2 * floating_counts - bus_counts;
     return (step & 1) != 0 ? -doubled : doubled;
   };
-  if (ordered_) return overtaken(now, side_in(previous_step()), bus_counts);
+  // At a rail a diode still carries the old current: that says nothing about the rotor. At low duty
+  // this outlasts the blank time, for the current dies slowly while the PWM is off.
+  const int rail = bus_counts / 64;
+  const bool at_rail = floating_counts <= rail || floating_counts >= bus_counts - rail;
+  if (ordered_) {
+    const int side = side_in(previous_step());
+    if (!at_rail && -side > highest_counts_) highest_counts_ = -side;
+    return overtaken(now, side, bus_counts);
+  }
   const Ticks elapsed = since(now, commutated_at_);
   const Ticks blank = share_of(sector_, config_.blank_share);
   if (elapsed <
       (state_ == State::running || blank < config_.start_blank ? blank : config_.start_blank)) {
     return {};
   }
-  // At a rail a diode still carries the old current: that says nothing about the rotor. At low duty
-  // this outlasts the blank time, for the current dies slowly while the PWM is off.
-  const int rail = bus_counts / 64;
-  const bool at_rail = floating_counts <= rail || floating_counts >= bus_counts - rail;
   const int side = at_rail ? 0 : side_in(step_);
+  if (side > highest_counts_ || -side > highest_counts_) highest_counts_ = side > 0 ? side : -side;
   const int clear = state_ == State::running ? 0 : config_.start_clear_counts;
   if (side > clear) {
     seen_before_ = true;
@@ -123,25 +167,33 @@ Commutation::Order Commutation::on_sample(Ticks now, int floating_counts, int bu
     const auto expected = static_cast<Ticks>(commutated_at_ + sector_ / 2);
     return crossed(state_ == State::running ? expected : now);
   }
-  // No crossing where one and a half sectors have passed: go on blindly, but not for ever.
+  // No crossing where one and a half sectors have passed: go on blindly, but not for ever, and not if
+  // there is hardly any back-EMF: then the rotor has been stopped.
   const Ticks patience = static_cast<Ticks>(sector_ < 0x5000 ? sector_ + sector_ / 2 : sector_);
   if (elapsed < patience) return {};
   ++bad_detections_;
   good_ = 0;
   crossing_known_ = false;
-  if (state_ == State::running && ++missed_ >= kInARow) lose();
+  if (state_ == State::running && (++missed_ >= kInARow || !back_emf_fits())) {
+    lose();
+    return {};
+  }
   return order(now);
 }
 
-float Commutation::speed_radps() const {
-  if (state_ != State::running) return 0.0f;
-  std::uint32_t sum = 0;
+Pace Commutation::pace() const {
+  Pace pace;
+  if (state_ != State::running) return pace;
   for (const Ticks length : sectors_) {
-    if (length == 0) return 0.0f;
-    sum += length;
+    if (length == 0) return {};
+    pace.revolution += length;
   }
-  constexpr float kTwoPi = 6.2831853f;
-  return kTwoPi * config_.ticks_per_s / (static_cast<float>(sum) * config_.pole_pairs);
+  const auto last = [&](unsigned back) { return sectors_[(newest_ + 6u - back) % 6u]; };
+  const std::uint32_t newest = last(1) + last(2), older = last(3) + last(4);
+  pace.slowing = newest * 40u > older * 41u || waited_ * 20u > newest * 11u;
+  pace.sector = newest / 2u;
+  if (waited_ > pace.sector) pace.sector = waited_;
+  return pace;
 }
 
 }  // namespace fw::esc

@@ -7,6 +7,8 @@
 //            up to half of its period
 //   Law      commutate half a sector after the crossing; samples right after a commutation, while the
 //            diodes still carry the old current, are not looked at
+//   Lost     crossings that do not come, or whose back-EMF is too small for the speed they tell of (a
+//            rotor that stands shows noise around the middle): it stops
 //   Source   classic trapezoidal control; speed from crossings [Bangura 2017, sec. 3.3.1.1]
 #pragma once
 #include <array>
@@ -25,6 +27,22 @@ struct CommutationConfig {
   int start_clear_counts = 10;     // doubled counts off the middle that noise alone does not reach
   std::uint8_t blank_share = 32;   // of 256: share of a sector that is not looked at
   std::uint8_t advance_share = 8;  // of 256: commutate earlier by this share of a sector
+  // Line-to-line back-EMF in counts times a sector's ticks: the same at every speed. 0.01005 V s over
+  // a sixth of one of 7 turns, at 6.177 mV per count.
+  std::uint32_t flux_count_ticks = 486'700;
+};
+
+// What the crossings say of the speed, in ticks.
+struct Pace {
+  std::uint32_t revolution = 0;  // the last six sectors; 0: not running
+  std::uint32_t sector = 0;  // mean of the last two, or of the next one so far if that is longer
+  bool slowing = false;      // the last two took longer than the two before, by more than noise
+  float radps(std::uint32_t ticks, unsigned sectors, const CommutationConfig& config) const {
+    constexpr float kSixth = 1.0471976f;
+    if (ticks == 0) return 0.0f;
+    return kSixth * static_cast<float>(sectors) * config.ticks_per_s /
+           (static_cast<float>(ticks) * static_cast<float>(config.pole_pairs));
+  }
 };
 
 class Commutation {
@@ -40,6 +58,8 @@ class Commutation {
   void stop();
   // The rotor has been aligned to step 0's field: the first commutation comes at once.
   Order start(Ticks now);
+  // The rotor turns, and `step` is right from now on (catching.hpp).
+  void join(Ticks now, std::uint8_t step, Ticks sector);
   // A sample of the floating phase, in counts, with the bus in the same scale.
   Order on_sample(Ticks now, int floating_counts, int bus_counts);
   // The ordered time has come and the bridge has been set to step().
@@ -47,7 +67,12 @@ class Commutation {
 
   State state() const { return state_; }
   std::uint8_t step() const { return step_; }
-  float speed_radps() const;  // mechanical; 0 unless running
+  Pace pace() const;
+  float speed_radps() const {  // mechanical, of the last revolution (electrical); 0 unless running
+    const Pace p = pace();
+    return p.radps(p.revolution, 6, config_);
+  }
+  const CommutationConfig& config() const { return config_; }
   bool in_sync() const { return state_ == State::running; }
   std::uint32_t bad_detections() const { return bad_detections_; }
 
@@ -59,6 +84,8 @@ class Commutation {
   Order crossed(Ticks at);
   void lose();
   void note_sector(Ticks length);
+  void wait(Ticks now);
+  bool back_emf_fits();
   Order order(Ticks at);
 
   CommutationConfig config_;
@@ -72,7 +99,10 @@ class Commutation {
   bool seen_before_ = false;
   bool ordered_ = false;
   bool crossing_known_ = false;  // of the last sector
-  std::uint8_t good_ = 0, missed_ = 0;
+  std::uint8_t good_ = 0, missed_ = 0, unfit_ = 0;
+  Ticks sampled_at_ = 0;
+  std::uint32_t waited_ = 0;  // since the last crossing; does not wrap
+  int highest_counts_ = 0;    // of the floating phase off the middle, doubled, in this sector
   std::array<Ticks, 6> sectors_{};
   std::uint8_t newest_ = 0;
   std::uint32_t bad_detections_ = 0;

@@ -5,12 +5,14 @@
 namespace fw::esc {
 namespace {
 
-constexpr float kStart_V = 2.0f;           // below, the rotor turns too slowly to be sensed
-constexpr float kLeast_V = 1.2f;           // a shorter on-time would leave nothing to sample
-constexpr float kHeld_radps = 100.0f;      // whatever the duty: slower, and commutation gets lost
-constexpr float kSlowest_radps = 60.0f;    // under this, speed control has nothing to hold on to
-constexpr std::uint16_t kStart_ms = 1500;  // longest start-up before it counts as a stall
-constexpr std::uint16_t kSyncLoss_ms = 50;
+constexpr float kStart_V = 2.0f;             // below, the rotor turns too slowly to be sensed
+constexpr float kLeast_V = 0.6f;             // a shorter on-time would leave nothing to sample
+constexpr float kHeld_radps = 100.0f;        // whatever the duty: slower, and commutation gets lost
+constexpr float kSlowest_radps = 60.0f;      // under this, speed control has nothing to hold on to
+constexpr std::uint16_t kStart_ms = 1500;    // longest start-up before it counts as a stall
+constexpr std::uint16_t kRestart_ms = 1500;  // after synchronism was lost
+constexpr std::uint8_t kLosses = 5;          // with less than the time below between them
+constexpr std::uint16_t kCalm_ms = 2000;
 constexpr float kOverCurrent_A = 22.0f;  // of the bus, averaged
 constexpr std::uint16_t kOverCurrent_ms = 3;
 constexpr float kLowest_V = 12.0f;  // 3 V a cell under load
@@ -91,6 +93,7 @@ float Core::speed_for(float value) const {
 
 void Core::enter(Phase phase) {
   if (phase == Phase::starting) {
+    losses_ = 0;
     speed_control_.restart();
     estimator_.restart(sensed_.speed_radps);
   }
@@ -113,11 +116,14 @@ void Core::advance_phase(bool wanted) {
       if (phase_ms_ > kStart_ms) supervisor_.latch(Latched::stalled);
       return;
     case Phase::running:
-      if (!seen) enter(Phase::lost);
+      if (phase_ms_ == kCalm_ms) losses_ = 0;
+      if (seen) return;
+      enter(Phase::lost);
+      if (++losses_ > kLosses) supervisor_.latch(Latched::desync);
       return;
     case Phase::lost:
       if (seen) return enter(Phase::running);
-      if (phase_ms_ > kSyncLoss_ms) supervisor_.latch(Latched::desync);
+      if (phase_ms_ > kRestart_ms) supervisor_.latch(Latched::desync);
       return;
   }
 }
@@ -127,27 +133,29 @@ Drive Core::drive_for_phase(float value) {
     case Phase::stopped:
       return {};
     case Phase::starting:
+    case Phase::lost:  // the driver catches the rotor, or starts it anew
       return {kStart_V / sensed_.bus_voltage_V, true};
     case Phase::running:
       return regulate(value);
-    case Phase::lost:
-      return {drive_.duty, true};  // as it was: the driver looks for the rotor
   }
   return {};
 }
 
 Drive Core::regulate(float value) {
   const float bus_V = sensed_.bus_voltage_V;
+  const float latest_radps =
+      sensed_.latest_radps >= 0.0f ? sensed_.latest_radps : sensed_.speed_radps;
+  const float share = sensed_.slowing ? kHeld_share : 1.0f;
   VoltageDemand demand{};
   if (calibration_.mode == Mode::duty) {
-    demand = within_current_limits(calibration_.motor, value * bus_V, sensed_.speed_radps, bus_V);
+    demand = within_current_limits(calibration_.motor, value * bus_V, latest_radps, bus_V, share);
     // At little duty the current has gaps and the rotor would slow down until nothing is sensed.
-    const float held_V = speed_control_.update(kHeld_radps, sensed_.speed_radps, bus_V).voltage_V;
+    const float held_V = speed_control_.update(kHeld_radps, latest_radps, bus_V, share).voltage_V;
     if (demand.voltage_V < held_V) demand = {held_V, true};
   } else {
     wanted_radps_ = speed_for(value);
     if (wanted_radps_ < kSlowest_radps) wanted_radps_ = kSlowest_radps;
-    demand = speed_control_.update(wanted_radps_, sensed_.speed_radps, bus_V);
+    demand = speed_control_.update(wanted_radps_, latest_radps, bus_V, share);
   }
   if (demand.voltage_V < kLeast_V) demand = {kLeast_V, true};
   saturated_ = demand.saturated;
@@ -194,7 +202,9 @@ std::uint8_t Core::flags() const {
   if (latched == Latched::under_voltage || supervisor_.refused_for_voltage()) {
     flags |= flag_under_voltage;
   }
-  if (latched == Latched::desync || latched == Latched::stalled) flags |= flag_desync;
+  if (latched == Latched::desync || latched == Latched::stalled || phase_ == Phase::lost) {
+    flags |= flag_desync;
+  }
   if (!calibration_.identified) flags |= flag_uncalibrated;
   return flags;
 }

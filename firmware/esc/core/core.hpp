@@ -21,6 +21,8 @@ struct Sensed {
   float bus_current_A = 0.0f;  // PWM average from the shunt, before offset and gain
   float speed_radps = 0.0f;    // mechanical; 0 when no zero crossings are seen
   bool in_sync = false;        // commutation follows the rotor
+  bool slowing = false;        // from one crossing to the next, by more than noise
+  float latest_radps = -1.0f;  // speed without lag and rather too low, for limits; < 0: not known
 };
 
 struct Drive {
@@ -83,6 +85,7 @@ class Core {
   std::uint16_t over_current_ms_ = 0;
   Phase phase_ = Phase::stopped;
   std::uint16_t phase_ms_ = 0;
+  std::uint8_t losses_ = 0;  // of synchronism, since it last ran calmly
   bool saturated_ = false;
 };
 

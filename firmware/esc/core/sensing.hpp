@@ -32,12 +32,22 @@ class ZeroCurrent {
   bool known_ = false, known_before_ = false;
 };
 
+// The shunt's amplifier (1 kHz) makes pulses of the PWM (20 kHz) nearly their mean; sampled at their
+// end it stands at (1 - e^-dx) / (d (1 - e^-x)) of it, x = 0.314: 13 % above at a duty of 0.2. Here to
+// 0.2 % of the mean.
+inline float without_ripple(float current_A, float duty) {
+  const float off = 1.0f - duty;
+  return current_A / (1.0f + off * (0.147f + 0.017f * off));
+}
+
 // Speed from zero crossings, once per millisecond: half the last one, half the new one
 // [Bangura 2017, sec. 3.3.1.1]; nothing while commutation does not follow the rotor.
 class SmoothSpeed {
  public:
   float update(float speed_radps, bool in_sync) {
-    speed_radps_ = in_sync ? 0.5f * (speed_radps_ + speed_radps) : 0.0f;
+    // Nothing to be mixed with the first one.
+    const float last_radps = speed_radps_ > 0.0f ? speed_radps_ : speed_radps;
+    speed_radps_ = in_sync ? 0.5f * (last_radps + speed_radps) : 0.0f;
     return speed_radps_;
   }
 

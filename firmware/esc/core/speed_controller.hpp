@@ -10,7 +10,7 @@
 namespace fw::esc {
 
 struct SpeedGains {
-  float kp = 0.05f;  // V s
+  float kp = 0.10f;  // V s
   float ki = 0.4f;   // V
 };
 
@@ -31,11 +31,19 @@ inline float steady_voltage_V(const MotorConstants& motor, const StaticMap& free
   return motor.Kt_NmpA * w + drop_ohm(motor, w) * current_A;
 }
 
+// With the highest current no propeller slows down: one that does is held by something, and gets
+// less. share: of the highest current.
+inline constexpr float kHeld_share = 0.4f;
+
 inline VoltageDemand within_current_limits(const MotorConstants& motor, float wanted_V, float w,
-                                           float bus_V) {
+                                           float bus_V, float share = 1.0f) {
   const float emf_V = motor.Kt_NmpA * w;
-  float high_V = emf_V + motor.max_current_A * drop_ohm(motor, w);
-  float low_V = emf_V - motor.max_braking_A * motor.resistance_ohm;
+  // A voltage is duty x bus here, and the diodes take theirs while the PWM is off: (1 - duty) of it.
+  float high_V = (emf_V + share * motor.max_current_A * drop_ohm(motor, w) + motor.freewheel_V) /
+                 (1.0f + motor.freewheel_V / bus_V);
+  // Diodes carry nothing back: with them the motor may coast whatever its back-EMF.
+  float low_V =
+      motor.freewheel_V > 0.0f ? 0.0f : emf_V - motor.max_braking_A * motor.resistance_ohm;
   if (high_V > bus_V) high_V = bus_V;
   if (low_V < 0.0f) low_V = 0.0f;
   if (wanted_V > high_V) return {high_V, true};
@@ -49,12 +57,13 @@ class SpeedController {
                   float period_s)
       : motor_(motor), free_air_(free_air), gains_(gains), period_s_(period_s) {}
 
-  VoltageDemand update(float wanted_radps, float speed_radps, float bus_V) {
+  // speed_radps: the latest there is. What lags lets the current exceed its bound, and overshoots.
+  VoltageDemand update(float wanted_radps, float speed_radps, float bus_V, float share = 1.0f) {
     const float error = wanted_radps - speed_radps;
     const float proportional_V =
         steady_voltage_V(motor_, free_air_, wanted_radps) + gains_.kp * error;
     const VoltageDemand demand =
-        within_current_limits(motor_, proportional_V + integral_V_, speed_radps, bus_V);
+        within_current_limits(motor_, proportional_V + integral_V_, speed_radps, bus_V, share);
     // Conditional integration: a bound that the error pushes against must not wind up.
     const float excess_V = proportional_V + integral_V_ - demand.voltage_V;
     if (excess_V * error <= 0.0f) integral_V_ += gains_.ki * error * period_s_;

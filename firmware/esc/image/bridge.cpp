@@ -51,7 +51,7 @@ void start() {
   TIM4::CCMR2::write(TIM4::OC3M_PWM1 | TIM4::OC3PE | TIM4::OC4M_PWM2 | TIM4::OC4PE);
   TIM4::CR2::write(TIM4::MMS_OC4REF);
   TIM4::CCER::write(TIM4::CC4E);
-  set_duty(0.0f);
+  set_duty(0);
   TIM4::EGR::write(TIM4::UG);
   TIM4::CR1::write(TIM4::ARPE | TIM4::CEN);
   for (unsigned pin : {6u, 7u, 8u}) GPIOB::configure(pin, kAlternate);
@@ -67,7 +67,7 @@ void start() {
 void off() {
   TIM4::CCER::write(TIM4::CC4E);
   lower_off();
-  set_duty(0.0f);
+  set_duty(0);
 }
 
 void apply(std::uint8_t step) {
@@ -77,10 +77,8 @@ void apply(std::uint8_t step) {
   lower_on(pattern.low);
 }
 
-void set_duty(float share) {
-  const float counts = share * static_cast<float>(kPeriod);
-  duty_counts = counts <= 0.0f ? 0u : static_cast<std::uint32_t>(counts);
-  if (duty_counts > kPeriod) duty_counts = kPeriod;
+void set_duty(std::uint32_t counts) {
+  duty_counts = counts > kPeriod ? kPeriod : counts;
   TIM4::CCR1::write(duty_counts);
   TIM4::CCR2::write(duty_counts);
   TIM4::CCR3::write(duty_counts);
@@ -88,8 +86,13 @@ void set_duty(float share) {
   TIM4::CCR4::write(on - kSample_before_end);
 }
 
-float duty() {
-  return static_cast<float>(duty_counts) / static_cast<float>(kPeriod);
+std::uint32_t duty() {
+  return duty_counts;
+}
+
+std::uint32_t counts_of(float share) {
+  const float counts = share * static_cast<float>(kPeriod);
+  return counts <= 0.0f ? 0u : static_cast<std::uint32_t>(counts);
 }
 
 std::uint8_t floating_phase(std::uint8_t step) {

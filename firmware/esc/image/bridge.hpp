@@ -18,11 +18,12 @@ inline constexpr std::uint32_t kPeriod = kTimer_Hz / kPwm_Hz;  // counts
 inline constexpr std::uint32_t kSample_before_end = 90;        // 1.25 us: both samples fit
 inline constexpr std::uint32_t kShortest_on = 120;  // counts that leave room for a sample
 
-void start();                   // everything off
-void off();                     // all six switches off: the motor coasts
-void apply(std::uint8_t step);  // 0..5, see commutation.hpp
-void set_duty(float share);     // of the bus voltage; taken over at the next PWM period
-float duty();                   // as quantised by the timer
+void start();                         // everything off
+void off();                           // all six switches off: the motor coasts
+void apply(std::uint8_t step);        // 0..5, see commutation.hpp
+void set_duty(std::uint32_t counts);  // of kPeriod; taken over at the next PWM period
+std::uint32_t duty();
+std::uint32_t counts_of(float share);
 std::uint8_t floating_phase(std::uint8_t step);  // 0..2
 
 Ticks now();

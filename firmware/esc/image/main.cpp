@@ -77,7 +77,8 @@ __attribute__((noinline)) void control_task() {
     zero.note(sensed.bus_current_A);
   }
   const float raw_current_A = sensed.bus_current_A;
-  sensed.bus_current_A -= zero.offset_A();
+  const float duty = static_cast<float>(bridge::duty()) / static_cast<float>(bridge::kPeriod);
+  sensed.bus_current_A = without_ripple(sensed.bus_current_A - zero.offset_A(), duty);
   const Drive wanted = core->tick(sensed);
   drive.follow(wanted);
   i2c_slave::publish({static_cast<std::int16_t>(1000.0f * core->bus_current_A()),
@@ -88,7 +89,7 @@ __attribute__((noinline)) void control_task() {
 }
 
 __attribute__((noinline)) void sampling_task() {
-  drive.on_sample(sampling::take());
+  drive.on_sample();
 }
 
 __attribute__((noinline)) void commutation_task() {

@@ -1,55 +1,115 @@
 #include "firmware/esc/image/motor_drive.hpp"
 
 #include "firmware/esc/image/bridge.hpp"
+#include "firmware/esc/image/sampling.hpp"
 #include "firmware/hal/interrupts.hpp"
 
 namespace fw::esc {
 namespace {
 
 constexpr std::uint16_t kAlign_ms = 150;
-constexpr float kTrip_A = 24.0f;  // of the bus, averaged by the amplifier
-constexpr int kTrip_counts = static_cast<int>(kTrip_A / sampling::kAmperes_per_count);
-constexpr std::uint8_t kTripSamples = 3;
+constexpr std::uint16_t kStarting_ms = 300;  // a start that has not caught on by then is begun anew
+
+static_assert(WindingGuard::kPeriod == bridge::kPeriod);
+static_assert(WindingGuard::kShortest == bridge::kShortest_on);
 
 }  // namespace
 
 void MotorDrive::go_off() {
   bridge::off();
+  bridge::acknowledge_interrupt();  // none that is due may meet the next start
   commutation_.stop();
   phase_ = Phase::off;
-  align_ms_ = 0;
-  over_ = 0;
+  sampling::select_floating(2);
 }
 
-void MotorDrive::on_sample(const sampling::Sample& sample) {
-  shunt_sum_ += static_cast<std::uint32_t>(sample.shunt);
-  bus_sum_ += static_cast<std::uint32_t>(sample.bus);
+// With all switches off no current can build up, whatever the rotor does.
+void MotorDrive::go_catching() {
+  go_off();
+  phase_ = Phase::catching;
+  catching_.start(bridge::now());
+  sampling::watch_phases();
+}
+
+void MotorDrive::look_for_rotor() {
+  const sampling::Phases phases = sampling::take_phases();
+  note(zero_counts_ / 64, phases.bus);
+  const hal::InterruptLock lock;
+  const Ticks now = bridge::now();
+  switch (catching_.on_sample(now, phases.a, phases.b, phases.c)) {
+    case Catching::Found::nothing_yet:
+      return;
+    case Catching::Found::standing:
+      phase_ = Phase::aligning;
+      phase_ms_ = 0;
+      bridge::apply(0);
+      sampling::select_floating(bridge::floating_phase(0));
+      break;
+    case Catching::Found::turning: {
+      phase_ = Phase::turning;
+      phase_ms_ = 0;
+      commutation_.join(now, catching_.step(), catching_.sector());
+      // As much voltage as the rotor gives: no current until the core has its say.
+      const std::uint32_t emf_counts = commutation_.config().flux_count_ticks /
+                                       (catching_.sector() > 0 ? catching_.sector() : 1u);
+      wanted_duty_ = bridge::kPeriod * emf_counts / static_cast<std::uint32_t>(phases.bus + 1);
+      bridge::set_duty(wanted_duty_);
+      bridge::apply(commutation_.step());
+      sampling::select_floating(bridge::floating_phase(commutation_.step()));
+      break;
+    }
+  }
+  guard_.restart();
+}
+
+void MotorDrive::note(int shunt_counts, int bus_counts) {
+  shunt_sum_ += static_cast<std::uint32_t>(shunt_counts);
+  bus_sum_ += static_cast<std::uint32_t>(bus_counts);
   ++samples_;
+}
+
+void MotorDrive::on_sample() {
+  if (phase_ == Phase::catching) return look_for_rotor();
+  const sampling::Sample sample = sampling::take();
+  note(sample.shunt, sample.bus);
   if (phase_ == Phase::off) {
     zero_counts_ += (64 * sample.shunt - zero_counts_) / 64;
     return;
   }
-  const bool over = sample.shunt - zero_counts_ / 64 > kTrip_counts;
-  over_ = over ? static_cast<std::uint8_t>(over_ + 1) : std::uint8_t{0};
-  if (over_ >= kTripSamples) {
+  watch_current(sample.shunt - zero_counts_ / 64, sample.bus);
+  if (phase_ == Phase::turning) commutate_by(sample.floating, sample.bus);
+}
+
+void MotorDrive::watch_current(int shunt_counts, int bus_counts) {
+  guard_.update(shunt_counts, bridge::duty());
+  if (guard_.tripped()) {
+    const hal::InterruptLock lock;
     go_off();
     tripped_ = true;
     return;
   }
-  if (phase_ != Phase::turning) return;
+  const std::uint32_t allowed = guard_.allowed(wanted_duty_, bus_counts);
+  // A pulse too short to be sampled would hide the zero crossings; the shortest one drives nothing.
+  bridge::set_duty(allowed > bridge::kShortest_on ? allowed : bridge::kShortest_on);
+}
+
+void MotorDrive::commutate_by(int floating_counts, int bus_counts) {
   // A commutation in here would lie after `now`: the sector would seem over, and a step be skipped.
   const hal::InterruptLock lock;
   const Commutation::Order order =
-      commutation_.on_sample(bridge::now(), sample.floating, sample.bus);
+      commutation_.on_sample(bridge::now(), floating_counts, bus_counts);
   if (order.commutate) bridge::interrupt_at(order.at);
+  if (commutation_.state() == Commutation::State::stopped) go_catching();
 }
 
 void MotorDrive::on_commutation() {
   bridge::acknowledge_interrupt();
   if (phase_ != Phase::turning) return;
-  bridge::apply(commutation_.step());
-  sampling::select_floating(bridge::floating_phase(commutation_.step()));
+  const std::uint8_t step = commutation_.step();
+  bridge::apply(step);
+  sampling::select_floating(bridge::floating_phase(step));
   commutation_.on_commutated(bridge::now());
+  if (commutation_.state() == Commutation::State::stopped) go_catching();
 }
 
 void MotorDrive::follow(const Drive& wanted) {
@@ -58,40 +118,48 @@ void MotorDrive::follow(const Drive& wanted) {
     if (phase_ != Phase::off) go_off();
     return;
   }
-  bridge::set_duty(wanted.duty);
+  wanted_duty_ = bridge::counts_of(wanted.duty);
   switch (phase_) {
     case Phase::off:
-      bridge::apply(0);
-      phase_ = Phase::aligning;
-      return;
+      return go_catching();
     case Phase::aligning:
-      if (++align_ms_ < kAlign_ms) return;
+      if (++phase_ms_ < kAlign_ms) return;
       phase_ = Phase::turning;
+      phase_ms_ = 0;
       bridge::interrupt_at(commutation_.start(bridge::now()).at);
       return;
     case Phase::turning:
+      if (commutation_.in_sync()) {
+        phase_ms_ = 0;
+      } else if (++phase_ms_ > kStarting_ms) {
+        go_catching();
+      }
+      return;
+    case Phase::catching:
       return;
   }
 }
 
 Sensed MotorDrive::sense() {
   std::uint32_t shunt = 0, bus = 0, n = 0;
-  float speed = 0.0f;
-  bool in_sync = false;
+  Pace pace;
   {
     const hal::InterruptLock lock;
     shunt = shunt_sum_;
     bus = bus_sum_;
     n = samples_;
     shunt_sum_ = bus_sum_ = samples_ = 0;
-    speed = commutation_.speed_radps();
-    in_sync = commutation_.in_sync();
+    pace = commutation_.pace();
   }
+  const CommutationConfig& config = commutation_.config();
+  const float revolution_radps = pace.radps(pace.revolution, 6, config);
   const float per_sample = n > 0 ? 1.0f / static_cast<float>(n) : 0.0f;
   return {.bus_voltage_V = static_cast<float>(bus) * per_sample * sampling::kVolts_per_count,
           .bus_current_A = static_cast<float>(shunt) * per_sample * sampling::kAmperes_per_count,
-          .speed_radps = speed_.update(speed, in_sync),
-          .in_sync = in_sync};
+          .speed_radps = speed_.update(revolution_radps, pace.revolution > 0),
+          .in_sync = pace.revolution > 0,
+          .slowing = pace.slowing,
+          .latest_radps = pace.radps(pace.sector, 1, config)};
 }
 
 bool MotorDrive::tripped() {

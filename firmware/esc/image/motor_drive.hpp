@@ -1,20 +1,22 @@
-// Between the control core and the bridge: start-up by alignment, commutation, what the samples say.
+// Between the control core and the bridge: catches a rotor that turns, starts one that stands by
+// alignment, commutates, keeps the winding current within its limits from one PWM period to the next.
 //
 //   Threads  on_sample and on_commutation from their interrupts (commutation preempts sampling);
 //            sense and follow from the control tick, under a lock where they share
 #pragma once
 #include <cstdint>
 
+#include "firmware/esc/core/catching.hpp"
 #include "firmware/esc/core/commutation.hpp"
 #include "firmware/esc/core/core.hpp"
 #include "firmware/esc/core/sensing.hpp"
-#include "firmware/esc/image/sampling.hpp"
+#include "firmware/esc/core/winding_guard.hpp"
 
 namespace fw::esc {
 
 class MotorDrive {
  public:
-  void on_sample(const sampling::Sample& sample);
+  void on_sample();
   void on_commutation();
   void follow(const Drive& wanted);
   Sensed sense();
@@ -22,16 +24,23 @@ class MotorDrive {
   bool tripped();  // the PWM-rate over-current trip has acted since the last call
 
  private:
-  enum class Phase : std::uint8_t { off, aligning, turning };
+  enum class Phase : std::uint8_t { off, catching, aligning, turning };
 
   void go_off();
+  void go_catching();
+  void look_for_rotor();
+  void watch_current(int shunt_counts, int bus_counts);
+  void commutate_by(int floating_counts, int bus_counts);
+  void note(int shunt_counts, int bus_counts);
 
   Commutation commutation_{CommutationConfig{}};
+  Catching catching_;
+  WindingGuard guard_;
   Phase phase_ = Phase::off;
-  std::uint16_t align_ms_ = 0;
+  std::uint16_t phase_ms_ = 0;     // aligning, or not in sync
+  std::uint32_t wanted_duty_ = 0;  // PWM counts, before the guard
   std::uint32_t shunt_sum_ = 0, bus_sum_ = 0, samples_ = 0;
-  int zero_counts_ = 0;  // of the shunt, while off: the trip counts from there
-  std::uint8_t over_ = 0;
+  int zero_counts_ = 0;  // 64 times the shunt's, while off: the guard counts from there
   bool tripped_ = false;
   SmoothSpeed speed_;
 };

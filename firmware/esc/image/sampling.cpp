@@ -29,6 +29,11 @@ void power_up() {
   A::SMPR2::write(times);
 }
 
+void clear() {
+  ADC1::SR::write(~ADC1::JEOC);
+  ADC2::SR::write(~ADC2::JEOC);
+}
+
 }  // namespace
 
 void start() {
@@ -47,14 +52,26 @@ void start() {
 
 void select_floating(std::uint8_t phase) {
   ADC1::JSQR::write(sequence(kPhaseChannel + phase, kBusChannel));
+  ADC2::JSQR::write(sequence(kShuntChannel, kShuntChannel));
+}
+
+void watch_phases() {
+  ADC1::JSQR::write(sequence(kPhaseChannel, kPhaseChannel + 1));
+  ADC2::JSQR::write(sequence(kPhaseChannel + 2, kBusChannel));
 }
 
 Sample take() {
   const Sample sample{static_cast<int>(ADC1::JDR1::read()), static_cast<int>(ADC1::JDR2::read()),
                       static_cast<int>(ADC2::JDR1::read())};
-  ADC1::SR::write(~ADC1::JEOC);
-  ADC2::SR::write(~ADC2::JEOC);
+  clear();
   return sample;
+}
+
+Phases take_phases() {
+  const Phases phases{static_cast<int>(ADC1::JDR1::read()), static_cast<int>(ADC1::JDR2::read()),
+                      static_cast<int>(ADC2::JDR1::read()), static_cast<int>(ADC2::JDR2::read())};
+  clear();
+  return phases;
 }
 
 }  // namespace fw::esc::sampling

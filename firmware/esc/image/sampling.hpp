@@ -14,9 +14,14 @@ inline constexpr float kAmperes_per_count = 3.3f / 4096.0f / (0.5e-3f * 50.9f);
 struct Sample {
   int floating, bus, shunt;  // counts
 };
+struct Phases {
+  int a, b, c, bus;  // counts
+};
 
 void start();
 void select_floating(std::uint8_t phase);  // for the next trigger
+void watch_phases();                       // all three of them instead, from the next trigger
 Sample take();                             // in the interrupt: reads and clears
+Phases take_phases();                      // what watch_phases() asked for
 
 }  // namespace fw::esc::sampling

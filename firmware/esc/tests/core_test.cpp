@@ -159,15 +159,67 @@ TEST(Core, AJammedRotorIsGivenUpAndNeverTakesMoreThanTheLimit) {
   EXPECT_LT(bench.peak_A, 20.0);
 }
 
-TEST(Core, LostSynchronismStopsTheMotorWithinATenthOfASecond) {
+// The driver gets its time to find the rotor again; meanwhile the status tells of it.
+TEST(Core, LostSynchronismIsToldAndGivenUpAfterOneAndAHalfSeconds) {
   Bench bench(in_mode(Mode::thrust_by_speed));
   bench.arm();
   bench.hold(900, 1000);
+  EXPECT_FALSE(bench.core.flags() & flag_desync);
   bench.blind = true;
   bench.hold(900, 100);
+  EXPECT_TRUE(bench.core.flags() & flag_desync);
+  EXPECT_TRUE(bench.core.flags() & flag_armed);
+  bench.hold(900, 1500);
   EXPECT_EQ(bench.core.supervisor().latched(), Latched::desync);
   EXPECT_TRUE(bench.core.flags() & flag_desync);
   EXPECT_EQ(bench.current_A, 0.0);
+}
+
+TEST(Core, RotorFoundAgainGoesOnAsBefore) {
+  Bench bench(in_mode(Mode::thrust_by_speed));
+  bench.arm();
+  bench.hold(900, 1000);
+  const double before_N = bench.thrust_N();
+  bench.blind = true;
+  bench.hold(900, 500);
+  bench.blind = false;
+  bench.hold(900, 1000);
+  EXPECT_TRUE(near(bench.thrust_N(), before_N, stated(0.02 * before_N, "settled")));
+  EXPECT_EQ(bench.core.flags() & (flag_armed | flag_desync), flag_armed);
+}
+
+TEST(Core, SixLossesInAFewSecondsAreTooMany) {
+  Bench bench(in_mode(Mode::thrust_by_speed));
+  bench.arm();
+  bench.hold(900, 1000);
+  for (int loss = 1; loss <= 6; ++loss) {
+    EXPECT_EQ(bench.core.supervisor().latched(), Latched::none) << loss;
+    bench.blind = true;
+    bench.hold(900, 50);
+    bench.blind = false;
+    bench.hold(900, 300);
+  }
+  EXPECT_EQ(bench.core.supervisor().latched(), Latched::desync);
+}
+
+// The bound follows the newest speed, not the filtered one: a rotor that is braked hard has less
+// back-EMF than the filter believes.
+TEST(Core, BoundOfTheCurrentFollowsTheLatestSpeed) {
+  Core core(in_mode(Mode::thrust_by_speed));
+  Sensed sensed{.bus_voltage_V = 16.4f, .speed_radps = 0.0f};
+  for (int i = 0; i < 26; ++i) core.tick(sensed), core.on_setpoint(0);
+  core.on_setpoint(2047);
+  sensed = {.bus_voltage_V = 16.4f, .speed_radps = 500.0f, .in_sync = true, .latest_radps = 100.0f};
+  for (int i = 0; i < 3; ++i) core.tick(sensed);
+  // 20 A through 0.12 ohm above the EMF of 100 rad/s, while the diodes take 0.7 V of the rest.
+  const double duty = core.drive().duty;
+  EXPECT_TRUE(
+      near(duty * 16.4 - (1 - duty) * 0.7, 0.01005 * 100 + 20 * 0.12, stated(1e-3, "float")));
+  sensed.slowing = true;  // held by something: 8 A
+  core.tick(sensed);
+  const double less = core.drive().duty;
+  EXPECT_TRUE(
+      near(less * 16.4 - (1 - less) * 0.7, 0.01005 * 100 + 8 * 0.12, stated(1e-3, "float")));
 }
 
 TEST(Core, ModeStaysWhileTheMotorTurns) {

@@ -1,0 +1,84 @@
+// The winding current as the shunt tells it, once per PWM period, and the highest duty that it allows:
+// the fast half of the current limit, beside the model's bound on voltage (speed_controller.hpp).
+//
+//   Units    converter counts of the shunt (31.66 mA), of voltages (6.177 mV), PWM counts of 3600
+//   Sense    the amplifier's pole (1 kHz) makes pulses of i for a share d of the period into
+//            s1 = s0 e^-x + i (1 - e^-dx) at the end of the on time, x = 0.314: solved for i. Its noise
+//            is about 1 A; four periods of mean make 0.4 A of it
+//   Law      above the limit the voltage droops by 0.2 V per ampere: a virtual resistance, twice the
+//            winding's own. One sample far above cuts the next pulse short
+//   Trip     cuts in quick succession, a bus current over its limit, or a droop that lasts
+#pragma once
+#include <cstdint>
+
+namespace fw::esc {
+
+class WindingGuard {
+ public:
+  static constexpr std::uint32_t kPeriod = 3600;
+  static constexpr std::uint32_t kShortest = 120;  // leaves room for a sample
+  static constexpr float kAmperes_per_count = 3.3f / 4096.0f / (0.5e-3f * 50.9f);
+  static constexpr int counts(float ampere) {
+    return static_cast<int>(ampere / kAmperes_per_count);
+  }
+
+  static constexpr float kLimit_A = 22.0f;         // the model's 20 A and the shunt's error of gain
+  static constexpr float kCut_A = 27.0f;           // one sample; five sigma above the limit
+  static constexpr float kLasting_A = 24.0f;       // for longer than any step takes:
+  static constexpr std::uint16_t kLasting = 5000;  // samples, 0.25 s
+  static constexpr float kBus_A = 24.0f;
+
+  void restart() { *this = WindingGuard{}; }
+
+  // Once per period. shunt: counts above zero; duty: PWM counts in force in this period.
+  void update(int shunt, std::uint32_t duty) {
+    const int before = shunt_;
+    shunt_ = shunt;
+    note_bus(shunt);
+    cut_ = false;
+    if (duty < kLeast_told) return;  // hardly any pulse: nothing is told
+    const auto share =
+        static_cast<int>((duty * (374'604u - 15u * duty)) >> 16);  // 65536 (1 - e^-dx)
+    const int raw = (1024 * shunt - 748 * before) * 64 / share;
+    current_ += (raw - current_) / 4;
+    cut_ = raw > counts(kCut_A);
+    cuts_ = cut_ ? static_cast<std::uint8_t>(cuts_ + 4)
+                 : static_cast<std::uint8_t>(cuts_ - (cuts_ > 0));
+    note_lasting(current_ > counts(kLasting_A));
+  }
+
+  std::uint32_t allowed(std::uint32_t wanted, int bus_counts) const {
+    if (cut_) return kShortest;
+    const int over = current_ - counts(kLimit_A);
+    if (over <= 0 || bus_counts <= 0) return wanted;
+    const auto less = static_cast<std::uint32_t>(kDroop * over / bus_counts);
+    const std::uint32_t rest = wanted > less ? wanted - less : 0u;
+    return rest > kShortest ? rest : kShortest;
+  }
+
+  bool tripped() const { return cuts_ >= kCutsToTrip || bus_over_ >= 3 || lasting_ >= kLasting; }
+  float current_A() const { return static_cast<float>(current_) * kAmperes_per_count; }
+
+ private:
+  static constexpr std::uint32_t kLeast_told = 180;
+  static constexpr std::uint8_t kCutsToTrip = 12;  // three, close together
+  // 0.2 ohm in counts of shunt, bus and PWM.
+  static constexpr int kDroop =
+      static_cast<int>(0.2f * kAmperes_per_count / (3.3f / 4096.0f * 11.5f / 1.5f) * 3600);
+
+  void note_lasting(bool over) {
+    const int next = over ? lasting_ + 1 : lasting_ - 4;
+    lasting_ = static_cast<std::uint16_t>(next > 0 ? next : 0);
+  }
+  void note_bus(int shunt) {
+    const bool over = shunt > counts(kBus_A);
+    bus_over_ = over ? static_cast<std::uint8_t>(bus_over_ + 1) : std::uint8_t{0};
+  }
+
+  int shunt_ = 0, current_ = 0;
+  bool cut_ = false;
+  std::uint8_t cuts_ = 0, bus_over_ = 0;
+  std::uint16_t lasting_ = 0;
+};
+
+}  // namespace fw::esc
