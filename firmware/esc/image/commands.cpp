@@ -91,6 +91,18 @@ void report_status(const Core& core) {
   line.text(core.estimator().observable() ? " seen" : " assumed");
 }
 
+// What power tells of inflow now, and what an ampere of the bus too much would do to the thrust.
+void report_inflow(const Core& core) {
+  const ThrustEstimator& found = core.estimator();
+  Line line;
+  line.text("ls ").real(found.solution().ls);
+  line.text(" slope ").real(found.solution().slope);
+  line.text(" leverage ").real(found.solution().leverage);
+  line.text(" N/A ").real(found.thrust_per_ampere(core.drive().duty));
+  line.text(" iterations ").number(found.solution().iterations);
+  line.text(found.observable() ? " seen" : " assumed");
+}
+
 void answer(bool good) {
   Line().text(good ? "ok" : "refused");
 }
@@ -189,6 +201,7 @@ void execute(std::string_view text, Core& core, Settings& settings) {
     if (mode.verb == words.verb) return answer(number && setpoint(mode, value, core));
   }
   if (words.verb == "status") return report_status(core);
+  if (words.verb == "inflow") return report_inflow(core);
   if (words.verb == "stop") return stop(core), answer(true);
   if (words.verb == "arm") return answer(arm(core));
   if (words.verb == "set") return answer(set_parameter(words, core, settings));
@@ -205,7 +218,7 @@ void execute(std::string_view text, Core& core, Settings& settings) {
   }
   if (words.verb == "save") return answer(save(core, settings));
   Line().text(
-      "unknown: duty rpm thrust power st | arm stop status mode set get stream watch motor "
+      "unknown: duty rpm thrust power st | arm stop status inflow mode set get stream watch motor "
       "identified save");
 }
 
