@@ -181,7 +181,7 @@ Drive Core::tick(const Sensed& sensed) {
   guard(sensed);
 
   if (drive_.energised && drive_.duty > 0.01f) {
-    estimator_.update(drive_.duty * sensed.bus_voltage_V, sensed.speed_radps, bus_A / drive_.duty);
+    estimator_.update(sensed.bus_voltage_V, drive_.duty, bus_A, sensed.speed_radps);
   }
   saturated_ = false;
   wanted_radps_ = 0.0f;

@@ -1,8 +1,11 @@
-// Model-based complementary filters for winding current and rotor speed, after Fig 5.4 and Fig 5.2:
-// the motor's own equations predict, a PI on the innovation pulls towards what was measured.
+// Filters of what the thrust estimator is fed with: a first-order one for bus current and duty, and the
+// model-based complementary filter of rotor speed after Fig 5.2: the motor's own equation predicts, a
+// PI on the innovation pulls towards what was measured, and the derivative comes out clean.
 //
-//   Rate    one update per control period; the electrical pole (0.6 ms) is stepped exactly, so that
-//           a period longer than it is no danger
+//   Rate    one update per control period
+//   Why no model for the current (Fig 5.4): the windings' L/R of 0.2 ms lies far below the control
+//           period, so the model would only repeat the voltage equation, which does not hold where the
+//           current has gaps (falls, little duty)
 //   Source  [Bangura 2017, sec. 5.2.1, eq. 5.3]
 #pragma once
 #include "firmware/esc/core/calibration.hpp"
@@ -14,21 +17,17 @@ struct Innovation {
   float ki;  // 1/s^2
 };
 
-class CurrentFilter {
+class LowPass {
  public:
-  CurrentFilter(const MotorConstants& motor, float period_s, Innovation gains);
-  // voltage_V: applied to the winding over the last period; speed and current: measured.
-  float update(float voltage_V, float speed_radps, float current_A);
-  float current_A() const { return current_A_; }
-  void restart(float current_A);
+  LowPass(float time_constant_s, float period_s)
+      : blend_(period_s / (time_constant_s + period_s)) {}
+  float update(float x) { return value_ += blend_ * (x - value_); }
+  float value() const { return value_; }
+  void restart(float x) { value_ = x; }
 
  private:
-  MotorConstants motor_;
-  float period_s_;
-  float blend_;  // 1 - exp(-period R / L)
-  Innovation gains_;
-  float current_A_ = 0.0f;
-  float offset_V_ = 0.0f;  // integral: what the model's voltage balance is off by
+  float blend_;
+  float value_ = 0.0f;
 };
 
 class SpeedFilter {
@@ -36,7 +35,8 @@ class SpeedFilter {
   SpeedFilter(const MotorConstants& motor, const StaticMap& free_air, float period_s,
               Innovation gains)
       : motor_(motor), free_air_(free_air), period_s_(period_s), gains_(gains) {}
-  void update(float current_A, float speed_radps);
+  // torque_Nm: of the motor on the shaft, losses taken off; speed: measured.
+  void update(float torque_Nm, float speed_radps);
   float speed_radps() const { return speed_radps_; }
   float acceleration_radps2() const { return acceleration_radps2_; }
   void restart(float speed_radps);

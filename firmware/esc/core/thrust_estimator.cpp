@@ -5,7 +5,7 @@
 namespace fw::esc {
 namespace {
 
-constexpr Innovation kCurrentGains{.kp = 60.0f, .ki = 4000.0f};
+constexpr float kElectrical_s = 0.003f;                         // of bus current and duty
 constexpr Innovation kSpeedGains{.kp = 120.0f, .ki = 3600.0f};  // two poles at 60 rad/s
 constexpr float kSmoothing_s = 0.05f;                           // of CP, at constant speed
 constexpr float kMinSpeed_radps = 150.0f;  // below, w^3 makes noise of everything
@@ -15,13 +15,16 @@ constexpr float kMinSpeed_radps = 150.0f;  // below, w^3 makes noise of everythi
 ThrustEstimator::ThrustEstimator(const Calibration& calibration, float period_s)
     : calibration_(calibration),
       period_s_(period_s),
-      current_(calibration.motor, period_s, kCurrentGains),
+      bus_A_(kElectrical_s, period_s),
+      duty_(kElectrical_s, period_s),
       speed_(calibration.motor, calibration.free_air, period_s, kSpeedGains),
       solver_(calibration.rotor),
       still_(at_inflow(calibration.rotor, 0.0f)) {}
 
 void ThrustEstimator::restart(float speed_radps) {
-  current_.restart(calibration_.motor.no_load_current_A);
+  bus_A_.restart(0.0f);
+  duty_.restart(0.0f);
+  current_A_ = 0.0f;
   speed_.restart(speed_radps);
   solver_.restart();
   last_ = {};
@@ -29,21 +32,25 @@ void ThrustEstimator::restart(float speed_radps) {
   power_ratio_ = thrust_ratio_ = 1.0f;
 }
 
-void ThrustEstimator::update(float voltage_V, float speed_radps, float current_A) {
-  current_.update(voltage_V, speed_radps, current_A);
-  speed_.update(current_.current_A(), speed_radps);
+void ThrustEstimator::update(float bus_V, float duty, float bus_A, float speed_radps) {
   const float w = speed_radps;
-  voltage_V_ = voltage_V;
   if (!(w > kMinSpeed_radps)) {
-    last_ = {};
-    power_W_ = thrust_N_ = CP_ = CT_ = 0.0f;
-    power_ratio_ = thrust_ratio_ = 1.0f;
+    restart(w);
     return;
   }
+  if (duty_.value() == 0.0f) {
+    duty_.restart(duty);
+    bus_A_.restart(bus_A);
+    speed_.restart(w);
+  }
+  duty_.update(duty);
+  current_A_ = bus_A_.update(bus_A) / duty_.value();
+  bus_V_ = bus_V;
+  const float shaft_Nm =
+      aerodynamic_power_W(calibration_.losses, bus_V * duty_.value(), current_A_, w) / w;
+  speed_.update(shaft_Nm, w);
   const float acceleration_Nm = calibration_.motor.inertia_kgm2 * speed_.acceleration_radps2();
-  const float torque_Nm =
-      aerodynamic_power_W(calibration_.losses, voltage_V, current_.current_A(), w) / w -
-      acceleration_Nm;
+  const float torque_Nm = shaft_Nm - acceleration_Nm;
   power_W_ = torque_Nm * w;
   const float ratio = torque_Nm / (w * w * free_air_CP(w));
   // While the rotor accelerates, the inertial term dominates and its error with it: trust it less.
@@ -61,10 +68,10 @@ void ThrustEstimator::update(float voltage_V, float speed_radps, float current_A
   thrust_N_ = CT_ * w * w;
 }
 
-float ThrustEstimator::thrust_per_ampere(float duty) const {
-  if (!observable() || !(power_W_ > 0.0f) || !(duty > 0.0f)) return 0.0f;
-  const float watts =
-      power_per_bus_ampere_W(calibration_.losses, voltage_V_, current_.current_A(), duty);
+float ThrustEstimator::thrust_per_ampere() const {
+  if (!observable() || !(power_W_ > 0.0f)) return 0.0f;
+  const float duty = duty_.value();
+  const float watts = power_per_bus_ampere_W(calibration_.losses, bus_V_ * duty, current_A_, duty);
   return thrust_N_ * last_.leverage * watts / power_W_;
 }
 

@@ -17,8 +17,8 @@ class ThrustEstimator {
  public:
   ThrustEstimator(const Calibration& calibration, float period_s);
 
-  // current_A: of the bus over duty, measured; voltage_V: applied over the last period.
-  void update(float voltage_V, float speed_radps, float current_A);
+  // What was measured over the last period, and the duty (above 0) that was applied in it.
+  void update(float bus_V, float duty, float bus_A, float speed_radps);
   void restart(float speed_radps);
 
   float power_W() const { return power_W_; }  // aerodynamic, at this moment
@@ -28,12 +28,12 @@ class ThrustEstimator {
   // Over still air at the same speed, smoothed; 1 where nothing is known.
   float power_ratio() const { return power_ratio_; }
   float thrust_ratio() const { return thrust_ratio_; }
-  float current_A() const { return current_.current_A(); }
+  float current_A() const { return current_A_; }  // of the bus over duty, smoothed
   float acceleration_radps2() const { return speed_.acceleration_radps2(); }
   bool observable() const { return last_.status == Estimate::converged; }
   const ThrustEstimate& solution() const { return last_; }
-  // How far one ampere of the bus too much would shift the estimated thrust, at a duty.
-  float thrust_per_ampere(float duty) const;
+  // How far one ampere of the bus too much would shift the estimated thrust.
+  float thrust_per_ampere() const;
 
  private:
   float free_air_CT(float w) const {
@@ -45,12 +45,13 @@ class ThrustEstimator {
 
   Calibration calibration_;
   float period_s_;
-  CurrentFilter current_;
+  LowPass bus_A_, duty_;
   SpeedFilter speed_;
   ThrustSolver solver_;
   RotorPoint still_;  // the model's own still air
   ThrustEstimate last_{};
-  float voltage_V_ = 0.0f;
+  float bus_V_ = 0.0f;
+  float current_A_ = 0.0f;
   float power_W_ = 0.0f;
   float CP_ = 0.0f;
   float CT_ = 0.0f;

@@ -98,7 +98,7 @@ void report_inflow(const Core& core) {
   line.text("ls ").real(found.solution().ls);
   line.text(" slope ").real(found.solution().slope);
   line.text(" leverage ").real(found.solution().leverage);
-  line.text(" N/A ").real(found.thrust_per_ampere(core.drive().duty));
+  line.text(" N/A ").real(found.thrust_per_ampere());
   line.text(" iterations ").number(found.solution().iterations);
   line.text(found.observable() ? " seen" : " assumed");
 }

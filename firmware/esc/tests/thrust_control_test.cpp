@@ -179,9 +179,7 @@ TEST(ThrustByPower, KnowsWhatAnAmpereTooMuchDoesToIt) {
   }
   // Too much current reads as too little inflow, so thrust is believed larger than it is and falls.
   const double shift_N = wrong.mean_thrust_N(500) - right.mean_thrust_N(500);
-  const float duty =
-      static_cast<float>((0.01005 * right.speed + 0.16 * right.current_A) / right.bus_V);
-  const double told_N = -0.01 * right.core.estimator().thrust_per_ampere(duty);
+  const double told_N = -0.01 * right.core.estimator().thrust_per_ampere();
   EXPECT_LT(shift_N, -0.01);
   EXPECT_TRUE(near(shift_N, told_N, stated(0.25 * std::abs(told_N), "a secant for a slope")));
 }
