@@ -22,6 +22,14 @@ void lower_off() {
   GPIOB::BSRR::write(bit(0 + 16) | bit(1 + 16));
 }
 
+void lower_off(std::uint8_t phase) {
+  if (phase == 0) {
+    GPIOA::BSRR::write(bit(7 + 16));
+  } else {
+    GPIOB::BSRR::write(phase == 1 ? bit(0 + 16) : bit(1 + 16));
+  }
+}
+
 void lower_on(std::uint8_t phase) {
   if (phase == 0) {
     GPIOB::BSRR::write(bit(0 + 16) | bit(1 + 16));
@@ -72,7 +80,9 @@ void off() {
 
 void apply(std::uint8_t step) {
   const Pattern pattern = kPatterns[step];
-  // Never both switches of a leg: what goes off goes off before anything goes on.
+  // Never both switches of a leg: what goes off goes off before anything goes on. A jump of three
+  // steps, when a start is overtaken, swaps the switches of both legs.
+  lower_off(pattern.high);
   upper_only(pattern.high);
   lower_on(pattern.low);
 }
