@@ -64,13 +64,10 @@ bool EventLog::add(const io::Batch& batch) {
         break;
       case io::Kind::function_call: {
         const auto call = reader.as<io::FunctionCall>();
-        calls[header.port].push_back({call.entry_ns, header.t_ns, call.execution_ns});
+        calls[header.port].push_back(
+            {call.entry_ns, header.t_ns, call.execution_ns, call.latency_ns});
         break;
       }
-      case io::Kind::interrupt_latency:
-        interrupts.push_back(
-            {header.port, reader.as<io::InterruptLatency>().raised_ns, header.t_ns});
-        break;
       case io::Kind::statistics:
         statistics = text_of(reader.payload());
         break;
@@ -97,6 +94,8 @@ bool EventLog::add(const io::Batch& batch) {
       case io::Kind::shoot_through:
       case io::Kind::uart_delivered:
         break;  // truth.csv, the bus log and the findings have them
+      case io::Kind::interrupt_latency:
+        break;  // goes with the calls of the handler
     }
   }
   return reader.complete();

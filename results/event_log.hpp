@@ -27,12 +27,7 @@ struct CallRecord {
   std::int64_t entry_ns = 0;
   std::int64_t return_ns = 0;
   std::int64_t execution_ns = 0;
-};
-
-struct InterruptRecord {
-  std::uint16_t exception = 0;
-  std::int64_t raised_ns = 0;
-  std::int64_t entered_ns = 0;
+  std::int64_t latency_ns = -1;  // of the interrupt that called it; -1: none
 };
 
 struct BusyRecord {
@@ -71,7 +66,6 @@ class EventLog {
 
   std::vector<BusRecord> bus;
   std::vector<UartRecord> uart;
-  std::vector<InterruptRecord> interrupts;
   std::map<std::uint16_t, std::vector<CallRecord>> calls;            // by watch number
   std::map<std::uint16_t, std::vector<std::int64_t>> data_ready_ns;  // by device number
   std::map<std::uint32_t, std::int64_t> faults_applied_ns;           // first, by fault number

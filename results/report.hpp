@@ -52,6 +52,7 @@ struct TaskRow {
   double period_mean_s = 0, period_max_s = 0;
   double execution_p50_s = 0, execution_p99_s = 0, execution_max_s = 0;
   double response_p99_s = 0, response_max_s = 0;
+  double latency_max_s = 0;  // of the interrupts that called it; NaN: none did
 };
 
 struct FaultRow {

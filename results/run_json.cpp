@@ -48,7 +48,8 @@ ordered_json task(const TaskRow& row) {
           {"execution_p99_s", number(row.execution_p99_s)},
           {"execution_max_s", number(row.execution_max_s)},
           {"response_p99_s", number(row.response_p99_s)},
-          {"response_max_s", number(row.response_max_s)}};
+          {"response_max_s", number(row.response_max_s)},
+          {"latency_max_s", number(row.latency_max_s)}};
 }
 
 ordered_json host_times(const HostTimes& host) {

@@ -43,6 +43,13 @@ void place_fault(lua_State* L, const lua::Table& wish, const Board& board, Fault
   }
   if (wish.has("bus")) fault.bus = bus_number(wish, "bus", wish.text("bus"));
   if (wish.has("address")) fault.address = static_cast<int>(wish.integer("address", 0, 0x7F));
+  if (wish.has("function")) {
+    const std::string function = wish.text("function");
+    fault.address = board.watch_number(function);
+    if (fault.address < 0) {
+      raise(L, "'" + function + "' is not watched", "add it to the watch list");
+    }
+  }
   if (wish.has("motor")) fault.address = static_cast<int>(wish.integer("motor", 1, 4));
 }
 
@@ -71,7 +78,8 @@ int fault(lua_State* L) {
   check_finish(L, wish);
   fault.number = static_cast<std::uint32_t>(self.faults.size() + 1);
   self.faults.push_back(fault);
-  self.fault_targets.push_back(!fault.device.empty() ? fault.device : wish.text_or("bus", ""));
+  self.fault_targets.push_back(
+      !fault.device.empty() ? fault.device : wish.text_or("bus", wish.text_or("function", "")));
   if (!self.stage().world.take_fault(fault)) {
     if (auto sent = self.stage().inject(fault); !sent) raise(L, sent.error());
   }

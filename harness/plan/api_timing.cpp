@@ -15,6 +15,7 @@ double seconds(std::int64_t ns) {
 }
 
 std::string in_text(double x_s, const std::string& unit) {
+  if (std::abs(x_s) < 1e-12) x_s = 0.0;  // times are whole nanoseconds
   char text[48];
   std::snprintf(text, sizeof text, "%.4g %s", in_unit(x_s, unit), unit.c_str());
   return text;
@@ -22,6 +23,7 @@ std::string in_text(double x_s, const std::string& unit) {
 
 std::string spread(const metrics::Distribution& d, const std::string& unit) {
   if (d.count == 0) return "nothing to measure";
+  if (std::isnan(d.max)) return "not known of each of " + std::to_string(d.count) + " values";
   return "p50 " + in_text(d.p50, unit) + ", p99 " + in_text(d.p99, unit) + ", " +
          std::to_string(d.count) + " values";
 }
@@ -51,7 +53,7 @@ std::vector<double> deviations(std::span<const std::int64_t> times, std::int64_t
 
 struct Budget {
   std::string function, place;
-  std::optional<Limit> period, jitter, execution, response, busy;
+  std::optional<Limit> period, jitter, execution, response, latency, busy;
 };
 
 void judge_spread(Script& self, std::span<const double> values, const Limit& limit,
@@ -63,7 +65,7 @@ void judge_spread(Script& self, std::span<const double> values, const Limit& lim
 
 void judge_calls(Script& self, const Budget& b, std::int64_t from, std::int64_t to) {
   std::vector<std::int64_t> entries;
-  std::vector<double> execution, response;
+  std::vector<double> execution, response, latency;
   const int number = self.stage().board.watch_number(b.function);
   const auto found = self.stage().events.calls.find(static_cast<std::uint16_t>(number));
   if (found != self.stage().events.calls.end()) {
@@ -72,6 +74,8 @@ void judge_calls(Script& self, const Budget& b, std::int64_t from, std::int64_t 
       entries.push_back(call.entry_ns);
       execution.push_back(seconds(call.execution_ns));
       response.push_back(seconds(call.return_ns - call.entry_ns));
+      // Called from no interrupt: that has no latency, and meets no limit.
+      latency.push_back(call.latency_ns < 0 ? std::nan("") : seconds(call.latency_ns));
     }
   }
   if (b.jitter) {
@@ -84,6 +88,9 @@ void judge_calls(Script& self, const Budget& b, std::int64_t from, std::int64_t 
   if (b.response) {
     judge_spread(self, response, *b.response, b.function + " response time", b.place, to);
   }
+  if (b.latency) {
+    judge_spread(self, latency, *b.latency, b.function + " interrupt latency", b.place, to);
+  }
 }
 
 void judge_busy(Script& self, const Budget& b, std::int64_t from, std::int64_t to) {
@@ -95,18 +102,19 @@ void judge_busy(Script& self, const Budget& b, std::int64_t from, std::int64_t t
 int take_budget(lua_State* L) {
   Script& self = Script::of(L);
   const lua::Table wish = check_table(L, 1);
-  Budget b{lua_tostring(L, lua_upvalueindex(1)), place_of(L), {}, {}, {}, {}, {}};
+  Budget b{lua_tostring(L, lua_upvalueindex(1)), place_of(L), {}, {}, {}, {}, {}, {}};
   b.period = optional_limit(wish, "period", Dimension::time);
   b.jitter = optional_limit(wish, "jitter", Dimension::time);
   b.execution = optional_limit(wish, "execution", Dimension::time);
   b.response = optional_limit(wish, "response", Dimension::time);
+  b.latency = optional_limit(wish, "latency", Dimension::time);
   b.busy = optional_limit(wish, "busy", Dimension::ratio);
   const std::int64_t end = window_end(self, wish);
   check_finish(L, wish);
-  const bool calls = b.jitter || b.execution || b.response;
+  const bool calls = b.jitter || b.execution || b.response || b.latency;
   if (b.period.has_value() != b.jitter.has_value()) raise(L, "period and jitter go together");
   if (!calls && !b.busy)
-    raise(L, "a budget of nothing", "give jitter, execution, response or busy");
+    raise(L, "a budget of nothing", "give jitter, execution, response, latency or busy");
   if (calls && self.stage().board.watch_number(b.function) < 0) {
     raise(L, "'" + b.function + "' is not watched",
           "add it to the watch list of the plan or board");

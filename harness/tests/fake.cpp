@@ -53,7 +53,8 @@ class FakeTarget final : public Target {
     out.add(io::Kind::data_ready, 0, t + 100 * kUs, nullptr, 0);
     const io::BusTransaction spi{t + 150 * kUs, 0, 1, 1, 15};
     out.add(io::Kind::spi_transaction, 1, t + 170 * kUs, spi, &salt_, 1);
-    out.add(io::Kind::function_call, 0, t + 200 * kUs, io::FunctionCall{t + 140 * kUs, 40 * kUs});
+    out.add(io::Kind::function_call, 0, t + 200 * kUs,
+            io::FunctionCall{t + 140 * kUs, 40 * kUs, 6 * kUs});
     if (t % (5 * kMs) == 0) {
       out.add(io::Kind::function_call, 1, t + 500 * kUs,
               io::FunctionCall{t + 300 * kUs, 150 * kUs});

@@ -127,7 +127,8 @@ TEST(Program, WithinMeasuresHowLongItTook) {
 TEST(Program, TimingBudgetsBusesAndLatencyAreJudged) {
   const Ran ran = run_plan(plan_text(R"(
     t:wait "100 ms"
-    t:budget("fw::imu_task") { period = "1 ms", jitter = "20 us", execution = "50 us", response = "70 us" }
+    t:budget("fw::imu_task") { period = "1 ms", jitter = "20 us", execution = "50 us", response = "70 us",
+                                latency = "7 us" }
     t:budget("cpu") { busy = "60 %" }
     t:bus { device = "esc1", direction = "write", period = "20 ms", tolerance = "0.5 ms" }
     t:bus { device = "esc2", direction = "read", period = "50 ms", tolerance = "1 ms" }
@@ -138,6 +139,8 @@ TEST(Program, TimingBudgetsBusesAndLatencyAreJudged) {
   EXPECT_TRUE(near(expectation(ran.run, "fw::imu_task execution time")["measured"], 40.0,
                    stated(1e-6, "exact in the fake")));
   EXPECT_TRUE(near(expectation(ran.run, "fw::imu_task response time")["measured"], 60.0,
+                   stated(1e-6, "exact in the fake")));
+  EXPECT_TRUE(near(expectation(ran.run, "fw::imu_task interrupt latency")["measured"], 6.0,
                    stated(1e-6, "exact in the fake")));
   EXPECT_TRUE(
       near(expectation(ran.run, "CPU busy share")["measured"], 40.0, stated(1e-9, "exact")));
@@ -234,6 +237,15 @@ TEST(Program, BadPlansAreOneClearLineAndExitCodeTwo) {
     const std::string all = ran.outcome.out + ran.outcome.err;
     EXPECT_NE(all.find(bad.message), std::string::npos) << bad.what << ": " << all;
   }
+}
+
+// The fake calls attitude_task from no interrupt.
+TEST(Program, WhatNoInterruptCallsHasNoLatencyAndMeetsNoLimit) {
+  const Ran ran = run_plan(plan_text(R"(
+    t:budget("fw::attitude_task") { latency = "1 s" }
+    t:wait "1 s")"));
+  EXPECT_EQ(ran.outcome.code, 1) << ran.outcome.out;
+  EXPECT_EQ(expectation(ran.run, "fw::attitude_task interrupt latency")["verdict"], "fail");
 }
 
 TEST(Program, BadUsageIsExitCodeTwo) {

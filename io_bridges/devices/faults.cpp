@@ -28,6 +28,7 @@ constexpr KindName kNames[] = {
     {FaultKind::supply_dip, "supply_dip"},
     {FaultKind::capture_lost, "capture_lost"},
     {FaultKind::esc_stopped, "esc_stopped"},
+    {FaultKind::code_hangs, "code_hangs"},
 };
 
 bool matches(int wanted, int here) {

@@ -38,6 +38,7 @@ enum class FaultKind : std::uint32_t {
   supply_dip,             // harness: bus voltage drops by value volts
   capture_lost,           // harness: no pose from the capture system
   esc_stopped,            // harness: the ESC of motor `address` stops its motor
+  code_hangs,             // board: the watched function number `address` comes no further
 };
 
 std::optional<FaultKind> fault_kind(std::string_view name);  // "i2c_nack"

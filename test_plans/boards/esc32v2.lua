@@ -10,5 +10,5 @@ return {
     { name = "throttle", type = "i2c_master", bus = "i2c2", params = { rate = "400 kHz" } },
     { name = "terminal", type = "serial", bus = "usart1", baud = "921600 baud" },
   },
-  watch = { "fw::esc::control_task", "fw::esc::sampling_task", "fw::esc::commutation_task" },
+  watch = { "fw::esc::control_task" }, -- plans add the tasks of 3 to 20 kHz where they judge them
 }

@@ -1,24 +1,42 @@
--- The image keeps its times while the rotor turns and changes its speed, at up to 4 N (5200 RPM).
--- Left out: from the pin to the entry of an interrupt, the other modes.
+-- The image keeps its times in every mode while the rotor turns and changes its speed, up to 6000 RPM.
+-- The converter's instant moves with the duty, to the end of the PWM's on phase: it is judged while
+-- the duty stands.
 include "include/start.lua"
 
-plan "timing_budgets" {
-  image = "esc", board = "esc32v2",
-  stand = { prop = "hk_10x4.5", battery = "4s_2200" },
-  tags = { "esc" },
-  timeout = "20 s",
-  run = function(t)
-    start(t, "2 N")
-    t:step "measured"
-    t:budget("fw::esc::control_task") { period = "1 ms", jitter = "20 us", response = "500 us", during = "3 s" }
-    t:budget("fw::esc::sampling_task") { response = "10 us", during = "3 s" }
-    t:budget("fw::esc::commutation_task") { response = "10 us", during = "3 s" }
-    t:budget("cpu") { busy = "60 %", during = "3 s" }
-    t:wait "1 s"
-    t:command { thrust = "4 N" }
-    t:wait "1 s"
-    t:command { thrust = "2 N" }
-    t:wait "1 s"
-    t:expect(t:value "armed", "still armed"):equal(1)
-  end,
-}
+local function timing(mode, number, low, high)
+  plan("timing_" .. mode) {
+    image = "esc", board = "esc32v2",
+    stand = { prop = "hk_10x4.5", battery = "4s_2200", mode = mode },
+    watch = { "fw::esc::sampling_task", "fw::esc::commutation_task", "adc1" },
+    tags = { "esc", "timing" },
+    timeout = "20 s",
+    run = function(t)
+      t:wait "50 ms"
+      t:command { line = "mode " .. number }
+      start(t, low)
+      t:step "steady"
+      t:budget("adc1") { period = "50 us", jitter = "5 us", during = "1 s" }
+      t:budget("fw::esc::control_task") {
+        period = "1 ms", jitter = "20 us", latency = "20 us", response = "500 us", during = "3 s",
+      }
+      t:budget("fw::esc::sampling_task") { latency = "10 us", response = "10 us", during = "3 s" }
+      t:budget("fw::esc::commutation_task") { latency = "10 us", response = "10 us", during = "3 s" }
+      t:budget("cpu") { busy = "60 %", during = "3 s" }
+      t:wait "1 s"
+      t:step "faster"
+      t:command(high)
+      t:wait "1 s"
+      t:expect(t:value("speed"), "as fast as asked"):at_least(number == 1 and "5950 rpm" or "5000 rpm")
+      t:step "slower"
+      t:command(low)
+      t:wait "1 s"
+      t:expect(t:value "armed", "still armed"):equal(1)
+    end,
+  }
+end
+
+timing("duty", 0, { duty = "30 %" }, { duty = "55 %" })
+timing("rpm", 1, { speed = "3500 rpm" }, { speed = "6000 rpm" })
+timing("thrust_by_rpm", 2, { thrust = "2 N" }, { thrust = "4 N" })
+timing("power", 4, { power = "20 W" }, { power = "30 W" })
+timing("thrust_by_power", 5, { thrust = "2 N" }, { thrust = "4 N" })

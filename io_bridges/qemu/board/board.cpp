@@ -8,8 +8,10 @@
 #include <nlohmann/json.hpp>
 #include <tuple>
 
+#include "io_bridges/devices/faults.hpp"
 #include "io_bridges/qemu/board/chip_factory.hpp"
 #include "io_bridges/qemu/board/post_mortem.hpp"
+#include "io_bridges/qemu/stm32/adc.hpp"
 
 namespace whirl::board {
 namespace {
@@ -52,6 +54,7 @@ Board::Board(Setup setup, io::Channel channel, Emulator& emulator)
                        setup_.config.hse_Hz, setup_.config.lse_Hz})),
       devices_({events_, *chip_, happened_, [this](const io::Finding& f) { find(f); },
                 setup_.config.seed}),
+      hangs_(events_, emulator, happened_),
       systick_(events_, chip_->clocks(),
                [this] {
                  watch_.line_changed(kSysTickException, true, events_.now());
@@ -82,6 +85,29 @@ Board::Board(Setup setup, io::Channel channel, Emulator& emulator)
 }
 
 Board::~Board() = default;
+
+Result<Done> Board::build_devices() {
+  if (const auto built = devices_.build(setup_.config); !built) return built.error();
+  return watch_converters();
+}
+
+// "adc1" in the watch list: each of its sequences is told like a call, from its trigger to its end.
+Result<Done> Board::watch_converters() {
+  for (std::uint16_t i = 0; i < setup_.config.watch.size(); ++i) {
+    const std::string& name = setup_.config.watch[i];
+    int number = 0;
+    if (std::sscanf(name.c_str(), "adc%1d", &number) != 1 || name.size() != 4) continue;
+    stm32::Adc* converter = chip_->converter(number);
+    if (converter == nullptr) {
+      return Error{ErrorKind::bad_input, setup_.config.board + ": watch",
+                   "the part has no '" + name + "'", ""};
+    }
+    converter->on_sequence([this, i](Nanoseconds began, Nanoseconds ended) {
+      happened_.add(io::Kind::function_call, i, ended, io::FunctionCall{began, ended - began});
+    });
+  }
+  return Done{};
+}
 
 stm32::Region Board::unanswered_region() {
   return {kPeripherals, kPeripherals_size, &unanswered_};
@@ -148,7 +174,17 @@ void Board::await_orders() {
   boundary_.at(orders.t_ns);
 }
 
+void Board::hang(const io::FaultCommand& fault) {
+  const auto& watch = setup_.config.watch;
+  const auto number = static_cast<std::size_t>(fault.address);
+  if (number < watch.size()) hangs_.add(fault, setup_.image.functions_named(watch[number]));
+}
+
 void Board::obey(const io::Reader& message) {
+  if (message.header().kind == io::Kind::fault) {
+    const auto fault = message.as<io::FaultCommand>();
+    if (fault.kind == static_cast<std::uint32_t>(io::FaultKind::code_hangs)) return hang(fault);
+  }
   if (devices_.take(message)) return;
   if (message.header().kind == io::Kind::end_of_run) {
     add_statistics();

@@ -13,6 +13,7 @@
 #include "io_bridges/devices/event_queue.hpp"
 #include "io_bridges/link/channel.hpp"
 #include "io_bridges/link/messages.hpp"
+#include "io_bridges/qemu/board/code_hang.hpp"
 #include "io_bridges/qemu/board/config.hpp"
 #include "io_bridges/qemu/board/cortex_m.hpp"
 #include "io_bridges/qemu/board/device_rack.hpp"
@@ -38,7 +39,7 @@ class Board final : stm32::InterruptLines, stm32::SystemBus, stm32::FlashArray {
  public:
   Board(Setup setup, io::Channel channel, Emulator& emulator);
   ~Board() override;
-  Result<Done> build_devices() { return devices_.build(setup_.config); }
+  Result<Done> build_devices();
 
   const Part& part() const { return *setup_.part; }
   const Image& image() const { return setup_.image; }
@@ -84,6 +85,8 @@ class Board final : stm32::InterruptLines, stm32::SystemBus, stm32::FlashArray {
   void synchronise();
   void await_orders();
   void obey(const io::Reader& message);
+  void hang(const io::FaultCommand& fault);
+  Result<Done> watch_converters();
   void report_clocks();
   void report_busy();
   void check_profile();
@@ -99,6 +102,7 @@ class Board final : stm32::InterruptLines, stm32::SystemBus, stm32::FlashArray {
   Watch watch_;
   std::unique_ptr<stm32::ChipModel> chip_;
   DeviceRack devices_;
+  CodeHangs hangs_;
   SysTick systick_;
   CycleCounter cycle_counter_;
   Unanswered unanswered_;

@@ -1,5 +1,7 @@
 #include "io_bridges/qemu/board/watch.hpp"
 
+#include <utility>
+
 namespace whirl::board {
 namespace {
 
@@ -26,6 +28,7 @@ void Watch::finish(std::size_t index, Nanoseconds now) {
   message.entry_ns = call.entry_ns;
   message.execution_ns =
       now - call.entry_ns - (contexts_[call.depth].preempted_ns - call.preempted_before_ns);
+  message.latency_ns = call.latency_ns;
   happened_.add(io::Kind::function_call, call.number, now, message);
 }
 
@@ -52,8 +55,9 @@ void Watch::enter_function(std::uint16_t number, const CoreState& core) {
     }
   }
   if (calls_.size() == kDeepest) calls_.erase(calls_.begin());
-  calls_.push_back(
-      {number, to, core.sp, contexts_.size() - 1, core.now, contexts_.back().preempted_ns});
+  const Context& context = contexts_.back();
+  calls_.push_back({number, to, core.sp, contexts_.size() - 1, core.now, context.preempted_ns,
+                    context.latency_ns});
 }
 
 void Watch::return_site(std::uint32_t address, const CoreState& core) {
@@ -73,18 +77,16 @@ bool Watch::enter_exception(std::uint32_t preempted, const CoreState& core) {
   const Context& top = contexts_.back();
   if (top.exception == core.exception && top.sp == core.sp && !top.may_be_left) return false;
   settle(preempted);
-  contexts_.push_back({core.exception, core.now, core.now, 0, core.sp, false});
-  tell_latency(core);
+  contexts_.push_back({core.exception, core.now, core.now, 0, take_latency(core), core.sp, false});
   return true;
 }
 
-void Watch::tell_latency(const CoreState& core) {
-  if (core.exception >= kExceptions) return;
+Nanoseconds Watch::take_latency(const CoreState& core) {
+  if (core.exception >= kExceptions || raised_ns_[core.exception] < 0) return -1;
   Nanoseconds& raised_ns = raised_ns_[core.exception];
-  if (raised_ns < 0) return;
   happened_.add(io::Kind::interrupt_latency, static_cast<std::uint16_t>(core.exception), core.now,
                 io::InterruptLatency{raised_ns});
-  raised_ns = -1;
+  return core.now - std::exchange(raised_ns, -1);
 }
 
 void Watch::line_changed(std::uint32_t exception, bool level, Nanoseconds now) {

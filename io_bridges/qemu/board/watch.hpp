@@ -6,6 +6,9 @@
 //   Returns   a call ends where its link register said, with the stack pointer of its entry; a tail
 //             call counts for the caller. A handler's own call ends with the handler.
 //   Execution of a call: its time less that of the exceptions that came on top of it
+//   Latency   of an exception: from the request of its line to the first instruction of its handler,
+//             without the twelve cycles that the core itself takes to stack; it goes with each call
+//             that the handler makes
 //   Leaving   the last instruction that could leave a handler is the one that did: known when
 //             anything happens in another context
 //   Loops     a handler that jumps to its own first instruction ("b .") has not been entered again
@@ -48,6 +51,7 @@ class Watch {
     std::uint32_t exception = 0;
     Nanoseconds entered_ns = 0, left_ns = 0;
     Nanoseconds preempted_ns = 0;  // by what came on top
+    Nanoseconds latency_ns = -1;   // of its entry; -1: not known
     std::uint32_t sp = 0;          // at entry
     bool may_be_left = false;
   };
@@ -55,12 +59,12 @@ class Watch {
     std::uint16_t number = 0;
     std::uint32_t return_address = 0, sp = 0;
     std::size_t depth = 0;  // of its context
-    Nanoseconds entry_ns = 0, preempted_before_ns = 0;
+    Nanoseconds entry_ns = 0, preempted_before_ns = 0, latency_ns = -1;
   };
 
   void settle(std::uint32_t exception);  // drops the contexts that have been left
   void leave_context();
-  void tell_latency(const CoreState& core);
+  Nanoseconds take_latency(const CoreState& core);  // and tells it; -1: not known
   void finish(std::size_t call, Nanoseconds now);
 
   io::Batch& happened_;

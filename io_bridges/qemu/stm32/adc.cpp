@@ -13,8 +13,6 @@ using namespace adc;
 
 namespace {
 
-constexpr int kSamplingF4[8] = {6, 30, 56, 112, 168, 224, 288, 960};  // half clocks
-constexpr int kSamplingF1[8] = {3, 15, 27, 57, 83, 111, 143, 479};
 constexpr std::int64_t kCalibrationClocks = 83;  // F103
 
 }  // namespace
@@ -197,40 +195,6 @@ void Adc::trigger_edge(bool injected, bool level) {
   }
 }
 
-unsigned Adc::regular_length() const {
-  return (cr1_ & SCAN) != 0 ? field(sqr_[0], 20, 4) + 1 : 1;
-}
-
-unsigned Adc::injected_length() const {
-  return (cr1_ & SCAN) != 0 ? field(jsqr_, 20, 2) + 1 : 1;
-}
-
-unsigned Adc::regular_channel(unsigned rank) const {
-  if (rank < 6) return field(sqr_[2], 5 * rank, 5);
-  if (rank < 12) return field(sqr_[1], 5 * (rank - 6), 5);
-  return field(sqr_[0], 5 * (rank - 12), 5);
-}
-
-// With JL = n the group is the last n + 1 of JSQ1..JSQ4.
-unsigned Adc::injected_channel(unsigned rank) const {
-  return field(jsqr_, 5 * (3 - field(jsqr_, 20, 2) + rank), 5);
-}
-
-std::int64_t Adc::sampling_half_clocks(unsigned channel) const {
-  const std::uint32_t selected = channel >= 10
-                                     ? field(smpr_[0], 3 * (std::min(channel, 18u) - 10), 3)
-                                     : field(smpr_[1], 3 * channel, 3);
-  return f4() ? kSamplingF4[selected] : kSamplingF1[selected];
-}
-
-unsigned Adc::bits() const {
-  return f4() ? 12 - 2 * field(cr1_, 24, 2) : 12;
-}
-
-std::int64_t Adc::conversion_half_clocks() const {
-  return f4() ? 2 * bits() : 25;
-}
-
 void Adc::start_regular(std::int64_t half_clock, std::int64_t repeat_after) {
   if ((cr2_ & ADON) == 0 || (f4() && (sr_ & OVR) != 0)) return;
   if (active_ == Group::regular || regular_waiting_) return;
@@ -257,7 +221,11 @@ void Adc::begin(Group group, std::int64_t half_clock) {
   active_ = group;
   start_ = half_clock;
   sampled_ = false;
-  channel_ = group == Group::regular ? regular_channel(rank_) : injected_channel(injected_rank_);
+  const bool regular = group == Group::regular;
+  if ((regular ? rank_ : injected_rank_) == 0) {
+    (regular ? regular_began_ : injected_began_) = half_clock;
+  }
+  channel_ = regular ? regular_channel(rank_) : injected_channel(injected_rank_);
   event_.at(bank_.grid().time(start_ + sampling_half_clocks(channel_)));
 }
 
@@ -291,6 +259,7 @@ void Adc::finish_regular(std::int64_t at) {
   const bool part_over = left_in_part_ > 0 && --left_in_part_ == 0;
   watch_window(code, false);
   if (last) {
+    tell_sequence(regular_began_, at);
     sequence_over(at);
   } else if (!part_over) {
     begin(Group::regular, at);
@@ -322,7 +291,10 @@ void Adc::finish_injected(std::int64_t at) {
   watch_window(code_, true);
   injected_rank_ = last ? 0 : injected_rank_ + 1;
   active_ = Group::none;
-  if (last) sr_ |= f4() ? JEOC : JEOC | EOC;
+  if (last) {
+    sr_ |= f4() ? JEOC : JEOC | EOC;
+    tell_sequence(injected_began_, at);
+  }
   const bool one_per_trigger = (cr1_ & JDISCEN) != 0 && !automatic_;
   if (!last && !one_per_trigger) {
     begin(Group::injected, at);
@@ -336,6 +308,10 @@ void Adc::injected_over(std::int64_t at) {
   if (!regular_waiting_) return;
   regular_waiting_ = false;
   begin(Group::regular, at);
+}
+
+void Adc::tell_sequence(std::int64_t began, std::int64_t ended) {
+  if (sequence_sink_) sequence_sink_(bank_.grid().time(began), bank_.grid().time(ended));
 }
 
 void Adc::watch_window(std::uint32_t code, bool injected) {

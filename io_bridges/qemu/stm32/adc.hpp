@@ -48,6 +48,10 @@ class Adc : public Peripheral {
   void write(std::uint32_t offset, std::uint32_t value, unsigned size) override;
   void reset() override;
 
+  // Told at the end of each sequence: when its first conversion began and its last one ended.
+  using Sequence = std::function<void(Nanoseconds began, Nanoseconds ended)>;
+  void on_sequence(Sequence sink) { sequence_sink_ = std::move(sink); }
+
   DmaRequest& request() { return request_; }
   std::uint32_t status() const { return sr_; }
   std::uint32_t control() const { return cr1_; }
@@ -90,6 +94,7 @@ class Adc : public Peripheral {
   void finish_injected(std::int64_t at);
   void sequence_over(std::int64_t at);
   void injected_over(std::int64_t at);
+  void tell_sequence(std::int64_t began, std::int64_t ended);
   void store_regular(std::uint32_t code, bool last);
   void watch_window(std::uint32_t code, bool injected);
   std::uint32_t align(std::int32_t value, bool injected) const;
@@ -116,6 +121,8 @@ class Adc : public Peripheral {
   bool last_transfer_done_ = false;  // DDS = 0: no further requests
   unsigned channel_ = 0;
   std::int64_t start_ = 0, repeat_after_ = 0;
+  std::int64_t regular_began_ = 0, injected_began_ = 0;
+  Sequence sequence_sink_;
   std::uint32_t code_ = 0;
 
   struct Tap {
@@ -131,6 +138,9 @@ class AdcBank {
   AdcBank(const Chip& chip, AdcConfig config);
 
   Adc& converter(int number) { return *converters_[static_cast<std::size_t>(number - 1)]; }
+  Adc* find(int number) {  // null: there is none of that number
+    return number >= 1 && number <= config_.converters ? &converter(number) : nullptr;
+  }
   int converters() const { return config_.converters; }
   AdcFamily family() const { return config_.family; }
   void connect_regular(unsigned selection, TriggerLine& line);

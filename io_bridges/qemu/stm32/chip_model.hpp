@@ -22,6 +22,7 @@
 
 namespace whirl::stm32 {
 
+class Adc;
 class BxCan;
 class Timer;
 
@@ -64,6 +65,7 @@ class ChipModel {
   // For what follows a timer's pattern rather than its edges (a power stage), and for CAN nodes.
   virtual Timer* timer(int /*number*/) { return nullptr; }  // null: the part has no such timer
   virtual BxCan* can(int /*number*/) { return nullptr; }
+  virtual Adc* converter(int /*number*/) { return nullptr; }
   virtual const Clocks& clocks() const = 0;
   // Told after each change of a clock, for what is clocked outside of the chip model (SysTick).
   virtual void on_clock_change(std::function<void()> changed) = 0;

@@ -35,6 +35,7 @@ class F103FunctionBlocks : public FunctionBlockSet {
     add_usb();
   }
 
+  Adc* converter(int number) override { return adc_.find(number); }
   void reset_backup_domain() override {
     rtc_.reset_backup_domain();
     backup_.reset_backup_domain();

@@ -62,6 +62,7 @@ class F405FunctionBlocks : public FunctionBlockSet {
     add_stubs();
   }
 
+  Adc* converter(int number) override { return adc_.find(number); }
   void reset_backup_domain() override { rtc_.reset_backup_domain(); }
   void backup_clock_changed() override { rtc_.clock_changed(); }
   double dac_volts(int channel) override { return dac_.volts(channel); }

@@ -18,6 +18,7 @@
 
 namespace whirl::stm32 {
 
+class Adc;
 class BxCan;
 class Timer;
 
@@ -42,6 +43,7 @@ class FunctionBlocks {
   virtual DmaRequest* dma_request(std::string_view name) = 0;  // null: no such request
   virtual Timer* timer(int number) = 0;                        // null: the part has no such timer
   virtual BxCan* can(int number) = 0;
+  virtual Adc* converter(int number) = 0;  // null: the part has no such converter
   // EXTI lines that trigger converters (9: DAC; 11 and 15: ADC): call at each edge that EXTI passes.
   virtual void exti_edge(int line, Nanoseconds now) = 0;
   virtual void reset(ResetCause cause) = 0;  // power_on clears the backup domain too

@@ -52,6 +52,7 @@ class Part : public ChipModel {
   void set_vdd(double volts) override { pwr_.set_vdd(volts); }
   Timer* timer(int number) override { return functions_->timer(number); }
   BxCan* can(int number) override { return functions_->can(number); }
+  Adc* converter(int number) override { return functions_->converter(number); }
   const Clocks& clocks() const override { return rcc_; }
   void on_clock_change(std::function<void()> changed) override {
     rcc_.on_change(std::move(changed));

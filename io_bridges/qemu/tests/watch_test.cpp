@@ -75,5 +75,21 @@ TEST(Watch, AnInterruptDuringWorkIsTakenWithinOneInstruction) {
   EXPECT_LE(latency_ns, kInstruction_ns);
 }
 
+// The request waits from 800 ns after the store to the end of the 202 instructions that follow it.
+TEST(Watch, ARequestThatIsHeldOffWaitsAsLongAsTheLock) {
+  const BoardRun run = run_for({image("held"), {"irq31_handler", "hold"}}, 1);
+  const auto calls = run.of(io::Kind::function_call);
+  ASSERT_EQ(calls.size(), 2u);
+  for (const Message* message : calls) {
+    const auto call = message->as<io::FunctionCall>();
+    if (message->head.port == 1) {
+      EXPECT_EQ(call.latency_ns, -1);  // called by main
+      continue;
+    }
+    const double held_ns = static_cast<double>(202 * kInstruction_ns - 800);
+    EXPECT_NEAR(static_cast<double>(call.latency_ns), held_ns, kInstruction_ns);
+  }
+}
+
 }  // namespace
 }  // namespace whirl::board_test

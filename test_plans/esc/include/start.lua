@@ -1,10 +1,10 @@
 -- What the plans of the thrust stand share: arm, start, turn steadily.
 
--- Armed by its zeros, then turning at `thrust` for two seconds.
-function start(t, thrust)
+-- Armed by its zeros, then turning for two seconds as `wish` says: a thrust, or what the mode takes.
+function start(t, wish)
   t:step "start"
   t:within("3 s", function(s) return s.armed == 1 end, "armed after its zeros")
-  t:command { thrust = thrust }
+  t:command(type(wish) == "table" and wish or { thrust = wish })
   t:within("3 s", function(s) return s.speed_radps > 150 end, "turning")
   t:wait "2 s"
 end

@@ -291,6 +291,23 @@ TEST(AdcF103, The239Point5SettingTakes252Clocks) {
   EXPECT_EQ(get(one, SR), STRT | EOC);
 }
 
+TEST(AdcF103, ASequenceIsToldFromItsStartToTheEndOfItsLastConversion) {
+  F103Adc adc;
+  Adc& one = adc.bank.converter(1);
+  std::vector<Nanoseconds> told;
+  one.on_sequence([&](Nanoseconds began, Nanoseconds ended) { told = {began, ended}; });
+  const std::uint32_t by_software = ADON | JEXTTRIG | 7u << 12;
+  put(one, CR1, SCAN);
+  put(one, JSQR, 1u << 20 | 3u << 15 | 2u << 10);  // two channels
+  put(one, CR2, by_software);
+  adc.bare.run_to(1'000'000);
+  put(one, CR2, by_software | JSWSTART_F1);
+  adc.bare.run_to(1'000'000 + clocks_ns(28, 12'000'000) - 1);
+  EXPECT_TRUE(told.empty());
+  adc.bare.run_to(1'000'000 + clocks_ns(28, 12'000'000));
+  EXPECT_EQ(told, (std::vector<Nanoseconds>{1'000'000, 1'000'000 + clocks_ns(28, 12'000'000)}));
+}
+
 TEST(AdcF103, DualSimultaneousShowsTheSecondConverterInTheUpperHalf) {
   F103Adc adc;
   Adc &one = adc.bank.converter(1), &two = adc.bank.converter(2);
