@@ -132,7 +132,8 @@ class Run {
     if (!*arrived) return fail(arrived->error());
     file_batch(happened_);
     if (!record_.events.cpu_faults.empty()) return core_fault();
-    if (const char* watchdog = bitten(record_.events.resets)) return watchdog_reset(watchdog);
+    const char* watchdog = parts_.plan.may_reset ? nullptr : bitten(record_.events.resets);
+    if (watchdog != nullptr) return watchdog_reset(watchdog);
     if (arrived->value() == TargetState::running) return true;
     return stopped_early(arrived->value());
   }

@@ -29,6 +29,7 @@ Result<Plan> read_plan(const lua::Table& t, std::string name, const std::string&
   plan.watch = t.texts("watch");
   plan.seed = static_cast<std::uint64_t>(t.integer_or("seed", 1, 0));
   plan.timeout_ns = t.duration_ns_or("timeout", kDefaultTimeout_ns);
+  plan.may_reset = t.flag_or("may_reset", false);
   // What the world is made of is read (and its unknown keys refused) by who makes the world.
   if (auto good = t.finish_except({"stand", "world"}); !good) return good.error();
   return plan;

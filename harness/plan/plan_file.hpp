@@ -2,6 +2,7 @@
 //
 //   plan "hover" { image = "flight", board = "px4fmu_v1", vehicle = "hp_quad", tags = { "quick" },
 //                  seed = 1, timeout = "60 s", watch = { "fw::imu_task" }, world = { ... },
+//                  may_reset = false,
 //                  run = function(t) ... end }
 //   Stand    instead of vehicle: stand = { prop = "hk_10x4.5", battery = "4s_2200" }
 //   Limits   tags and names are checked; a plan without run, image or name is refused with its line
@@ -24,6 +25,7 @@ struct Plan {
   std::vector<std::string> tags, watch;
   std::uint64_t seed = 1;
   std::int64_t timeout_ns = 0;
+  bool may_reset = false;  // by a watchdog, without failing the plan
   std::optional<lua::Table> stand, world;
   int run_ref = 0;  // in the file's Lua registry
 

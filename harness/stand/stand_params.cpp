@@ -22,6 +22,11 @@ void read_feed(const lua::Table& t, plant::BatteryParams& battery) {
   battery = plant::lipo_4s_2200();
   battery.initial_depth_of_discharge =
       t.quantity_or("depth_of_discharge", Dimension::ratio, 0.0, lua::between(0.0, 1.0));
+  // The others of a vehicle draw the rest: this motor sees as much of the pack.
+  const double share = t.quantity_or("battery_share", Dimension::ratio, 1.0, lua::between(0.01, 1));
+  battery.capacity_C *= share;
+  battery.series_resistance_ohm /= share;
+  battery.relaxation_resistance_ohm /= share;
 }
 
 io::EscMode read_mode(const lua::Table& t) {

@@ -1,6 +1,7 @@
 // A thrust stand as a plan names it: what turns, what feeds it, what commands it.
 //
-//   stand = { prop = "hk_10x4.5", battery = "4s_2200", depth_of_discharge = "0 %" }  or
+//   stand = { prop = "hk_10x4.5", battery = "4s_2200", depth_of_discharge = "0 %",
+//             battery_share = "25 %" }  or
 //   stand = { prop = "hk_10x4.5", supply = "16 V", supply_resistance = "10 mohm",
 //             mode = "thrust_by_rpm", address = 0x29, i2c = 2, serial = 1 }
 //   and optionally motor = { ... }, shunt = { ... }: stage_params.hpp

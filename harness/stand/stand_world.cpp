@@ -93,6 +93,8 @@ void StandWorld::take(const io::Batch& happened) {
       line_.take(reader);
     } else if (header.kind == io::Kind::shoot_through) {
       ++shots_;
+    } else if (header.kind == io::Kind::board_reset) {
+      ++resets_;
     }
   }
 }
@@ -150,6 +152,10 @@ Result<Done> StandWorld::command(const lua::Table& wish, std::int64_t /*now_ns*/
   if (wish.has("stop") && wish.flag_or("stop", true)) throttle_.set(0);
   if (wish.has("silence")) throttle_.silence(wish.flag_or("silence", true));
   if (wish.has("i2c_raw")) throttle_.send_raw(read_raw(wish.table("i2c_raw")));
+  if (wish.has("setpoint_rate")) {
+    throttle_.set_rate(
+        wish.quantity("setpoint_rate", Dimension::frequency, lua::between(1.0, 10e3)));
+  }
   if (wish.has("line")) line_.say(wish.text("line"));
   if (wish.has("brake")) {
     brake_Nm_ = wish.quantity("brake", Dimension::torque, lua::between(0.0, 10.0));
@@ -248,6 +254,8 @@ void StandWorld::name_signals() {
   add_signal("i2c_raw_good", D::none,
              "1: the last raw read had a status, its CRC and only FF after",
              [this] { return throttle_.raw_told().read_good; });
+  add_signal("resets", D::none, "of the ESC, by a watchdog or by itself",
+             [this] { return static_cast<double>(resets_); });
   add_signal("shoot_through", D::none, "times that both switches of a leg were on",
              [this] { return static_cast<double>(shots_); });
   for (EscLine::Named& told : line_.signals()) {

@@ -76,7 +76,7 @@ class StandWorld : public World {
   double wind_mps_ = 0.0, brake_Nm_ = 0.0;
   std::vector<Dip> dips_;
   EscLine line_;
-  std::uint64_t shots_ = 0;
+  std::uint64_t shots_ = 0, resets_ = 0;
   std::vector<Signal> signals_;
   std::vector<std::function<double()>> values_;
   std::int64_t now_ns_ = 0;

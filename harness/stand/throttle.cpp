@@ -6,7 +6,7 @@ namespace whirl::stand {
 namespace {
 
 constexpr std::int64_t kMs = 1'000'000;
-constexpr std::int64_t kWrite_every_ns = 20 * kMs, kRead_every_ns = 50 * kMs;
+constexpr std::int64_t kRead_every_ns = 50 * kMs;
 constexpr std::size_t kStatusBytes = 6;
 constexpr std::int64_t kBoot_ns = 100 * kMs;  // nobody answers before
 
@@ -18,11 +18,17 @@ void Throttle::order(std::int64_t t_ns, std::uint16_t read, const void* bytes, s
   sensed.add(io::Kind::i2c_order, bus_, t_ns, order, bytes, size);
 }
 
+void Throttle::set_rate(double writes_Hz) {
+  write_every_ns_ = std::llround(1e9 / writes_Hz);
+}
+
 void Throttle::send(std::int64_t t_ns, io::Batch& sensed) {
   if (t_ns < kBoot_ns) return;
-  if (t_ns % kWrite_every_ns == 0 && !silent_) {
+  const std::int64_t every = write_every_ns_;
+  const std::int64_t until = silent_ ? t_ns : t_ns + kMs;
+  for (std::int64_t at = (t_ns + every - 1) / every * every; at < until; at += every) {
     const auto bytes = io::pack_setpoint(address_, v_);
-    order(t_ns, 0, bytes.data(), bytes.size(), sensed);
+    order(at, 0, bytes.data(), bytes.size(), sensed);
   }
   send_next_raw(t_ns, sensed);
   // Half a millisecond beside the writes.

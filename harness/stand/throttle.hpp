@@ -1,4 +1,4 @@
-// The stand's throttle source: set-points at 50 Hz and status reads at 20 Hz over I2C.
+// The stand's throttle source: set-points at 50 Hz (or another rate) and status reads at 20 Hz over I2C.
 //
 //   Start    set-point 0 from power-up on: the zeros that arm
 //   Wire     a set-point has passed when the reply to its write says that it was acknowledged
@@ -46,6 +46,7 @@ class Throttle {
   }
   void silence(bool silent) { silent_ = silent; }             // no more writes; reads go on
   void send_raw(Raw raw) { raw_.push_back(std::move(raw)); }  // one after another
+  void set_rate(double writes_Hz);
   std::uint16_t value() const { return v_; }
   const RawTold& raw_told() const { return raw_told_; }
   const Told& told() const { return told_; }
@@ -67,6 +68,7 @@ class Throttle {
   bool silent_ = false;
   std::uint32_t sent_ = 0, first_ = 0;  // orders so far; the first that can carry v_
   std::int64_t on_wire_ns_ = -1;
+  std::int64_t write_every_ns_ = 20'000'000;
   Told told_;
   std::int64_t told_step_ = -1;  // of told_.stretched_s
   std::deque<Raw> raw_;

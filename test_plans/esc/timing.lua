@@ -38,5 +38,5 @@ end
 timing("duty", 0, { duty = "30 %" }, { duty = "55 %" })
 timing("rpm", 1, { speed = "3500 rpm" }, { speed = "6000 rpm" })
 timing("thrust_by_rpm", 2, { thrust = "2 N" }, { thrust = "4 N" })
-timing("power", 4, { power = "20 W" }, { power = "30 W" })
+timing("power", 4, { power = "20 W" }, { power = "40 W" })
 timing("thrust_by_power", 5, { thrust = "2 N" }, { thrust = "4 N" })

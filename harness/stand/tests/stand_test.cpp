@@ -106,6 +106,29 @@ TEST(Stand, WritesAtFiftyAndReadsAtTwentyHertz) {
   EXPECT_EQ(b.last_write, (std::vector<std::uint8_t>{0x00, 0x00, 0xF2}));
 }
 
+TEST(Stand, FloodsTheWireAsFastAsItIsTold) {
+  Bench b;
+  b.run_until(199 * kMs, 0.0);
+  b.writes_ns.clear();
+  ASSERT_TRUE(b.world.command(table(R"({ setpoint_rate = "10 kHz" })"), b.t_ns).ok());
+  b.run_until(202 * kMs, 0.0);
+  ASSERT_EQ(b.writes_ns.size(), 30u);  // those of the three steps that begin at 200, 201, 202 ms
+  for (std::size_t i = 0; i < 30; ++i) {
+    EXPECT_EQ(b.writes_ns[i], 200 * kMs + static_cast<std::int64_t>(i) * 100'000);
+  }
+}
+
+// A quarter of the pack sags under 2 A as the whole one under 8 A.
+TEST(Stand, AShareOfThePackSagsAsTheWholeUnderAllMotors) {
+  Bench whole(params(R"({ prop = "hk_10x4.5", battery = "4s_2200" })"));
+  Bench share(params(R"({ prop = "hk_10x4.5", battery = "4s_2200", battery_share = "25 %" })"));
+  whole.run_until(20'000 * kMs, 400.0, 8.0);
+  share.run_until(20'000 * kMs, 400.0, 2.0);
+  EXPECT_LT(whole.load.source_V, 16.6);
+  EXPECT_TRUE(near(share.load.source_V, whole.load.source_V, round_off(1000, 16.0)));
+  EXPECT_TRUE(near(2.0 * share.load.source_ohm, 8.0 * whole.load.source_ohm, round_off(4, 1.0)));
+}
+
 TEST(Stand, CommandIsOnTheWireOnceItsOwnWriteWasAnswered) {
   Bench b;
   b.answers = true;
