@@ -193,7 +193,7 @@ Pace pace_of(const std::array<Ticks, 6>& sectors, std::uint8_t newest, std::uint
   }
   const auto last = [&](unsigned back) { return sectors[(newest + 6u - back) % 6u]; };
   const std::uint32_t two = last(1) + last(2), before = last(3) + last(4);
-  pace.slowing = two * 40u > before * 41u || waited * 20u > two * 11u;
+  pace.slowing = two * 64u > before * 65u || waited * 20u > two * 11u;
   pace.sector = two / 2u;
   if (waited > pace.sector) pace.sector = waited;
   return pace;
