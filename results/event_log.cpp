@@ -90,6 +90,7 @@ bool EventLog::add(const io::Batch& batch) {
       case io::Kind::shaft_load:
       case io::Kind::shaft_state:
       case io::Kind::i2c_order:
+      case io::Kind::pulse_train:
       case io::Kind::i2c_reply:
       case io::Kind::shoot_through:
       case io::Kind::uart_delivered:

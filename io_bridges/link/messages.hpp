@@ -24,6 +24,7 @@ enum class Kind : std::uint16_t {
   end_of_run = 5,   // empty
   shaft_load = 6,   // ShaftLoad: air, brake and supply of a power stage, from here on
   i2c_order = 7,    // I2cOrder + bytes to write, port = bus number: not before t_ns
+  pulse_train = 8,  // PulseTrain, port = motor number: on its throttle pin, from here on
   // Target to harness.
   esc_setpoint = 32,       // EscSetpoint, port = motor number
   uart_received = 33,      // bytes the board has sent on UART `port`; t_ns: the last stop bit
@@ -148,6 +149,13 @@ struct I2cOrder {
   std::uint16_t address = 0;
   std::uint16_t read = 0;    // bytes to read after the written ones
   std::uint32_t number = 0;  // comes back in the reply
+};
+
+struct PulseTrain {  // high for width once per period; width 0: low
+  std::int64_t width_ns = 0;
+  std::int64_t period_ns = 20'000'000;
+  std::int64_t glitch_ns = 0;  // the line inverted for so long, so long after each rising edge
+  std::int64_t glitch_after_ns = 0;
 };
 
 struct I2cReplyHead {

@@ -8,18 +8,18 @@
 #include "io_bridges/devices/esc_i2c.hpp"
 #include "io_bridges/devices/mavlink_link.hpp"
 #include "io_bridges/devices/mpu6000.hpp"
+#include "io_bridges/devices/pulse_source.hpp"
 #include "io_bridges/devices/serial_port.hpp"
 #include "io_bridges/devices/wire_faults.hpp"
 #include "io_bridges/qemu/board/i2c_orders.hpp"
 #include "io_bridges/qemu/board/inertial_sensor.hpp"
 #include "io_bridges/qemu/board/power_stage.hpp"
+#include "io_bridges/qemu/board/spi_log.hpp"
 
 namespace whirl::board {
 namespace {
 
 using io::Kind;
-
-constexpr std::size_t kSpi_pairs = 16;
 
 std::uint16_t port(int number) {
   return static_cast<std::uint16_t>(number);
@@ -35,46 +35,6 @@ BusName split(const std::string& bus) {
   const auto digit = bus.find_last_not_of("0123456789") + 1;  // "i2c3": the last number counts
   return {bus.substr(0, digit), std::atoi(bus.substr(digit).c_str())};
 }
-
-// Puts the bytes of one chip select together and logs the transaction when it ends.
-class SpiLog {
- public:
-  SpiLog(io::Batch& happened, int bus, int device, io::Wire& chip_select)
-      : happened_(happened), bus_(bus), device_(device), selected_(!chip_select.level()) {
-    chip_select.watch([this](bool level, Nanoseconds now) { level ? end(now) : begin(now); });
-  }
-  void byte(std::uint8_t mosi, std::uint8_t miso) {
-    if (length_++ >= kSpi_pairs) return;
-    pairs_.push_back(mosi);
-    pairs_.push_back(miso);
-  }
-
- private:
-  using Nanoseconds = io::Nanoseconds;
-  void begin(Nanoseconds now) {
-    selected_ = true;
-    start_ns_ = now;
-    length_ = 0;
-    pairs_.clear();
-  }
-  void end(Nanoseconds now) {
-    if (!selected_ || length_ == 0) return;
-    selected_ = false;
-    io::BusTransaction head;
-    head.start_ns = start_ns_;
-    head.address = port(device_);
-    head.length = static_cast<std::uint32_t>(length_);
-    happened_.add(Kind::spi_transaction, port(bus_), now, head, pairs_.data(),
-                  static_cast<std::uint32_t>(pairs_.size()));
-  }
-
-  io::Batch& happened_;
-  int bus_, device_;
-  bool selected_;
-  Nanoseconds start_ns_ = 0;
-  std::size_t length_ = 0;
-  std::vector<std::uint8_t> pairs_;
-};
 
 }  // namespace
 
@@ -93,6 +53,7 @@ struct DeviceRack::Parts {
   Result<Done> add_serial(const DeviceConfig& device);
   Result<Done> add_i2c_master(const DeviceConfig& device);
   Result<Done> add_power_stage(const DeviceConfig& device);
+  Result<Done> add_pulse_source(const DeviceConfig& device);
   Result<Done> add_volts(const DeviceConfig& device);
   Result<Done> add_jumper(const DeviceConfig& device);
   io::I2cBus* i2c(int number);
@@ -117,6 +78,7 @@ struct DeviceRack::Parts {
   std::map<int, std::unique_ptr<io::SerialPort>> serials;  // by UART
   std::map<int, std::unique_ptr<I2cOrders>> masters;       // by bus
   std::map<int, std::unique_ptr<PowerStage>> stages;       // by motor
+  std::map<int, std::unique_ptr<io::PulseSource>> pulses;  // by motor
 };
 
 DeviceRack::DeviceRack(Site site) : parts_(std::make_unique<Parts>(std::move(site))) {
@@ -145,12 +107,13 @@ Result<Done> DeviceRack::Parts::add(const DeviceConfig& device, int number) {
   if (device.type == "serial") return add_serial(device);
   if (device.type == "i2c_master") return add_i2c_master(device);
   if (device.type == "power_stage") return add_power_stage(device);
+  if (device.type == "pulse_source") return add_pulse_source(device);
   if (device.type == "volts") return add_volts(device);
   if (device.type == "jumper") return add_jumper(device);
   return wrong(device,
                "unknown type '" + device.type +
-                   "'; use mpu6000, esc_i2c, mavlink_link, serial, i2c_master, power_stage, volts "
-                   "or jumper");
+                   "'; use mpu6000, esc_i2c, mavlink_link, serial, i2c_master, power_stage, "
+                   "pulse_source, volts or jumper");
 }
 
 io::I2cBus* DeviceRack::Parts::i2c(int number) {
@@ -320,6 +283,16 @@ Result<Done> DeviceRack::Parts::add_power_stage(const DeviceConfig& device) {
   return Done{};
 }
 
+Result<Done> DeviceRack::Parts::add_pulse_source(const DeviceConfig& device) {
+  io::Wire* wire = pin(device.bus);
+  if (wire == nullptr) return wrong(device, "the part has no pin '" + device.bus + "'");
+  if (device.motor < 1 || pulses.count(device.motor) != 0) {
+    return wrong(device, "needs a motor number of its own");
+  }
+  pulses[device.motor] = std::make_unique<io::PulseSource>(site.events, *wire);
+  return Done{};
+}
+
 Result<Done> DeviceRack::Parts::add_volts(const DeviceConfig& device) {
   const auto volts = device.params.find("volts");
   if (volts == device.params.end()) return wrong(device, "needs params.volts");
@@ -377,6 +350,14 @@ bool DeviceRack::take(const io::Reader& message) {
       if (master != parts_->masters.end()) {
         master->second->add(message.as<io::I2cOrder>(), message.tail_after(sizeof(io::I2cOrder)),
                             head.t_ns);
+      }
+      return true;
+    }
+    case Kind::pulse_train: {
+      const auto source = parts_->pulses.find(head.port);
+      if (source != parts_->pulses.end()) {
+        const auto t = message.as<io::PulseTrain>();
+        source->second->set({t.width_ns, t.period_ns, t.glitch_ns, t.glitch_after_ns});
       }
       return true;
     }
