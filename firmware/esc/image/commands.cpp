@@ -3,6 +3,7 @@
 #include <array>
 
 #include "firmware/esc/core/parameters.hpp"
+#include "firmware/esc/core/pulse_throttle.hpp"
 #include "firmware/esc/image/i2c_slave.hpp"
 #include "firmware/esc/image/registers.hpp"
 #include "firmware/esc/image/serial.hpp"
@@ -47,7 +48,7 @@ class Line {  // what is being answered
   }
 
  private:
-  std::array<char, 128> text_{};  // the longest answer is commands' list
+  std::array<char, 144> text_{};  // the longest answer is commands' list
   std::size_t length_ = 0;
 };
 
@@ -186,6 +187,15 @@ bool setpoint(const ModeWord& mode, float value, Core& core) {
   return core.command(mode.mode, mode.scale * value);
 }
 
+bool pwm(float width_us, Core& core) {  // as a pulse of that width would
+  const bool valid = width_us >= 0.0f && width_us < 65'536.0f &&
+                     PulseThrottle::in_range(static_cast<std::uint32_t>(width_us));
+  if (!valid) return false;
+  const TickLock lock;
+  core.on_setpoint(PulseThrottle::setpoint_of(static_cast<std::uint32_t>(width_us)));
+  return true;
+}
+
 void stop(Core& core) {
   const TickLock lock;
   core.on_setpoint(0);
@@ -203,6 +213,7 @@ void execute(std::string_view text, Core& core, Settings& settings) {
   if (words.verb == "status") return report_status(core);
   if (words.verb == "inflow") return report_inflow(core);
   if (words.verb == "stop") return stop(core), answer(true);
+  if (words.verb == "pwm") return answer(number && pwm(value, core));
   if (words.verb == "arm") return answer(arm(core));
   if (words.verb == "set") return answer(set_parameter(words, core, settings));
   if (words.verb == "get") {
@@ -218,8 +229,8 @@ void execute(std::string_view text, Core& core, Settings& settings) {
   }
   if (words.verb == "save") return answer(save(core, settings));
   Line().text(
-      "unknown: duty rpm thrust power st | arm stop status inflow mode set get stream watch motor "
-      "identified save");
+      "unknown: duty rpm thrust power st pwm | arm stop status inflow mode set get stream watch "
+      "motor identified save");
 }
 
 }  // namespace fw::esc

@@ -1,6 +1,7 @@
 // The command line: one line in, one answer out ("ok", "refused", or what was asked for).
 //
 //   duty 20 | rpm 3500 | thrust 2.0 | power 12.0 | st 2.0   set-point in its mode (25 zeros arm: `arm`)
+//   pwm 1200           set-point as a servo pulse of so many microseconds would give it
 //   mode 0..5 | status | inflow | stop | arm | watch 0|1 | save | motor 1..4 | identified 0|1
 //   set NAME VALUE     calibration, by the names of core/parameters.hpp
 //   get NAME           "NAME VALUE", the same bits when set again; also mode, motor, identified,

@@ -5,11 +5,13 @@
 //   SysTick  1 kHz: the control core; feeds the watchdog
 //   Main     the command line and the stream, otherwise asleep
 #include "firmware/esc/core/core.hpp"
+#include "firmware/esc/core/pulse_throttle.hpp"
 #include "firmware/esc/image/bridge.hpp"
 #include "firmware/esc/image/clock.hpp"
 #include "firmware/esc/image/commands.hpp"
 #include "firmware/esc/image/i2c_slave.hpp"
 #include "firmware/esc/image/motor_drive.hpp"
+#include "firmware/esc/image/pulse_input.hpp"
 #include "firmware/esc/image/registers.hpp"
 #include "firmware/esc/image/sampling.hpp"
 #include "firmware/esc/image/serial.hpp"
@@ -27,6 +29,8 @@ Core* core = nullptr;
 Settings stored;
 MotorDrive drive;
 ZeroCurrent zero;
+PulseThrottle pulses;
+ThrottleSources sources;
 std::uint32_t ticks = 0;
 
 StreamSample sample(float raw_current_A) {
@@ -53,6 +57,20 @@ StreamSample sample(float raw_current_A) {
           .mode = static_cast<std::uint8_t>(core->mode())};
 }
 
+void take_setpoints() {
+  using Source = ThrottleSources::Source;
+  const auto obey = [](Source from, std::uint16_t v) {
+    if (sources.admit(from, core->supervisor().armed())) core->on_setpoint(v);
+  };
+  std::uint16_t v = 0;
+  if (i2c_slave::take_setpoint(v)) obey(Source::i2c, v);
+  pulse_input::Pulse pulse;
+  if (pulse_input::take(pulse) && pulses.take(pulse.width_us, pulse.period_us, v)) {
+    obey(Source::pulses, v);
+  }
+  sources.tick();
+}
+
 void start_tick() {
   using namespace f103;
   SysTick::SHPR3::replace(0xFFu << 24, kPriorityControl << 28);
@@ -67,8 +85,7 @@ namespace fw::esc {
 
 __attribute__((noinline)) void control_task() {
   i2c_slave::supervise();
-  std::uint16_t v = 0;
-  if (i2c_slave::take_setpoint(v)) core->on_setpoint(v);
+  take_setpoints();
   Sensed sensed = drive.sense();
   if (drive.tripped()) core->latch(Latched::over_current);
   if (drive.energised()) {
@@ -117,6 +134,7 @@ extern "C" void fw_main() {
   sampling::start();
   serial::start();
   i2c_slave::start(protocol::address_of(stored.motor_number));
+  pulse_input::start();
   start_watchdog();
   start_tick();
   for (;;) {

@@ -27,7 +27,7 @@ struct RCC {
   static constexpr std::uint32_t PPRE1_DIV2 = 4u << 8, ADCPRE_DIV6 = 2u << 14, PLLSRC_HSE = bit(16),
                                  PLLMUL9 = 7u << 18;
   static constexpr std::uint32_t AFIOEN = bit(0), IOPAEN = bit(2), IOPBEN = bit(3), ADC1EN = bit(9),
-                                 ADC2EN = bit(10), USART1EN = bit(14);
+                                 ADC2EN = bit(10), TIM1EN = bit(11), USART1EN = bit(14);
   static constexpr std::uint32_t DMA1EN = bit(0);
   static constexpr std::uint32_t TIM2EN = bit(0), TIM4EN = bit(2), I2C2EN = bit(22);
 };
@@ -61,7 +61,7 @@ struct Gpio {
     }
   }
 };
-inline constexpr std::uint32_t kAnalog = 0x0, kInputFloating = 0x4, kOutput = 0x3,
+inline constexpr std::uint32_t kAnalog = 0x0, kInputFloating = 0x4, kInputPull = 0x8, kOutput = 0x3,
                                kOutputSlow = 0x2, kAlternate = 0xB, kAlternateOpenDrain = 0xF;
 using GPIOA = Gpio<0x4001'0800>;
 using GPIOB = Gpio<0x4001'0C00>;
@@ -75,6 +75,7 @@ template <std::uint32_t kBase>
 struct Timer {
   using CR1 = Reg32<kBase + 0x00>;
   using CR2 = Reg32<kBase + 0x04>;
+  using SMCR = Reg32<kBase + 0x08>;
   using DIER = Reg32<kBase + 0x0C>;
   using SR = Reg32<kBase + 0x10>;
   using EGR = Reg32<kBase + 0x14>;
@@ -96,7 +97,14 @@ struct Timer {
   static constexpr std::uint32_t OC3M_PWM1 = 6u << 4, OC3PE = bit(3), OC4M_PWM2 = 7u << 12,
                                  OC4PE = bit(11);
   static constexpr std::uint32_t CC1E = bit(0), CC2E = bit(4), CC3E = bit(8), CC4E = bit(12);
+  // PWM input: both captures look at TI1, channel 2 at its falling edge.
+  static constexpr std::uint32_t UIF = bit(0), CC1OF = bit(9), URS = bit(2), CKD_DIV4 = 2u << 8,
+                                 CC2P = bit(5);
+  static constexpr std::uint32_t CC1S_TI1 = 1u, CC2S_TI1 = 2u << 8, IC1F_LONGEST = 15u << 4,
+                                 IC2F_LONGEST = 15u << 12;
+  static constexpr std::uint32_t TS_TI1FP1 = 5u << 4, SMS_RESET = 4u;
 };
+using TIM1 = Timer<0x4001'2C00>;
 using TIM2 = Timer<0x4000'0000>;
 using TIM4 = Timer<0x4000'0800>;
 
