@@ -38,6 +38,12 @@ io::EscMode read_mode(const lua::Table& t) {
   return io::EscMode::thrust_by_rpm;  // refused by choice() already
 }
 
+double read_pulse_rate(const lua::Table& t) {
+  const bool pulses = t.has("throttle") && t.choice("throttle", {"i2c", "pwm"}) == "pwm";
+  if (!pulses) return 0.0;
+  return t.quantity_or("pulse_rate", Dimension::frequency, 50.0, lua::between(50.0, 400.0));
+}
+
 }  // namespace
 
 Result<StandParams> read_stand(const lua::Table& t, const std::string& propellers) {
@@ -47,6 +53,7 @@ Result<StandParams> read_stand(const lua::Table& t, const std::string& propeller
   p.stage = read_stage(t);
   p.mode = read_mode(t);
   p.address = static_cast<std::uint8_t>(t.integer_or("address", p.address, 0x08, 0x77));
+  p.pulse_rate_Hz = read_pulse_rate(t);
   p.i2c = static_cast<std::uint16_t>(t.integer_or("i2c", p.i2c, 1, 3));
   p.serial = static_cast<std::uint16_t>(t.integer_or("serial", p.serial, 1, 8));
   if (const auto good = t.finish(); !good) return good.error();

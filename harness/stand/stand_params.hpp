@@ -5,6 +5,8 @@
 //   stand = { prop = "hk_10x4.5", supply = "16 V", supply_resistance = "10 mohm",
 //             mode = "thrust_by_rpm", address = 0x29, i2c = 2, serial = 1 }
 //   and optionally motor = { ... }, shunt = { ... }: stage_params.hpp
+//   Throttle throttle = "i2c" (set-points at 50 Hz), or "pwm" (pulse_rate = "50 Hz" to "400 Hz"; the
+//            status is read over I2C all the same)
 //   Mode     what the ESC is set to: it scales the set-points on I2C (esc_codec.hpp)
 #pragma once
 #include <cstdint>
@@ -28,6 +30,7 @@ struct StandParams {
   StageParams stage;  // what differs from the board's own motor and shunt
   io::EscMode mode = io::EscMode::thrust_by_rpm;
   std::uint8_t address = 0x29;
+  double pulse_rate_Hz = 0.0;  // of the throttle's pulses; 0: it writes over I2C
   std::uint16_t i2c = 2, serial = 1, motor = 1;
 };
 

@@ -66,7 +66,9 @@ StandWorld::StandWorld(const StandParams& params, std::uint64_t seed)
       battery_(params.battery),
       cell_(params.cell, seed, "stand.cell"),
       throttle_(params.address, params.i2c),
+      pulses_(params.motor),
       line_(params.serial) {
+  if (params_.pulse_rate_Hz > 0.0) throttle_.never_write();
   name_signals();
 }
 
@@ -134,6 +136,10 @@ void StandWorld::tell(std::int64_t t_ns, io::Batch& sensed) {
                            .source_ohm = battery_.series_resistance_ohm()};
   sensed.add(io::Kind::shaft_load, params_.motor, t_ns, load);
   throttle_.send(t_ns, sensed);
+  if (params_.pulse_rate_Hz > 0.0) {
+    pulses_.follow(throttle_.value(), throttle_.silent(), params_.pulse_rate_Hz);
+  }
+  pulses_.send(t_ns, sensed);
   line_.send(t_ns, sensed);
 }
 
@@ -156,6 +162,7 @@ Result<Done> StandWorld::command(const lua::Table& wish, std::int64_t /*now_ns*/
     throttle_.set_rate(
         wish.quantity("setpoint_rate", Dimension::frequency, lua::between(1.0, 10e3)));
   }
+  if (wish.has("pulses")) pulses_.set(read_pulses(wish.table("pulses")));
   if (wish.has("line")) line_.say(wish.text("line"));
   if (wish.has("brake")) {
     brake_Nm_ = wish.quantity("brake", Dimension::torque, lua::between(0.0, 10.0));

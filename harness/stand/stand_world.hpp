@@ -8,6 +8,8 @@
 //            { silence = true }: no more set-points; { line = "status" }: over the serial line;
 //            { i2c_raw = { bytes = "5A 03 C1", read = 6, times = 10, every = "20 ms", shift = "7 us" } }:
 //            as it stands, each time 7 us later in its millisecond;
+//            { pulses = { width = "1500 us", rate = "50 Hz", glitch = "50 us", glitch_after = "600 us" } }
+//            on the throttle pin;
 //            { brake = "0.5 N m" }: holds the shaft, "0 N m" lets go
 //   Gust     t:gust { down = "2 m/s", edge = "300 ms" [, duration = "5 s"] }: the flow generator
 //   Faults   supply_dip (value: volts below)
@@ -20,6 +22,7 @@
 
 #include "harness/executive/world.hpp"
 #include "harness/stand/esc_line.hpp"
+#include "harness/stand/pulse_output.hpp"
 #include "harness/stand/stand_params.hpp"
 #include "harness/stand/throttle.hpp"
 #include "plant/battery/battery.hpp"
@@ -68,6 +71,7 @@ class StandWorld : public World {
   plant::Battery battery_;
   plant::LoadCell cell_;
   Throttle throttle_;
+  PulseOutput pulses_;
   io::ShaftState shaft_;
   plant::RotorLoads loads_;
   plant::LoadReading weighed_;

@@ -25,7 +25,7 @@ void Throttle::set_rate(double writes_Hz) {
 void Throttle::send(std::int64_t t_ns, io::Batch& sensed) {
   if (t_ns < kBoot_ns) return;
   const std::int64_t every = write_every_ns_;
-  const std::int64_t until = silent_ ? t_ns : t_ns + kMs;
+  const std::int64_t until = silent_ || !writes_ ? t_ns : t_ns + kMs;
   for (std::int64_t at = (t_ns + every - 1) / every * every; at < until; at += every) {
     const auto bytes = io::pack_setpoint(address_, v_);
     order(at, 0, bytes.data(), bytes.size(), sensed);

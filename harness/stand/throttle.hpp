@@ -44,7 +44,9 @@ class Throttle {
     on_wire_ns_ = -1;
     first_ = sent_;
   }
-  void silence(bool silent) { silent_ = silent; }             // no more writes; reads go on
+  void silence(bool silent) { silent_ = silent; }  // no more writes; reads go on
+  bool silent() const { return silent_; }
+  void never_write() { writes_ = false; }                     // another wire carries the set-points
   void send_raw(Raw raw) { raw_.push_back(std::move(raw)); }  // one after another
   void set_rate(double writes_Hz);
   std::uint16_t value() const { return v_; }
@@ -65,7 +67,7 @@ class Throttle {
   std::uint8_t address_;
   std::uint16_t bus_;
   std::uint16_t v_ = 0;
-  bool silent_ = false;
+  bool silent_ = false, writes_ = true;
   std::uint32_t sent_ = 0, first_ = 0;  // orders so far; the first that can carry v_
   std::int64_t on_wire_ns_ = -1;
   std::int64_t write_every_ns_ = 20'000'000;

@@ -1,0 +1,32 @@
+// The stand's receiver: set-points as servo pulses on the ESC's throttle pin.
+//
+//   Width   0: 1000 us; 1..2047: 1100 to 1950 us
+//   Raw     any train, glitches included; until the next change of the set-point
+#pragma once
+#include <cstdint>
+
+#include "harness/base/result.hpp"
+#include "harness/lua/table.hpp"
+#include "io_bridges/link/messages.hpp"
+
+namespace whirl::stand {
+
+// { width = "1500 us", rate = "50 Hz", glitch = "50 us", glitch_after = "600 us" }
+io::PulseTrain read_pulses(const lua::Table& wish);
+
+class PulseOutput {
+ public:
+  explicit PulseOutput(std::uint16_t motor) : motor_(motor) {}
+
+  void follow(std::uint16_t v, bool silent, double rate_Hz);
+  void set(const io::PulseTrain& train);
+  void send(std::int64_t t_ns, io::Batch& sensed);
+
+ private:
+  std::uint16_t motor_;
+  std::int32_t followed_ = -2;  // a set-point; -1: silence; -2: nothing yet
+  io::PulseTrain train_;
+  bool fresh_ = false;
+};
+
+}  // namespace whirl::stand
