@@ -38,9 +38,12 @@ function(fw_image name)
     COMMAND sh ${gate} $<TARGET_FILE:${name}> ${ARG_FLASH} ${ARG_RAM})
 endfunction()
 
-fw_image(flight FLASH 128 RAM 16 FOLDER . SOURCES
-  flight/main.cpp ${FW_CORE} hal/clock.cpp hal/time_base.cpp hal/spi_master.cpp hal/i2c_master.cpp
-  hal/uart_link.cpp)
+set(FLIGHT_SOURCES flight/main.cpp ${FW_CORE} hal/clock.cpp hal/time_base.cpp hal/spi_master.cpp
+    hal/i2c_master.cpp hal/uart_link.cpp)
+fw_image(flight FLASH 128 RAM 16 FOLDER . SOURCES ${FLIGHT_SOURCES})
+# The same for ESCs in mode 5, whose set-points span another range.
+fw_image(flight_st FLASH 128 RAM 16 FOLDER . SOURCES ${FLIGHT_SOURCES})
+target_compile_definitions(flight_st PRIVATE FW_ESC_MODE=thrust_by_power)
 foreach(image hardfault silent sleeper starved)
   fw_image(${image} FLASH 4 RAM 1 FOLDER images SOURCES images/${image}.cpp)
 endforeach()

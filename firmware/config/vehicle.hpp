@@ -4,6 +4,7 @@
 //   Source  HP quad [Bangura 2017, Fig. 3.1c, tables 3.3 to 3.6]; inertia from its parts list;
 //           gains by the loop analysis in each comment, checked in tests/closed_loop_test.cpp
 #pragma once
+#include "firmware/esc/core/setpoint.hpp"
 
 namespace fw::config {
 
@@ -16,8 +17,12 @@ inline constexpr float kArm_m = 0.25f;
 inline constexpr float kTorquePerThrust_m = 0.0165f;
 inline constexpr float kDrag_spm = 0.04f;  // rotor drag: force = -kDrag T v, sideways
 
-// Set-points in thrust by RPM (mode 2): v = 1..2047 spans this range, v = 0 stops the motor.
-inline constexpr float kThrustMin_N = 0.8f, kThrustMax_N = 8.0f;
+// The mode that the ESCs are set to: v = 1..2047 spans its range, v = 0 stops the motor.
+#ifndef FW_ESC_MODE  // the image flight_st is built with thrust_by_power
+#define FW_ESC_MODE thrust_by_speed
+#endif
+inline constexpr float kThrustMin_N = esc::range_of(esc::Mode::FW_ESC_MODE).min;
+inline constexpr float kThrustMax_N = esc::range_of(esc::Mode::FW_ESC_MODE).max;
 inline constexpr float kThrustUsable_N = 6.0f;  // per rotor, with the battery sagging
 
 // Attitude: torque = -Kw (rate + Kq angle). Crossover 14 rad/s: the ESC (25 ms), half a set-point

@@ -65,6 +65,13 @@ void FlightWorld::name_motor_signals() {
     add_signal("bus_current" + n, D::current, "mean over the step",
                [=] { return motor().bus_current_A; });
     add_signal("esc_armed" + n, D::none, "", [this, i] { return escs_[i].armed() ? 1.0 : 0.0; });
+    const auto estimator = [this, i]() -> const fw::esc::ThrustEstimator& {
+      return escs_[i].core().estimator();
+    };
+    add_signal("esc_thrust" + n, D::force, "as the ESC's core believes",
+               [=] { return static_cast<double>(estimator().thrust_N()); });
+    add_signal("esc_observable" + n, D::none, "1: power tells it the inflow",
+               [=] { return estimator().observable() ? 1.0 : 0.0; });
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <map>
 #include <numbers>
+#include <sstream>
 
 #include "firmware/esc/core/parameters.hpp"
 #include "harness/flight/propeller_file.hpp"
@@ -74,8 +75,35 @@ void read_battery(const Table& t, plant::BatteryParams& b) {
                                                b.initial_depth_of_discharge, between(0.0, 1.0));
 }
 
-// The numbers by the names of the image's `set`, SI without units.
+// "set kt 0.01005": what a stand has found, as it types it into the image. False: not such a line.
+bool take_set_line(const std::string& line, fw::esc::Calibration& c) {
+  std::istringstream words(line);
+  std::string verb, name, rest;
+  double value = 0.0;
+  if (!(words >> verb >> name >> value) || verb != "set" || words >> rest) return false;
+  for (const fw::esc::Parameter& parameter : fw::esc::kParameters) {
+    if (parameter.name != name) continue;
+    parameter.in(c) = static_cast<float>(value);
+    return true;
+  }
+  return false;
+}
+
+void read_calibration_file(const Table& t, fw::esc::Calibration& c) {
+  const auto file = lua::read_file(t.sibling(t.text("file")));
+  if (!file) return t.refuse("file", file.error().message());
+  std::ignore = file.value().choice("kind", {"esc_calibration"});
+  for (const std::string& line : file.value().texts("set")) {
+    if (!take_set_line(line, c)) return t.refuse("file", "'" + line + "' sets nothing of an ESC");
+  }
+  if (const auto good = file.value().finish(); !good) t.refuse("file", good.error().message());
+  c.identified = true;
+}
+
+// The numbers of a stand's file, then those given here by the names of the image's `set`, SI without
+// units.
 void read_calibration(const Table& t, fw::esc::Calibration& c) {
+  if (t.has("file")) read_calibration_file(t, c);
   for (const fw::esc::Parameter& parameter : fw::esc::kParameters) {
     float& value = parameter.in(c);
     value = static_cast<float>(t.number_or(parameter.name, static_cast<double>(value)));

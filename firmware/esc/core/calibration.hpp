@@ -52,6 +52,9 @@ struct Calibration {
   LossMap losses;
   StaticMap free_air;
   CurrentSense sense;
+  // From this share of still air's power on, an updraft may give the same power as a downdraft: nothing
+  // is concluded then. Above 1.1: the air is known to come from above, as on a flow generator.
+  float shared_power = 0.97f;
   ThrustModel rotor{};  // all zero: not identified, modes 4 and 5 fall back to the static map
   float arming_voltage_V = 15.7f;  // at rest
   Mode mode = Mode::thrust_by_speed;

@@ -182,17 +182,20 @@ Commutation::Order Commutation::on_sample(Ticks now, int floating_counts, int bu
 }
 
 Pace Commutation::pace() const {
+  return state_ == State::running ? pace_of(sectors_, newest_, waited_) : Pace{};
+}
+
+Pace pace_of(const std::array<Ticks, 6>& sectors, std::uint8_t newest, std::uint32_t waited) {
   Pace pace;
-  if (state_ != State::running) return pace;
-  for (const Ticks length : sectors_) {
+  for (const Ticks length : sectors) {
     if (length == 0) return {};
     pace.revolution += length;
   }
-  const auto last = [&](unsigned back) { return sectors_[(newest_ + 6u - back) % 6u]; };
-  const std::uint32_t newest = last(1) + last(2), older = last(3) + last(4);
-  pace.slowing = newest * 40u > older * 41u || waited_ * 20u > newest * 11u;
-  pace.sector = newest / 2u;
-  if (waited_ > pace.sector) pace.sector = waited_;
+  const auto last = [&](unsigned back) { return sectors[(newest + 6u - back) % 6u]; };
+  const std::uint32_t two = last(1) + last(2), before = last(3) + last(4);
+  pace.slowing = two * 64u > before * 65u || waited * 20u > two * 11u;
+  pace.sector = two / 2u;
+  if (waited > pace.sector) pace.sector = waited;
   return pace;
 }
 

@@ -45,6 +45,9 @@ struct Pace {
   }
 };
 
+// Of the last six sectors, sectors[newest] to be written next, and of the time since the last crossing.
+Pace pace_of(const std::array<Ticks, 6>& sectors, std::uint8_t newest, std::uint32_t waited);
+
 class Commutation {
  public:
   enum class State : std::uint8_t { stopped, starting, running };

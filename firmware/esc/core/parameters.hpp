@@ -30,6 +30,7 @@ inline constexpr Parameter kParameters[] = {
     {"q1", [](Calibration& c) -> float& { return c.free_air.q1; }},
     {"gain", [](Calibration& c) -> float& { return c.sense.gain; }},
     {"offset", [](Calibration& c) -> float& { return c.sense.offset_A; }},
+    {"shared", [](Calibration& c) -> float& { return c.shared_power; }},
     {"c0", [](Calibration& c) -> float& { return c.rotor.c0; }},
     {"c1", [](Calibration& c) -> float& { return c.rotor.c1; }},
     {"c2", [](Calibration& c) -> float& { return c.rotor.c2; }},

@@ -10,8 +10,10 @@
 namespace fw::esc {
 
 struct SpeedGains {
-  float kp = 0.10f;  // V s
-  float ki = 0.4f;   // V
+  float coast_radps = 4.0f;  // too fast by more than this
+  float kp_coast = 0.5f;     // V s, beside kp
+  float kp = 0.10f;          // V s
+  float ki = 0.4f;           // V
 };
 
 struct VoltageDemand {
@@ -34,13 +36,16 @@ inline float steady_voltage_V(const MotorConstants& motor, const StaticMap& free
 // With the highest current no propeller slows down: one that does is held by something, and gets
 // less. share: of the highest current.
 inline constexpr float kHeld_share = 0.4f;
+// Of the highest current, on the mean: between commutations it is a fifth higher, PWM ripple beside.
+inline constexpr float kMean_share = 0.95f;
 
 inline VoltageDemand within_current_limits(const MotorConstants& motor, float wanted_V, float w,
                                            float bus_V, float share = 1.0f) {
   const float emf_V = motor.Kt_NmpA * w;
   // A voltage is duty x bus here, and the diodes take theirs while the PWM is off: (1 - duty) of it.
-  float high_V = (emf_V + share * motor.max_current_A * drop_ohm(motor, w) + motor.freewheel_V) /
-                 (1.0f + motor.freewheel_V / bus_V);
+  float high_V =
+      (emf_V + kMean_share * share * motor.max_current_A * drop_ohm(motor, w) + motor.freewheel_V) /
+      (1.0f + motor.freewheel_V / bus_V);
   // Diodes carry nothing back: with them the motor may coast whatever its back-EMF.
   float low_V =
       motor.freewheel_V > 0.0f ? 0.0f : emf_V - motor.max_braking_A * motor.resistance_ohm;
@@ -60,8 +65,10 @@ class SpeedController {
   // speed_radps: the latest there is. What lags lets the current exceed its bound, and overshoots.
   VoltageDemand update(float wanted_radps, float speed_radps, float bus_V, float share = 1.0f) {
     const float error = wanted_radps - speed_radps;
-    const float proportional_V =
-        steady_voltage_V(motor_, free_air_, wanted_radps) + gains_.kp * error;
+    float proportional_V = steady_voltage_V(motor_, free_air_, wanted_radps) + gains_.kp * error;
+    // A rotor that is too fast can but coast: the sooner it does so to the end, the sooner it is there.
+    if (error < -gains_.coast_radps)
+      proportional_V += gains_.kp_coast * (error + gains_.coast_radps);
     const VoltageDemand demand =
         within_current_limits(motor_, proportional_V + integral_V_, speed_radps, bus_V, share);
     // Conditional integration: a bound that the error pushes against must not wind up.

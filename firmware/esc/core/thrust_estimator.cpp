@@ -60,12 +60,19 @@ void ThrustEstimator::update(float bus_V, float duty, float bus_A, float speed_r
   power_ratio_ += blend * trust * (ratio - power_ratio_);
   CP_ = power_ratio_ * free_air_CP(w);
 
-  last_ = calibration_.identified && still_.real ? solver_.solve(power_ratio_ * still_.CP)
-                                                 : ThrustEstimate{};
+  last_ = conclude();
   const float found = last_.status == Estimate::converged ? last_.CT / still_.CT : 1.0f;
   thrust_ratio_ += blend * (found - thrust_ratio_);
   CT_ = thrust_ratio_ * free_air_CT(w);
   thrust_N_ = CT_ * w * w;
+}
+
+ThrustEstimate ThrustEstimator::conclude() {
+  ThrustEstimate nothing;
+  if (!calibration_.identified || !still_.real) return nothing;
+  nothing.status = Estimate::not_observable;
+  if (power_ratio_ >= calibration_.shared_power) return nothing;
+  return solver_.solve(power_ratio_ * still_.CP);
 }
 
 float ThrustEstimator::thrust_per_ampere() const {

@@ -43,6 +43,8 @@ class ThrustEstimator {
     return calibration_.free_air.q2 + calibration_.free_air.q1 / w;
   }
 
+  ThrustEstimate conclude();
+
   Calibration calibration_;
   float period_s_;
   LowPass bus_A_, duty_;

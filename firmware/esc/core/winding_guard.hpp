@@ -36,7 +36,10 @@ class WindingGuard {
     shunt_ = shunt;
     note_bus(shunt);
     cut_ = false;
-    if (duty < kLeast_told) return;  // hardly any pulse: nothing is told
+    if (duty < kLeast_told) {  // hardly any pulse: nothing is told, and the current dies away
+      current_ -= current_ / 4;
+      return;
+    }
     const auto share =
         static_cast<int>((duty * (374'604u - 15u * duty)) >> 16);  // 65536 (1 - e^-dx)
     const int raw = (1024 * shunt - 748 * before) * 64 / share;

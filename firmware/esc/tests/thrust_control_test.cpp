@@ -34,6 +34,7 @@ Calibration calibrated(Mode mode) {
   c.rotor = kRotor;
   c.free_air = {.a2 = at_inflow(kRotor, 0.0f).CT, .a1 = 0.0f, .q2 = at_inflow(kRotor, 0.0f).CP};
   c.identified = true;
+  c.shared_power = 2.0f;  // this rotor's power rises in an updraft
   return c;
 }
 
@@ -127,6 +128,23 @@ TEST(ThrustByPower, AnUpdraftLeavesItWithTheStaticMapAndItSaysSo) {
   EXPECT_FALSE(by_power.core.estimator().observable());
   EXPECT_TRUE(
       near(by_power.mean_thrust_N(500), by_rpm.mean_thrust_N(500), stated(0.01, "same map")));
+}
+
+// Told that an updraft may share this power, it concludes nothing from it.
+TEST(ThrustByPower, ConcludesNothingFromPowerThatAnUpdraftMayShare) {
+  for (double down : {2.2, 4.2}) {
+    Bench bench(Mode::thrust_by_power);
+    Calibration cautious = calibrated(Mode::thrust_by_power);
+    cautious.shared_power = 0.94f;
+    bench.hold(0.0, 10);
+    ASSERT_TRUE(bench.core.recalibrate(cautious));
+    bench.start(3.2);
+    bench.down_mps = down;
+    bench.hold(3.2, 1500);
+    const double lost = 3.2 - bench.mean_thrust_N(500);
+    EXPECT_EQ(bench.core.estimator().observable(), down > 4.0) << down;
+    EXPECT_EQ(lost<0.03, down> 4.0) << lost;
+  }
 }
 
 TEST(ThrustByPower, RisesAsTheRpmControllerDoesOnAnySupply) {

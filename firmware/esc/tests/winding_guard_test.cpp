@@ -82,6 +82,16 @@ TEST(WindingGuard, CutsThePulseAfterOneFarTooHighAndTripsAfterThree) {
   EXPECT_TRUE(guard.tripped());
 }
 
+// While pulses are too short to tell, the last value must not hold the duty down for ever.
+TEST(WindingGuard, ForgetsACurrentThatNoPulseKeepsUp) {
+  WindingGuard guard;
+  Amplifier amplifier;
+  for (int k = 0; k < 100; ++k) guard.update(amplifier.pulse(25.0, 0.9), pwm(0.9));
+  EXPECT_LT(guard.allowed(1800, kBus_counts), 1800u);
+  for (int k = 0; k < 20; ++k) guard.update(amplifier.pulse(0.5, 0.03), 120);
+  EXPECT_EQ(guard.allowed(1800, kBus_counts), 1800u);
+}
+
 TEST(WindingGuard, TripsWhenTheDroopLastsLongerThanAnyStep) {
   WindingGuard guard;
   Amplifier amplifier;

@@ -78,6 +78,30 @@ TEST(VehicleFile, CalibrationHasTheNamesOfTheImagesSet) {
   EXPECT_EQ(esc.shunt.offset_high_A, 4.3);
 }
 
+TEST(VehicleFile, CalibrationComesFromTheFileOfAStand) {
+  const auto with_file = [](const std::string& text, const std::string& more = "") {
+    const auto path = std::filesystem::path(::testing::TempDir()) / "whirl_esc_calibration.lua";
+    std::ofstream(path) << text;
+    return read_changed("esc = {",
+                        "esc = { calibration = { file = '" + path.string() + "'" + more + " },");
+  };
+  const std::string good =
+      "return { kind = 'esc_calibration', set = { 'set kt 0.0101', "
+      "'set d1 -1.7e+5' } }";
+  const auto params = with_file(good, ", kt = 0.0102");
+  ASSERT_TRUE(params.ok()) << params.error().message();
+  EXPECT_EQ(params.value().esc.calibration.rotor.d1, -1.7e5f);
+  EXPECT_EQ(params.value().esc.calibration.motor.Kt_NmpA, 0.0102f);  // what stands here wins
+  EXPECT_TRUE(params.value().esc.calibration.identified);
+  for (const char* bad : {"set ktt 1", "set kt", "set kt 1 2", "get kt 1", "set kt one"}) {
+    const auto refused =
+        with_file(std::string("return { kind = 'esc_calibration', set = { '") + bad + "' } }");
+    ASSERT_FALSE(refused.ok()) << bad;
+    EXPECT_NE(refused.error().message().find(bad), std::string::npos);
+  }
+  EXPECT_FALSE(with_file("return { kind = 'vehicle' }").ok());
+}
+
 TEST(VehicleFile, EachMistakeIsOneSentenceWithItsPlace) {
   struct Case {
     const char *passage, *instead, *expected;

@@ -16,6 +16,7 @@ struct Shaft {
   std::int64_t t_ns = 0;
   double speed_radps = 0.0;
 
+  double rpm() const { return crossings.radps(crossings.pace().revolution, 6) / kRpm; }
   void run(int ms, double to_radps) {
     const double from = speed_radps;
     for (int i = 1; i <= ms; ++i) {
@@ -33,7 +34,7 @@ TEST(ZeroCrossings, ASteadySpeedIsTimedToOneTick) {
     shaft.run(100, rpm * kRpm);
     // An electrical revolution lasts 60/(7 n) seconds: one tick of it is the resolution.
     const double tick = rpm * rpm * 7.0 / 60.0 * 0.5e-6;
-    EXPECT_TRUE(near(shaft.crossings.speed_radps() / kRpm, rpm, stated(tick, "one tick"))) << rpm;
+    EXPECT_TRUE(near(shaft.rpm(), rpm, stated(tick, "one tick"))) << rpm;
   }
 }
 
@@ -42,7 +43,7 @@ TEST(ZeroCrossings, FollowsFromTheSeventhCrossingOn) {
   shaft.speed_radps = 238.0 * kRpm;  // one crossing in 6.003 ms
   shaft.run(42, shaft.speed_radps);
   EXPECT_FALSE(shaft.crossings.in_sync());
-  EXPECT_EQ(shaft.crossings.speed_radps(), 0.0);
+  EXPECT_EQ(shaft.rpm(), 0.0);
   shaft.run(1, shaft.speed_radps);
   EXPECT_TRUE(shaft.crossings.in_sync());
 }
@@ -54,9 +55,23 @@ TEST(ZeroCrossings, LagsARampByHalfARevolutionAtLeast) {
   shaft.run(40, 5000.0 * kRpm);  // 50 RPM in each millisecond
   // At 4950 RPM an electrical revolution lasts 1.73 ms: its mean is half of it old, its last
   // crossing up to a sixth more.
-  const double behind_rpm = 5000.0 - shaft.crossings.speed_radps() / kRpm;
+  const double behind_rpm = 5000.0 - shaft.rpm();
   EXPECT_GE(behind_rpm, 0.5 * 1.70 * 50.0);
   EXPECT_LE(behind_rpm, (0.5 + 1.0 / 6.0) * 1.76 * 50.0);
+}
+
+TEST(ZeroCrossings, TheLatestSectorLagsLessAndSaysWhetherItSlows) {
+  Shaft shaft;
+  shaft.speed_radps = 3000.0 * kRpm;
+  shaft.run(100, shaft.speed_radps);
+  EXPECT_FALSE(shaft.crossings.pace().slowing);
+  shaft.run(40, 5000.0 * kRpm);
+  const double latest = shaft.crossings.radps(shaft.crossings.pace().sector, 1) / kRpm;
+  EXPECT_GT(latest, shaft.rpm() + 20.0);
+  EXPECT_LT(latest, 5000.0);
+  EXPECT_FALSE(shaft.crossings.pace().slowing);
+  shaft.run(40, 2000.0 * kRpm);
+  EXPECT_TRUE(shaft.crossings.pace().slowing);
 }
 
 TEST(ZeroCrossings, LosesARotorThatStopsAndFindsItAgain) {
