@@ -35,11 +35,18 @@ struct LossMap {
   float drag_Nm = 0.01005f;
 };
 
-struct StaticMap {  // free air: T = a2 w^2 + a1 w, Q = q2 w^2 + q1 w
+// Free air: T = CT(w) w^2, P = CP(w) w^3. The coefficients move with the speed, for the Reynolds number
+// does, and a soft blade twists under its load.
+struct StaticMap {
+  float a3 = 0.0f;
   float a2 = 1.6314e-5f;
   float a1 = -1.4052e-3f;
+  float q4 = 0.0f;
+  float q3 = 0.0f;
   float q2 = 2.3e-7f;
-  float q1 = 0.0f;
+
+  float CT(float w) const { return a3 * w + a2 + a1 / w; }
+  float CP(float w) const { return (q4 * w + q3) * w + q2; }
 };
 
 struct CurrentSense {

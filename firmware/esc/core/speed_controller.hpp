@@ -28,8 +28,7 @@ inline float drop_ohm(const MotorConstants& motor, float w) {
 
 // Steady voltage at a speed in free air.
 inline float steady_voltage_V(const MotorConstants& motor, const StaticMap& free_air, float w) {
-  const float current_A =
-      motor.no_load_current_A + (free_air.q2 * w + free_air.q1) * w / motor.Kt_NmpA;
+  const float current_A = motor.no_load_current_A + free_air.CP(w) * w * w / motor.Kt_NmpA;
   return motor.Kt_NmpA * w + drop_ohm(motor, w) * current_A;
 }
 

@@ -52,18 +52,18 @@ void ThrustEstimator::update(float bus_V, float duty, float bus_A, float speed_r
   const float acceleration_Nm = calibration_.motor.inertia_kgm2 * speed_.acceleration_radps2();
   const float torque_Nm = shaft_Nm - acceleration_Nm;
   power_W_ = torque_Nm * w;
-  const float ratio = torque_Nm / (w * w * free_air_CP(w));
+  const float ratio = torque_Nm / (w * w * calibration_.free_air.CP(w));
   // While the rotor accelerates, the inertial term dominates and its error with it: trust it less.
   const float share = acceleration_Nm / torque_Nm;
   const float trust = 1.0f / (1.0f + 25.0f * share * share);
   const float blend = period_s_ / (kSmoothing_s + period_s_);
   power_ratio_ += blend * trust * (ratio - power_ratio_);
-  CP_ = power_ratio_ * free_air_CP(w);
+  CP_ = power_ratio_ * calibration_.free_air.CP(w);
 
   last_ = conclude();
   const float found = last_.status == Estimate::converged ? last_.CT / still_.CT : 1.0f;
   thrust_ratio_ += blend * (found - thrust_ratio_);
-  CT_ = thrust_ratio_ * free_air_CT(w);
+  CT_ = thrust_ratio_ * calibration_.free_air.CT(w);
   thrust_N_ = CT_ * w * w;
 }
 

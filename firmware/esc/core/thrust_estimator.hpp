@@ -36,13 +36,6 @@ class ThrustEstimator {
   float thrust_per_ampere() const;
 
  private:
-  float free_air_CT(float w) const {
-    return calibration_.free_air.a2 + calibration_.free_air.a1 / w;
-  }
-  float free_air_CP(float w) const {
-    return calibration_.free_air.q2 + calibration_.free_air.q1 / w;
-  }
-
   ThrustEstimate conclude();
 
   Calibration calibration_;
