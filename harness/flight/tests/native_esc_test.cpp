@@ -36,6 +36,7 @@ struct Stand {
   plant::MotorState state;
   double bus_V = 16.4;
   double extra_bus_A = 0.0;  // what the shunt reads beyond the motor
+  bool hidden = false;       // the rotor shows no crossings
   std::int64_t t_ns = 0;
   double worst_winding_A = 0.0;
 
@@ -48,6 +49,7 @@ struct Stand {
   void step() {
     plant::MotorState read = state;
     read.bus_current_A += extra_bus_A;
+    if (hidden) read.speed_radps = 0.0;
     const plant::MotorCommand command = esc.step(t_ns, read, bus_V);
     const bool diode = command.freewheel == plant::Freewheel::diode;
     double charge_C = 0.0;
@@ -266,6 +268,41 @@ TEST(NativeEsc, JoinsARotorThatStillTurnsInsteadOfStartingIt) {
   for (int ms = 0; ms < 30; ++ms) stand.step();
   EXPECT_TRUE(stand.flag(EscFlag::kTurning));
   EXPECT_GT(stand.motor.speed_radps(), coasting_radps);
+}
+
+TEST(NativeEsc, TriesALostRotorAgainUntilItIsFound) {
+  Stand stand;
+  stand.arm();
+  stand.thrust(2.0, 1000);
+  stand.hidden = true;
+  stand.thrust(2.0,
+               600);  // one start of 195 ms has waited its 300 ms in vain; the next is under way
+  EXPECT_TRUE(stand.esc.armed());
+  EXPECT_TRUE(stand.flag(EscFlag::kDesync));
+  EXPECT_FALSE(stand.flag(EscFlag::kTurning));
+  EXPECT_EQ(stand.state.bus_current_A, 0.0);  // held off meanwhile, not driven on
+  stand.hidden = false;
+  stand.thrust(2.0, 1000);
+  EXPECT_TRUE(stand.flag(EscFlag::kTurning));
+  EXPECT_FALSE(stand.flag(EscFlag::kDesync));
+  EXPECT_TRUE(near(stand.thrust_N(), 2.0, stated(0.1, "back at its work")));
+}
+
+TEST(NativeEsc, TheCoreGetsTheLatestSectorAndWhetherTheRotorSlows) {
+  Stand stand;
+  stand.arm();
+  stand.thrust(1.0, 1000);
+  EXPECT_FALSE(stand.esc.core().sensed().slowing);
+  stand.thrust(4.0, 20);  // some 8 rad/s more in each millisecond
+  const fw::esc::Sensed& sensed = stand.esc.core().sensed();
+  const double true_radps = stand.motor.speed_radps();
+  EXPECT_LT(true_radps - static_cast<double>(sensed.latest_radps),
+            0.6 * (true_radps - static_cast<double>(sensed.speed_radps)));
+  EXPECT_FALSE(sensed.slowing);
+  stand.thrust(4.0, 500);
+  stand.motor.block();
+  stand.thrust(4.0, 2);
+  EXPECT_TRUE(sensed.slowing);  // the next crossing is overdue
 }
 
 TEST(NativeEsc, CutItStaysStopped) {
