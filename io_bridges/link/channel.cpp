@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
+#include <chrono>
 #include <climits>
 #include <cstring>
 #include <ctime>
@@ -155,14 +156,24 @@ bool Channel::wait(int timeout_ms) {
     }
     relax();
   }
-  const timespec limit{timeout_ms / 1000, (timeout_ms % 1000) * 1000000L};
   box.sleeping.store(1, std::memory_order_seq_cst);
-  if (box.sequence.load(std::memory_order_seq_cst) == seen_) {
+  const bool came = sleep_until(box, timeout_ms);
+  box.sleeping.store(0, std::memory_order_relaxed);
+  if (came) ++seen_;
+  return came;
+}
+
+// A sleep may end for nothing: by a signal, or by the waking call of the delivery before this one,
+// whose sender was held up between its store and that call.
+bool Channel::sleep_until(Mailbox& box, int timeout_ms) const {
+  using Clock = std::chrono::steady_clock;
+  const auto end = Clock::now() + std::chrono::milliseconds(timeout_ms);
+  while (box.sequence.load(std::memory_order_seq_cst) == seen_) {
+    const auto left = std::chrono::duration_cast<std::chrono::nanoseconds>(end - Clock::now());
+    if (timeout_ms >= 0 && left.count() <= 0) return false;
+    const timespec limit{left.count() / 1'000'000'000, left.count() % 1'000'000'000};
     futex(box.sequence, FUTEX_WAIT, seen_, timeout_ms < 0 ? nullptr : &limit);
   }
-  box.sleeping.store(0, std::memory_order_relaxed);
-  if (box.sequence.load(std::memory_order_acquire) == seen_) return false;
-  ++seen_;
   return true;
 }
 

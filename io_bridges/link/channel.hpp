@@ -61,6 +61,7 @@ class Channel {
   struct Mailbox;
   struct Page;
   Channel(Side side, int fd, void* memory, std::size_t size);
+  bool sleep_until(Mailbox& box, int timeout_ms) const;
   Mailbox& outgoing() const;
   Mailbox& incoming() const;
   std::uint8_t* data(const Mailbox& box, std::uint32_t sequence) const;

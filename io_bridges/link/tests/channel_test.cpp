@@ -2,11 +2,14 @@
 #include "io_bridges/link/channel.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/time.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <cstring>
 #include <functional>
+#include <tuple>
 #include <vector>
 
 #include "io_bridges/link/messages.hpp"
@@ -33,6 +36,32 @@ int with_board(Channel& harness, const std::function<int(Channel&)>& board,
   int status = 0;
   waitpid(child, &status, 0);
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+// The board sleeps for a delivery while its timer interrupts it; the twentieth signal asks for one.
+TEST(Channel, WhatWakesASleeperWithoutADeliveryIsNone) {
+  auto link = Channel::create(Side::harness, 1 << 12);
+  ASSERT_TRUE(link);
+  static Channel* sleeper = nullptr;
+  static volatile int signals = 0;
+  const auto sleeps = [](Channel& board) {
+    sleeper = &board;
+    struct sigaction action {};
+    action.sa_handler = [](int) {
+      signals = signals + 1;
+      if (signals == 20) std::ignore = sleeper->post(20, {});
+    };
+    sigaction(SIGALRM, &action, nullptr);
+    const itimerval each_ms{{0, 1000}, {0, 1000}};
+    setitimer(ITIMER_REAL, &each_ms, nullptr);
+    if (!board.wait(-1)) return 1;
+    return signals >= 20 && board.received().t_ns == 7 ? 0 : 2;
+  };
+  const int exit_code = with_board(link.value(), sleeps, [&] {
+    ASSERT_TRUE(link.value().wait(50'000));
+    ASSERT_TRUE(link.value().post(7, {}));
+  });
+  EXPECT_EQ(exit_code, 0);
 }
 
 TEST(Channel, CarriesEveryBatchOnceAndInOrderBetweenTwoProcesses) {

@@ -165,7 +165,8 @@ void Board::synchronise() {
 }
 
 void Board::await_orders() {
-  channel_.wait(-1);  // for ever: the harness takes this process with it when it dies
+  // For ever: the harness takes this process with it when it dies.
+  WHIRL_CHECK(channel_.wait(-1));
   const io::Delivery orders = channel_.received();
   io::Reader reader(orders.bytes);
   while (reader.next()) obey(reader);
