@@ -1,11 +1,13 @@
 #include "harness/flight/propeller_file.hpp"
 
 #include <filesystem>
+#include <map>
 #include <numbers>
 
 #include "harness/lua/sandbox.hpp"
 #include "harness/lua/table.hpp"
 #include "plant/rotor/polar.hpp"
+#include "plant/rotor/section_rules.hpp"
 #include "plant/rotor/twist_fit.hpp"
 
 namespace whirl::flight {
@@ -22,6 +24,20 @@ Result<std::shared_ptr<const plant::PolarFamily>> load_polar(const lua::Table& f
   return std::make_shared<const plant::PolarFamily>(std::move(polar.value()));
 }
 
+plant::BladeMaterial material_of(const lua::Table& t) {
+  static const std::map<std::string, plant::BladeMaterial> kMaterials = {
+      {"rigid", {}},
+      {"nylon", plant::kNylon},
+      {"glass nylon", plant::kGlass_nylon},
+      {"carbon", plant::kCarbon},
+      {"wood", plant::kWood}};
+  if (!t.has("material")) return {};
+  std::vector<std::string> words;
+  for (const auto& [word, material] : kMaterials) words.push_back(word);
+  const auto found = kMaterials.find(t.choice("material", words));
+  return found == kMaterials.end() ? plant::BladeMaterial{} : found->second;
+}
+
 }  // namespace
 
 Result<std::shared_ptr<const plant::Blade>> read_propeller(const std::string& path) {
@@ -36,6 +52,9 @@ Result<std::shared_ptr<const plant::Blade>> read_propeller(const std::string& pa
   d.diameter_m = t.quantity("diameter", Dimension::length, lua::above(0.0));
   d.mass_kg = t.quantity("mass", Dimension::mass, lua::above(0.0));
   d.induced_factor = t.number_or("induced_factor", d.induced_factor, lua::at_least(1.0));
+  d.material = material_of(t);
+  d.thickness_over_chord =
+      t.number_or("thickness", d.thickness_over_chord, lua::between(0.02, 0.3));
   d.stall_delay = t.flag_or("stall_delay", d.stall_delay);
   d.tip_twist_correction_rad =
       t.quantity_or("tip_twist_correction", Dimension::angle, d.tip_twist_correction_rad);
@@ -50,7 +69,15 @@ Result<std::shared_ptr<const plant::Blade>> read_propeller(const std::string& pa
     }
   }
   std::vector<std::pair<double, std::string>> polars;
-  for (const lua::Table& p : t.tables("polars")) polars.emplace_back(p.number("r"), p.text("file"));
+  if (t.has("polars")) {
+    for (const lua::Table& p : t.tables("polars")) {
+      polars.emplace_back(p.number("r"), p.text("file"));
+    }
+  } else {
+    for (const auto& s : plant::sections_for(d.thickness_over_chord)) {
+      polars.emplace_back(s.r_over_R, s.polar + ".polar");
+    }
+  }
   if (const auto good = t.finish(); !good) return good.error();
   for (const auto& [r, name] : polars) {
     auto polar = load_polar(t, name);

@@ -22,7 +22,7 @@ std::shared_ptr<const PolarFamily> section(const std::string& file) {
 
 RotorSet blade_elements(const AirframeParams& airframe) {
   const auto blade =
-      make_blade(hobbyking_10x4_5(section("e63.polar"), section("naca4412.polar"))).value();
+      make_blade(hobbyking_10x4_5(section("bw3.polar"), section("e63.polar"))).value();
   return blade_element_rotors(blade, airframe);
 }
 

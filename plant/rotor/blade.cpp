@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "plant/rotor/blade_rings.hpp"
+#include "plant/rotor/torsion.hpp"
 
 namespace whirl::plant {
 namespace {
@@ -113,7 +114,7 @@ struct StallDelay {
   PolarFamily::Attached line;
 };
 
-StallDelay stall_delay(const Mix& mix, double chord_over_r, double reynolds) {
+PolarFamily::Attached attached(const Mix& mix, double reynolds) {
   const auto a = mix.inner->attached(reynolds);
   PolarFamily::Attached line = a;
   if (mix.outer != nullptr) {
@@ -121,7 +122,11 @@ StallDelay stall_delay(const Mix& mix, double chord_over_r, double reynolds) {
     line.alpha0_rad += mix.outer_share * (b.alpha0_rad - a.alpha0_rad);
     line.slope_per_rad += mix.outer_share * (b.slope_per_rad - a.slope_per_rad);
   }
-  return {std::tanh(3.0 * chord_over_r * chord_over_r), line};
+  return line;
+}
+
+StallDelay stall_delay(const Mix& mix, double chord_over_r, double reynolds) {
+  return {std::tanh(3.0 * chord_over_r * chord_over_r), attached(mix, reynolds)};
 }
 
 double delayed_lift(const StallDelay& d, double alpha, double cl) {
@@ -180,16 +185,20 @@ void fill_rings(const PropellerDescription& d, Blade& blade) {
     const Mix mix = mix_at(d.sections, x);
     ring.table = make_table(mix, ring.chord_m / ring.r_m, d.stall_delay);
     ring.stall_alpha_rad = stall_alpha_rad(mix);
+    ring.zero_lift_rad = attached(mix, 1e5).alpha0_rad;
   }
 }
 
-// Mass spread along the span as the chord squared (thickness follows chord).
+// Mass spread along the span as chord x thickness.
 void fill_inertia(const PropellerDescription& d, Blade& blade) {
+  const auto thickness = thickness_m(blade, d.thickness_over_chord);
   double mass = 0.0;
   double second = 0.0;
-  for (const Ring& ring : blade.rings) {
-    mass += ring.chord_m * ring.chord_m * ring.dr_m;
-    second += ring.chord_m * ring.chord_m * ring.dr_m * ring.r_m * ring.r_m;
+  for (std::size_t i = 0; i < kRing_count; ++i) {
+    const Ring& ring = blade.rings[i];
+    const double dm = ring.chord_m * thickness[i] * ring.dr_m;
+    mass += dm;
+    second += dm * ring.r_m * ring.r_m;
   }
   constexpr double kShare_of_blades = 0.85;  // the rest is hub, at no radius worth counting
   blade.polar_inertia_kgm2 = kShare_of_blades * d.mass_kg * second / mass;
@@ -209,7 +218,15 @@ Result<std::shared_ptr<const Blade>> make_blade(const PropellerDescription& desc
   blade->induced_factor = description.induced_factor;
   fill_rings(description, *blade);
   fill_inertia(description, *blade);
+  fill_torsion(description.material, description.thickness_over_chord, *blade);
   return std::shared_ptr<const Blade>(std::move(blade));
+}
+
+std::shared_ptr<const Blade> twisted(const Blade& blade, double tip_twist_rad) {
+  auto turned = std::make_shared<Blade>(blade);
+  for (Ring& ring : turned->rings) ring.angle_rad += tip_twist_rad * ring.r_m / blade.radius_m;
+  settle_flattening(*turned);
+  return turned;
 }
 
 double reynolds_of_level(int level) {

@@ -3,7 +3,7 @@
 //   In       PropellerDescription: what a propeller file says (columns r/R, c/R, angle; polars by
 //            radius). make_blade() checks it and answers with a Blade or one sentence with a cure.
 //   Valid    1 to 8 blades, radius 1 cm to 5 m, stations ascending within (0, 1] of the tip radius.
-//   Source   section angle corrections and stall delay: see section_rules.hpp.
+//   Source   sections by thickness: section_rules.hpp; elastic twist: torsion.hpp; stall delay: [Snel].
 //   Left out sweep, cone, section camber varying along the blade other than by mixing two polars.
 #pragma once
 #include <cstdint>
@@ -34,6 +34,17 @@ struct StaticPoint {
   double thrust_coefficient = 0.0;  // T / (rho n^2 D^4)
 };
 
+// What resists twisting. No modulus: a rigid blade.
+struct BladeMaterial {
+  double shear_modulus_Pa = 0.0;
+  double density_kgpm3 = 0.0;
+};
+// Handbook values; the moduli are those of parts that have taken up room moisture.
+inline constexpr BladeMaterial kNylon{0.8e9, 1140.0};        // unreinforced: GWS and its copies
+inline constexpr BladeMaterial kGlass_nylon{3.0e9, 1500.0};  // long glass fibre: APC
+inline constexpr BladeMaterial kCarbon{5.0e9, 1550.0};
+inline constexpr BladeMaterial kWood{0.7e9, 650.0};
+
 struct PropellerDescription {
   std::string place;  // "hk_10x4.5.lua", repeated in errors
   std::string name;
@@ -45,7 +56,9 @@ struct PropellerDescription {
   double tip_twist_correction_rad = 0.0;    // added in proportion to r/R; stated in the file
   std::vector<StaticPoint> static_points;   // for make_fitted_blade(), which finds that correction
   double flap_stiffness_Nm_per_rad = 60.0;  // root spring of one blade; stiff plastic by default
-  double induced_factor = 1.15;             // over the ideal ring with Prandtl's losses [Leishman]
+  double induced_factor = 1.15;             // in hover; fades with through-flow (ring_balance.hpp)
+  BladeMaterial material;                   // rigid unless given
+  double thickness_over_chord = 0.10;       // at 0.75 R; section_rules.hpp, torsion.hpp
   bool stall_delay = true;                  // rotational augmentation of the inboard sections
 };
 

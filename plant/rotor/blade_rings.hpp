@@ -7,9 +7,11 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "plant/rotor/blade.hpp"
 #include "plant/rotor/polar.hpp"
 
 namespace whirl::plant {
@@ -34,8 +36,19 @@ struct Ring {
   double dr_m = 0.0;
   double chord_m = 0.0;
   double angle_rad = 0.0;
+  double twist_share = 0.0;      // of the elastic tip twist
+  double zero_lift_rad = 0.0;    // at Re 1e5
   double stall_alpha_rad = 0.0;  // at the middle Reynolds number, for the validity flag
   SectionTable table;
+};
+
+// One elastic mode per blade: tip twist = compliance x (sum of the rings' moments on that mode).
+struct Torsion {
+  double compliance_rad_per_Nm = 0.0;            // 0: rigid
+  double flattening_kgm2 = 0.0;                  // centrifugal moment over omega squared, nose down
+  std::array<double, kRing_count> flat_kgm2{};   // share of a ring, before its angle
+  std::array<double, kRing_count> lift_arm_m{};  // on a ring's thrust (all blades)
+  std::array<double, kRing_count> camber_m3{};   // on a ring's dynamic pressure
 };
 
 class Blade {
@@ -49,8 +62,12 @@ class Blade {
   double polar_inertia_kgm2 = 0.0;
   double flap_inertia_kgm2 = 0.0;  // one blade about the hub's centre
   double flap_stiffness_Nm_per_rad = 0.0;
+  Torsion torsion;
   std::array<Ring, kRing_count> rings;
 };
+
+// The same blade with its angles turned in proportion to r/R.
+std::shared_ptr<const Blade> twisted(const Blade& blade, double tip_twist_rad);
 
 // Where a Reynolds number falls among the table's levels.
 struct ReynoldsSlot {

@@ -12,7 +12,6 @@ constexpr double kPi = 3.14159265358979323846;
 constexpr double kDeg = kPi / 180.0;
 constexpr double kDrag_at_90 = 1.11 + 0.018 * 8.0;  // slow-fly blades: aspect ratio near 8
 constexpr double kSkin_friction = 0.02;
-constexpr double kLift_below = 0.1;  // power of Re below the lowest curve
 
 // A separated plate; Viterna's continuation turns into it at 90 deg.
 SectionCoefficients plate(double alpha) {
@@ -50,8 +49,8 @@ SectionCoefficients on_curve(const PolarCurve& curve, double alpha_rad) {
 
 }  // namespace
 
-PolarFamily::PolarFamily(std::string name, std::vector<PolarCurve> curves)
-    : name_(std::move(name)), curves_(std::move(curves)) {
+PolarFamily::PolarFamily(std::string name, std::vector<PolarCurve> curves, double lift_below)
+    : name_(std::move(name)), curves_(std::move(curves)), lift_below_(lift_below) {
   WHIRL_CHECK(!curves_.empty());
 }
 
@@ -66,7 +65,7 @@ SectionCoefficients PolarFamily::at(double alpha_rad, double reynolds) const {
     SectionCoefficients c = on_curve(edge, alpha);
     const double ratio = re / edge.reynolds;
     if (above == curves_.begin()) {
-      c.cl *= std::pow(ratio, kLift_below);
+      c.cl *= std::pow(ratio, lift_below_);
     } else {
       // Only the friction share falls on; separated drag does not ask for the Reynolds number.
       c.cd += std::min(c.cd, 0.05) * (std::pow(ratio, -0.2) - 1.0);

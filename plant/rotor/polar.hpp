@@ -4,8 +4,8 @@
 //   Out      section_coefficients(alpha, Re) for any alpha on the full circle, any Re > 0
 //   Valid    inside the given curves: linear between rows, linear in log Re between curves. Beyond
 //            stall the curve runs into a flat plate of the blade's aspect ratio (Viterna). Below
-//            the lowest Re drag is held and lift falls as Re^0.1 (computed sections lose between
-//            Re^0.1 and Re^0.4 from 60k to 30k); above the highest friction falls as Re^-1/5.
+//            the lowest Re drag is held and lift falls as Re^0.1 or as the file says (computed from 60k
+//            to 30k: E63, 4 % thick, Re^0.1; NACA 4412, 12 %, Re^0.45); above the highest friction falls as Re^-1/5.
 //   Source   plate: [Hoerner]; drag at 90 deg 1.11 + 0.018 AR [Viterna]
 //   Left out pitching moment (blades are stiff in torsion), hysteresis at stall, compressibility.
 #pragma once
@@ -36,7 +36,8 @@ struct SectionCoefficients {
 class PolarFamily {
  public:
   // Curves ascending in Reynolds number, each ascending in alpha; checked by read_polar().
-  PolarFamily(std::string name, std::vector<PolarCurve> curves);
+  // Below the first curve lift falls as Re^lift_below.
+  PolarFamily(std::string name, std::vector<PolarCurve> curves, double lift_below = 0.1);
 
   SectionCoefficients at(double alpha_rad, double reynolds) const;
 
@@ -53,10 +54,11 @@ class PolarFamily {
  private:
   std::string name_;
   std::vector<PolarCurve> curves_;
+  double lift_below_;
 };
 
 // Text of a .polar file: "section NAME", then blocks "reynolds RE" of rows "alpha_deg cl cd".
-// '#' starts a comment. `place` is the file's name for errors.
+// Before them "below N" may give lift_below. '#' starts a comment. `place` is the file's name for errors.
 Result<PolarFamily> read_polar(std::string_view text, std::string_view place);
 
 }  // namespace whirl::plant

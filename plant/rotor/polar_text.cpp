@@ -33,12 +33,14 @@ struct Reader {
   std::string place;
   std::string name;
   std::vector<PolarCurve> curves;
+  double lift_below = 0.1;
 
   Error fault(int line, std::string what, std::string cure) const {
     return {ErrorKind::bad_input, place + ":" + std::to_string(line), std::move(what),
             std::move(cure)};
   }
   std::optional<Error> take(int line, const std::vector<std::string_view>& words);
+  std::optional<Error> take_below(int line, const std::vector<std::string_view>& words);
   std::optional<Error> take_row(int line, const std::vector<std::string_view>& words);
   std::optional<Error> take_reynolds(int line, const std::vector<std::string_view>& words);
   std::optional<Error> check_last(int line) const;
@@ -50,7 +52,17 @@ std::optional<Error> Reader::take(int line, const std::vector<std::string_view>&
     name = words[1];
     return {};
   }
+  if (words[0] == "below") return take_below(line, words);
   return words[0] == "reynolds" ? take_reynolds(line, words) : take_row(line, words);
+}
+
+std::optional<Error> Reader::take_below(int line, const std::vector<std::string_view>& words) {
+  const auto value = words.size() == 2 ? number(words[1]) : std::nullopt;
+  if (!value || !(*value >= 0.0 && *value <= 1.0)) {
+    return fault(line, "below wants one number from 0 to 1", "the power of Re that lift follows");
+  }
+  lift_below = *value;
+  return {};
 }
 
 std::optional<Error> Reader::take_reynolds(int line, const std::vector<std::string_view>& words) {
@@ -98,7 +110,7 @@ std::optional<Error> Reader::check_last(int line) const {
 }  // namespace
 
 Result<PolarFamily> read_polar(std::string_view text, std::string_view place) {
-  Reader reader{std::string(place), "", {}};
+  Reader reader{std::string(place), "", {}, 0.1};
   int line = 0;
   while (!text.empty()) {
     const auto end = text.find('\n');
@@ -113,7 +125,7 @@ Result<PolarFamily> read_polar(std::string_view text, std::string_view place) {
     return reader.fault(line, "no polar in this file", "give reynolds blocks of alpha_deg cl cd");
   }
   if (reader.name.empty()) reader.name = std::string(place);
-  return PolarFamily(std::move(reader.name), std::move(reader.curves));
+  return PolarFamily(std::move(reader.name), std::move(reader.curves), reader.lift_below);
 }
 
 }  // namespace whirl::plant

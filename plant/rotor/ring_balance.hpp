@@ -44,6 +44,13 @@ struct RingMomentum {
   double swirl_mps = 0.0;        // that the ring's tangential force asks for
 };
 
+// In hover the contracted tip vortices pass close under the next blade; through-flow carries them off.
+// `extra` over the ideal ring in hover falls with the cube of the share of u in all air that passes.
+inline double induced_factor(double hover_factor, double u_mps, double mass_flow_mps) {
+  const double share = std::abs(u_mps) < mass_flow_mps ? std::abs(u_mps) / mass_flow_mps : 1.0;
+  return 1.0 + (hover_factor - 1.0) * share * share * share;
+}
+
 inline RingMomentum ring_momentum(const RingWake& w, const RingForce& blade, double u_mps) {
   constexpr double kFour_pi = 12.566370614359172;
   const double F = prandtl_loss(w.r_m, w.tip_m, w.root_m, w.blade_count, blade.sin_phi);
@@ -52,7 +59,7 @@ inline RingMomentum ring_momentum(const RingWake& w, const RingForce& blade, dou
   // Where hardly any air flows, none can carry swirl away: bounded by a share of the blade's speed.
   const double most = 0.3 * std::abs(w.blade_speed_mps);
   const double swirl = w.swirl ? blade.drive_N / std::max(k * m, 1e-9) : 0.0;
-  return {k * u_mps * m / w.induced_factor, k * (m + std::abs(u_mps)),
+  return {k * u_mps * m / induced_factor(w.induced_factor, u_mps, m), k * (m + std::abs(u_mps)),
           std::clamp(swirl, -most, most)};
 }
 

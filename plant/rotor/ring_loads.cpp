@@ -130,13 +130,13 @@ struct Sums {
   Vec stalled{};
 };
 
-WHIRL_INLINE void add_forces(const Ring& ring, const ReynoldsSlot& slot, const Winds& w, int g,
-                             Sums& sums) {
+WHIRL_INLINE void add_forces(const Ring& ring, const ReynoldsSlot& slot, double blade_angle,
+                             const Winds& w, int g, Sums& sums) {
   const Vec& ut = w.tangential[g];
   const Vec& up = w.axial[g];
   Vec phi;
   angle_of(up, ut, phi);
-  Vec alpha = ring.angle_rad - phi;
+  Vec alpha = blade_angle - phi;
   alpha = alpha > kPi ? alpha - 2.0 * kPi : alpha;
   alpha = alpha < -kPi ? alpha + 2.0 * kPi : alpha;
   Coefficients k;
@@ -167,8 +167,9 @@ RingLoads ring_loads(const Ring& ring, const DiscFlow& f, double u, double v) {
   find_winds(ring, f, u, v, w);
   const ReynoldsSlot slot =
       reynolds_slot(f.density_kgpm3 * w.mean_speed_mps * ring.chord_m / f.viscosity_Pas);
+  const double angle = ring.angle_rad + ring.twist_share * f.tip_twist_rad;
   Sums sums;
-  for (int g = 0; g < kGroups; ++g) add_forces(ring, slot, w, g, sums);
+  for (int g = 0; g < kGroups; ++g) add_forces(ring, slot, angle, w, g, sums);
 
   const double k = 0.5 * f.density_kgpm3 * ring.chord_m * ring.dr_m * f.blade_count / kAzimuths;
   RingLoads out;

@@ -31,6 +31,7 @@ struct DiscFlow {
   double ground_factor = 1.0;  // share of the induced velocity that the blades feel
   Harmonic tilt_inflow_mps;    // c, s: at the tip, growing linearly from the shaft
   Harmonic flap_rad;
+  double tip_twist_rad = 0.0;  // elastic
 };
 
 struct RingLoads {

@@ -6,6 +6,7 @@
 
 #include "harness/base/check.hpp"
 #include "plant/rotor/rotor_state.hpp"
+#include "plant/rotor/torsion.hpp"
 
 namespace whirl::plant {
 namespace {
@@ -32,6 +33,7 @@ RotorLoads Rotor::step(const RotorConditions& conditions, double dt_s) {
   DiscFlow flow = disc_flow(*blade_, spin_sign_, conditions, validity);
   flow.tilt_inflow_mps = s.tilt_mps;
   flow.flap_rad = s.flap_rad;
+  flow.tip_twist_rad = s.tip_twist_rad;
   const DiscLoads disc = disc_loads(*blade_, flow, s.u_mps, s.v_mps);
 
   for (std::size_t i = 0; i < kRing_count; ++i) {
@@ -54,6 +56,7 @@ RotorLoads Rotor::step(const RotorConditions& conditions, double dt_s) {
   const Harmonic flap = wanted_flap(*blade_, flow, disc);
   constexpr double kFlap_lag_s = 2e-3;  // about the period of a slow-fly blade's first bending
   const double f = dt_s / (dt_s + kFlap_lag_s);
+  s.tip_twist_rad += f * (wanted_tip_twist_rad(*blade_, flow, disc) - s.tip_twist_rad);
   s.flap_rad.mean += f * (flap.mean - s.flap_rad.mean);
   s.flap_rad.c += f * (flap.c - s.flap_rad.c);
   s.flap_rad.s += f * (flap.s - s.flap_rad.s);

@@ -13,6 +13,7 @@ struct Rotor::State {
   std::array<double, kRing_count> v_mps{};
   Harmonic tilt_mps;  // c, s
   Harmonic flap_rad;
+  double tip_twist_rad = 0.0;
 };
 
 // The disc's loads under a given inflow, ring by ring and summed.

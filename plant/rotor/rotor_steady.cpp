@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "plant/rotor/rotor_state.hpp"
+#include "plant/rotor/torsion.hpp"
 
 namespace whirl::plant {
 namespace {
@@ -49,14 +50,17 @@ RotorLoads Rotor::steady(const RotorConditions& conditions) const {
     disc = disc_loads(*blade_, flow, u, v);
     const Harmonic tilt = wanted_tilt(*blade_, flow, disc);
     const Harmonic flap = wanted_flap(*blade_, flow, disc);
-    const bool settled =
-        distance(tilt, flow.tilt_inflow_mps) < small && distance(flap, flow.flap_rad) < 1e-7;
+    const double twist = wanted_tip_twist_rad(*blade_, flow, disc);
+    const bool settled = distance(tilt, flow.tilt_inflow_mps) < small &&
+                         distance(flap, flow.flap_rad) < 1e-7 &&
+                         std::abs(twist - flow.tip_twist_rad) < 1e-7;
     if (settled) {
       validity.not_converged = !rings_converged;
       break;
     }
     relax(flow.tilt_inflow_mps, tilt, 0.5);
     relax(flow.flap_rad, flap, 0.7);
+    flow.tip_twist_rad += 0.7 * (twist - flow.tip_twist_rad);
   }
   return airframe_loads(*blade_, flow, disc, validity);
 }

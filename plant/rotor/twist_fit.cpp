@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "plant/rotor/blade_rings.hpp"
 #include "plant/rotor/rotor.hpp"
 
 namespace whirl::plant {
@@ -10,13 +11,14 @@ namespace {
 constexpr double kPi = 3.14159265358979323846;
 constexpr double kMost_rad = 8.0 * kPi / 180.0;
 
-// Summed thrust coefficient less the measured one; the blade must exist (checked by the caller).
-double excess(PropellerDescription d, double twist_rad, const std::vector<StaticPoint>& points) {
-  d.tip_twist_correction_rad = twist_rad;
-  const auto blade = make_blade(d).value();
+constexpr double kScan_rad = 0.5 * kPi / 180.0;
+
+// Summed thrust coefficient of the blade, turned further by `twist_rad`, less the measured one.
+double excess(const Blade& blade, double twist_rad, const std::vector<StaticPoint>& points) {
+  const auto turned = twisted(blade, twist_rad);
   double sum = 0.0;
   for (const StaticPoint& p : points) {
-    sum += propeller_coefficients(blade, p.omega_radps, 0.0).CT - p.thrust_coefficient;
+    sum += propeller_coefficients(turned, p.omega_radps, 0.0).CT - p.thrust_coefficient;
   }
   return sum;
 }
@@ -37,23 +39,32 @@ PropellerCoefficients propeller_coefficients(const std::shared_ptr<const Blade>&
 
 Result<double> fit_tip_twist_rad(PropellerDescription d, const std::vector<StaticPoint>& points) {
   d.tip_twist_correction_rad = 0.0;
-  if (auto blade = make_blade(d); !blade) return blade.error();
+  const auto made = make_blade(d);
+  if (!made) return made.error();
   if (points.empty()) {
     return Error{ErrorKind::bad_input, d.place, "no static thrust to fit the twist on",
                  "give rows of speed and thrust"};
   }
-  double lo = -kMost_rad;
-  double hi = kMost_rad;
-  if (!(excess(d, lo, points) < 0.0 && excess(d, hi, points) > 0.0)) {
+  const Blade& blade = *made.value();
+  // Outward from the given angles: beyond stall a second twist may give the same thrust.
+  const bool too_little = excess(blade, 0.0, points) < 0.0;
+  const double step = too_little ? kScan_rad : -kScan_rad;
+  double near = 0.0;
+  double far = step;
+  while (std::abs(far) <= kMost_rad && (excess(blade, far, points) < 0.0) == too_little) {
+    near = far;
+    far += step;
+  }
+  if (std::abs(far) > kMost_rad) {
     return Error{ErrorKind::bad_input, d.place,
                  "static thrust is not met by any tip twist within 8 deg",
                  "check diameter, chord, angle and the unit of the thrust"};
   }
-  while (hi - lo > 1e-4) {
-    const double mid = 0.5 * (lo + hi);
-    (excess(d, mid, points) < 0.0 ? lo : hi) = mid;
+  while (std::abs(far - near) > 1e-4) {
+    const double mid = 0.5 * (near + far);
+    ((excess(blade, mid, points) < 0.0) == too_little ? near : far) = mid;
   }
-  return 0.5 * (lo + hi);
+  return 0.5 * (near + far);
 }
 
 Result<std::shared_ptr<const Blade>> make_fitted_blade(PropellerDescription d) {

@@ -12,7 +12,7 @@
 
 namespace whirl::plant {
 
-// Bisection on the summed thrust coefficient; description.tip_twist_correction_rad is ignored.
+// The smallest correction that meets the summed thrust coefficient; description.tip_twist_correction_rad is ignored.
 Result<double> fit_tip_twist_rad(PropellerDescription description,
                                  const std::vector<StaticPoint>& points);
 

@@ -19,7 +19,7 @@ std::shared_ptr<const PolarFamily> section(const std::string& file) {
 }
 
 std::shared_ptr<const Blade> hobbyking() {
-  return make_blade(hobbyking_10x4_5(section("e63.polar"), section("naca4412.polar"))).value();
+  return make_blade(hobbyking_10x4_5(section("bw3.polar"), section("e63.polar"))).value();
 }
 
 void expect_within(const std::vector<Proof>& proofs) {

@@ -107,7 +107,7 @@ void add_inflow_map(const std::shared_ptr<const Blade>& blade, Report& report) {
 Report validate_hobbyking(const ReadData& read) {
   Report report{"Hobbyking 10x4.5", "[Bangura2017, 3.5, Table 5.6]", {}, {}, {}};
   const SectionOf section = section_reader(read);
-  const auto blade = make_blade(hobbyking_10x4_5(section("e63"), section("naca4412"))).value();
+  const auto blade = make_blade(hobbyking_10x4_5(section("bw3"), section("e63"))).value();
   add_static(blade, report);
   add_downdraft(blade, report);
   add_inflow_map(blade, report);

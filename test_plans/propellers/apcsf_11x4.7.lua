@@ -1,6 +1,6 @@
 -- APC slow fly 11x4.7. Chord and angle: UIUC Propeller Database, volume 1 (Brandt, Selig et al.), taken
--- there from photographs. Sections chosen once for the family. `static`: measured thrust
--- coefficients at rest; one twist in proportion to r is fitted on them (here +3.9 deg at the tip).
+-- there from photographs. Thickness (an estimate) decides the sections. `static`: measured thrust
+-- coefficients at rest; one twist in proportion to r is fitted on them (here +3.8 deg at the tip).
 -- Mass is an estimate.
 -- Columns: r and c over the tip radius, beta in degrees against the disc.
 return {
@@ -9,13 +9,13 @@ return {
   blades = 2,
   diameter = "11 in",
   mass = "14 g",
+  thickness = 0.08,
   static = {
     { rpm = 2018, CT = 0.1005 },
     { rpm = 3144, CT = 0.1074 },
     { rpm = 4290, CT = 0.1151 },
     { rpm = 5450, CT = 0.1230 },
   },
-  polars = { { r = 0.2, file = "bw3.polar" }, { r = 0.6, file = "naca6409.polar" }, { r = 1.0, file = "naca4412.polar" } },
   stations = {
     { r = 0.15, c = 0.112, beta = 19.64 },
     { r = 0.20, c = 0.137, beta = 21.81 },

@@ -1,6 +1,6 @@
 -- APC slow fly 9x4.7. Chord and angle: UIUC Propeller Database, volume 1 (Brandt, Selig et al.), taken
--- there from photographs. Sections chosen once for the family. `static`: measured thrust
--- coefficients at rest; one twist in proportion to r is fitted on them (here +2.1 deg at the tip).
+-- there from photographs. Thickness (an estimate) decides the sections. `static`: measured thrust
+-- coefficients at rest; one twist in proportion to r is fitted on them (here +1.9 deg at the tip).
 -- Mass is an estimate.
 -- Columns: r and c over the tip radius, beta in degrees against the disc.
 return {
@@ -9,13 +9,13 @@ return {
   blades = 2,
   diameter = "9 in",
   mass = "8.5 g",
+  thickness = 0.08,
   static = {
     { rpm = 3062, CT = 0.1152 },
     { rpm = 4153, CT = 0.1163 },
     { rpm = 5226, CT = 0.1184 },
     { rpm = 6285, CT = 0.1192 },
   },
-  polars = { { r = 0.2, file = "bw3.polar" }, { r = 0.6, file = "naca6409.polar" }, { r = 1.0, file = "naca4412.polar" } },
   stations = {
     { r = 0.15, c = 0.127, beta = 27.54 },
     { r = 0.20, c = 0.135, beta = 25.28 },

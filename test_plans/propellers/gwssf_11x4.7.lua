@@ -1,6 +1,6 @@
 -- GWS slow fly 11x4.7. Chord and angle: UIUC Propeller Database, volume 1 (Brandt, Selig et al.), taken
--- there from photographs. Sections chosen once for the family. `static`: measured thrust
--- coefficients at rest; one twist in proportion to r is fitted on them (here +0.8 deg at the tip).
+-- there from photographs. Thickness (an estimate) decides the sections. `static`: measured thrust
+-- coefficients at rest; one twist in proportion to r is fitted on them (here +2.3 deg at the tip).
 -- Mass is an estimate.
 -- Columns: r and c over the tip radius, beta in degrees against the disc.
 return {
@@ -9,13 +9,14 @@ return {
   blades = 2,
   diameter = "11 in",
   mass = "9 g",
+  thickness = 0.056,
+  material = "nylon",
   static = {
     { rpm = 2290, CT = 0.1034 },
     { rpm = 3414, CT = 0.1140 },
     { rpm = 4513, CT = 0.1198 },
     { rpm = 5657, CT = 0.1234 },
   },
-  polars = { { r = 0.2, file = "bw3.polar" }, { r = 0.9, file = "e63.polar" } },
   stations = {
     { r = 0.15, c = 0.103, beta = 17.31 },
     { r = 0.20, c = 0.121, beta = 19.83 },

@@ -1,6 +1,6 @@
 -- GWS slow fly 9x4.7. Chord and angle: UIUC Propeller Database, volume 1 (Brandt, Selig et al.), taken
--- there from photographs. Sections chosen once for the family. `static`: measured thrust
--- coefficients at rest; one twist in proportion to r is fitted on them (here -0.3 deg at the tip).
+-- there from photographs. Thickness (an estimate) decides the sections. `static`: measured thrust
+-- coefficients at rest; one twist in proportion to r is fitted on them (here +1.8 deg at the tip).
 -- Mass is an estimate.
 -- Columns: r and c over the tip radius, beta in degrees against the disc.
 return {
@@ -9,13 +9,14 @@ return {
   blades = 2,
   diameter = "9 in",
   mass = "6 g",
+  thickness = 0.056,
+  material = "nylon",
   static = {
     { rpm = 2973, CT = 0.1131 },
     { rpm = 4071, CT = 0.1173 },
     { rpm = 5175, CT = 0.1201 },
     { rpm = 6268, CT = 0.1196 },
   },
-  polars = { { r = 0.2, file = "bw3.polar" }, { r = 0.9, file = "e63.polar" } },
   stations = {
     { r = 0.15, c = 0.086, beta = 31.66 },
     { r = 0.20, c = 0.098, beta = 28.22 },

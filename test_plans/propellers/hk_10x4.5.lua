@@ -1,8 +1,8 @@
--- Hobbyking 10 x 4.5 slow fly, the propeller of the "HP quad". No drawing of it is published:
--- planform and twist are those of the measured APC 9x4.7 slow flyer, chord x 0.78 and
--- angle + 0.95 deg + 6 deg (r - 0.7), set by the thesis's static thrust, T = 1.789e-7 w^2 - 1.4715e-4 w
--- (N, RPM), a figure of merit near 0.69, and the loss of thrust with inflow that measured slow flyers
--- show.
+-- Hobbyking 10 x 4.5 slow fly, the propeller of the "HP quad". No drawing of it is published: a copy of
+-- the thin GWS slow flyers, so planform and twist are those of the measured GWS 11x4.7, chord x 0.66 and
+-- angle + 2.25 deg - 10 deg (r - 0.7), in nylon as GWS, sections BW-3 to E63, set by the thesis's static thrust,
+-- T = 1.789e-7 w^2 - 1.4715e-4 w (N, RPM), a figure of merit near 0.66, and the loss of thrust and power
+-- with inflow that measured slow flyers show.
 -- Columns: r and c over the tip radius, beta in degrees against the disc.
 return {
   kind = "propeller",
@@ -10,26 +10,28 @@ return {
   blades = 2,
   diameter = "10 in",
   mass = "7.9 g",
-  induced_factor = 1.0,
-  polars = { { r = 0.2, file = "e63.polar" }, { r = 0.8, file = "naca4412.polar" } },
+  induced_factor = 1.13,
+  material = "nylon",
+  thickness = 0.065,
+  polars = { { r = 0.2, file = "bw3.polar" }, { r = 0.9, file = "e63.polar" } },
   stations = {
-    { r = 0.15, c = 0.099, beta = 25.19 },
-    { r = 0.20, c = 0.105, beta = 23.23 },
-    { r = 0.25, c = 0.123, beta = 24.33 },
-    { r = 0.30, c = 0.139, beta = 24.02 },
-    { r = 0.35, c = 0.152, beta = 22.92 },
-    { r = 0.40, c = 0.163, beta = 21.33 },
-    { r = 0.45, c = 0.171, beta = 19.45 },
-    { r = 0.50, c = 0.176, beta = 17.93 },
-    { r = 0.55, c = 0.177, beta = 16.43 },
-    { r = 0.60, c = 0.176, beta = 15.18 },
-    { r = 0.65, c = 0.172, beta = 14.28 },
-    { r = 0.70, c = 0.165, beta = 13.51 },
-    { r = 0.75, c = 0.155, beta = 12.81 },
-    { r = 0.80, c = 0.142, beta = 12.20 },
-    { r = 0.85, c = 0.126, beta = 11.53 },
-    { r = 0.90, c = 0.105, beta = 10.66 },
-    { r = 0.95, c = 0.076, beta = 9.17 },
-    { r = 1.00, c = 0.045, beta = 7.64 },
+    { r = 0.15, c = 0.0680, beta = 25.06 },
+    { r = 0.20, c = 0.0799, beta = 27.08 },
+    { r = 0.25, c = 0.0957, beta = 27.63 },
+    { r = 0.30, c = 0.1122, beta = 26.76 },
+    { r = 0.35, c = 0.1274, beta = 25.66 },
+    { r = 0.40, c = 0.1393, beta = 23.98 },
+    { r = 0.45, c = 0.1472, beta = 21.80 },
+    { r = 0.50, c = 0.1505, beta = 19.59 },
+    { r = 0.55, c = 0.1525, beta = 17.62 },
+    { r = 0.60, c = 0.1511, beta = 16.06 },
+    { r = 0.65, c = 0.1485, beta = 14.77 },
+    { r = 0.70, c = 0.1432, beta = 13.60 },
+    { r = 0.75, c = 0.1346, beta = 12.48 },
+    { r = 0.80, c = 0.1234, beta = 11.46 },
+    { r = 0.85, c = 0.1096, beta = 10.41 },
+    { r = 0.90, c = 0.0917, beta = 9.47 },
+    { r = 0.95, c = 0.0640, beta = 8.68 },
+    { r = 1.00, c = 0.0363, beta = 7.91 },
   },
 }

@@ -20,7 +20,7 @@ std::shared_ptr<const PolarFamily> section(const std::string& name) {
 }
 
 Rotor hobbyking() {
-  return Rotor(make_blade(hobbyking_10x4_5(section("e63"), section("naca4412"))).value(), 1);
+  return Rotor(make_blade(hobbyking_10x4_5(section("bw3"), section("e63"))).value(), 1);
 }
 
 void step(benchmark::State& state) {

@@ -14,7 +14,7 @@ namespace {
 constexpr double kDeg = 3.14159265358979323846 / 180.0;
 
 PropellerDescription good() {
-  PropellerDescription d = hobbyking_10x4_5(section("e63"), section("naca4412"));
+  PropellerDescription d = hobbyking_10x4_5(section("bw3"), section("e63"));
   d.place = "p.lua";
   return d;
 }

@@ -163,7 +163,7 @@ TEST(Oblique, YawingAgainstTheSpinCostsThrust) {
 // moved, falls by 1 + 2 k / (rho A R u), k = L / (R p).
 TEST(Oblique, InflowTakesItsShareOfTheRollDamping) {
   RotorConditions c = hover(4500.0);
-  PropellerDescription d = hobbyking_10x4_5(section("e63"), section("naca4412"));
+  PropellerDescription d = hobbyking_10x4_5(section("bw3"), section("e63"));
   d.flap_stiffness_Nm_per_rad = 1e5;  // flapping has its own share; not here
   Rotor rotor(make_blade(d).value(), 1);
   for (int i = 0; i < 500; ++i) rotor.step(c, 1e-3);
@@ -182,7 +182,7 @@ TEST(Oblique, InflowTakesItsShareOfTheRollDamping) {
 // bend give way to that, the disc tilts forward and takes the thrust along.
 TEST(Oblique, BendingBladesPrecess) {
   const auto force_x = [](double stiffness_Nm_per_rad, int spin) {
-    PropellerDescription d = hobbyking_10x4_5(section("e63"), section("naca4412"));
+    PropellerDescription d = hobbyking_10x4_5(section("bw3"), section("e63"));
     d.flap_stiffness_Nm_per_rad = stiffness_Nm_per_rad;
     RotorConditions c = hover(4500.0);
     c.w_WP_P_radps.x() = 3.0;

@@ -29,7 +29,7 @@ inline std::shared_ptr<const PolarFamily> section(const std::string& name) {
 
 inline std::shared_ptr<const Blade> hobbyking() {
   static const auto blade =
-      make_blade(hobbyking_10x4_5(section("e63"), section("naca4412"))).value();
+      make_blade(hobbyking_10x4_5(section("bw3"), section("e63"))).value();
   return blade;
 }
 
