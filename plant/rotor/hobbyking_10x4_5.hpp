@@ -2,7 +2,7 @@
 //
 //   Source  no drawing of this blade is published. It is a copy of the thin GWS slow flyers, so
 //           planform and twist are those of the measured GWS 11x4.7 [UiucProp], chord x 0.66 and
-//           angle + 2.25 deg - 10 deg (r/R - 0.7), in nylon as GWS, sections BW-3 to E63, set so that four
+//           angle + 2.2 deg - 10 deg (r/R - 0.7), in nylon as GWS, sections BW-3 to E63, set so that four
 //           things are met at once: the static thrust of [Bangura2017, 3.5], a figure of merit near
 //           what its bus current means, the loss of thrust with inflow of Table 5.6 and of measured
 //           slow flyers, and a power that falls with inflow as theirs does.
