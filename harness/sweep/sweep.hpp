@@ -30,7 +30,7 @@ std::vector<results::Chart> vehicle_sweep(const flight::FlightParams& vehicle,
 struct DrivePoint {
   double voltage_V = 0, speed_radps = 0, thrust_N = 0, torque_Nm = 0;
   double winding_A = 0, bus_A = 0, shaft_W = 0, electrical_W = 0;
-  double copper_W = 0, no_load_W = 0;
+  double copper_W = 0, diode_W = 0, no_load_W = 0;
 };
 DrivePoint drive_point(const flight::FlightParams& vehicle, double voltage_V, double bus_V);
 // The voltage at which it lifts thrust_N, by bisection; an Error where no voltage up to bus_V does.

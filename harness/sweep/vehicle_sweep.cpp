@@ -98,6 +98,7 @@ DrivePoint drive_point(const flight::FlightParams& vehicle, double voltage_V, do
   p.shaft_W = p.torque_Nm * p.speed_radps;
   p.electrical_W = bus_V * p.bus_A;
   p.copper_W = books.copper_J / time_s;
+  p.diode_W = books.diode_J / time_s;
   p.no_load_W = books.no_load_J / time_s;
   return p;
 }

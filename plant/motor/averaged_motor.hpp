@@ -1,23 +1,21 @@
 // The motor as a duty sees it: mean voltages and currents of a PWM period, torque, speed.
 //
 //   Units   SI; line-to-line, as MotorParams
-//   Overlap Six-step commutation moves the current between phases against their
-//           inductance. The pair's current dips to half at every commutation and recovers with L/R:
-//           on the mean this is a voltage drop (3/pi) w_e (L/2) I that takes no power, some more
-//           copper loss, and a bus current below duty x winding current. PWM ripple heats too.
-//   Method  Winding current by the exact exponential at the mean speed of the sub-step, speed by the
+//   State   the mean current of the conducting pair, which speed, drive and the commutations' dips,
+//           tails and circling currents surround (commutation.hpp) as if they had settled
+//   Method  Pair current by the exact exponential at the mean speed of the sub-step, speed by the
 //           implicit midpoint rule: the energy books close to round-off and no step is unstable.
-//   Valid   speed >= 0 (a bridge that only pushes one way); sub-steps up to 0.5 ms; ripple small
-//           against the mean except under diode freewheeling, which has its discontinuous branch
+//           The bus pays for what the books say: duty x pair current less what commutations return
+//   Valid   speed >= 0 (a bridge that only pushes one way); sub-steps up to 0.5 ms; current shorter
+//           than a sector in the outgoing phase
 //   Source  [Bangura2017, 3.4] with the current read as bus current; [Erickson2001, ch. 5] for
 //           discontinuous conduction
-//   Error   power balance to round-off, closed forms to 1e-6 (tests/averaged_motor_test.cpp); speed
-//           within 1 % of the switched face up to duty 0.4 (tests/switched_motor_test.cpp)
-//   Left out the ripple that runs dry after a commutation under diode freewheeling (speed up to 4 % low
-//           about its edge), magnetic saturation, current fed back through diodes at overspeed, timing other than
+//   Error   power balance to round-off, closed forms to 1e-6 (tests/averaged_motor_test.cpp); against
+//           the switched face 1 % in speed, torque, winding and bus current (tests/faces_test.cpp)
+//   Left out magnetic saturation, current fed back through diodes at overspeed, timing other than
 //           neutral
 #pragma once
-#include "plant/motor/motor_params.hpp"
+#include "plant/motor/commutation.hpp"
 
 namespace whirl::plant {
 
@@ -30,6 +28,14 @@ struct Drive {  // what the bridge does to the winding, mean over PWM periods
   double bus_V = 0.0;
   double duty = 0.0;
   bool diode = false;  // freewheel through diodes: current never reverses
+};
+
+struct Pulses {  // under diodes: what remains where the mean voltage would let the current run dry
+  double least_A = 0.0;   // mean
+  double least_A2 = 0.0;  // mean square
+  double fall_A = 0.0;    // the share of the mean through the diodes
+  double lasts_s = 0.0;   // centroid of a pulse: how long a lack of current lasts
+  double falls_s = 1.0;   // how long after the pulse the current lasts
 };
 
 struct MotorBooks {  // one sub-step: charges and where the energy went
@@ -58,7 +64,7 @@ class AveragedMotor {
     MotorBooks books;
     double speed_radps = 0.0, current_A = 0.0;
   };
-  void prepare(double dt_s);  // what depends on the state and the step, but not on the voltage
+  void prepare(const Drive& about, double dt_s);  // the state and roughly the drive to come
   Trial attempt(const Drive& drive, const ShaftLoad& load, double dt_s) const;
   void accept(const Trial& trial) {
     rise_radps_ = trial.speed_radps - speed_;
@@ -75,29 +81,24 @@ class AveragedMotor {
   double current_A() const { return current_; }
   double winding_temperature_K() const { return temperature_K_; }
   double resistance_ohm() const { return resistance_; }
-  double running_ohm() const { return resistance_ + overlap_.drop_ohm; }  // what the mean sees
+  double running_ohm() const { return prepared_ohm_; }  // what the mean sees
   const MotorParams& params() const { return params_; }
 
  private:
   struct Winding;
-  struct Overlap {                    // neutral values: none
-    double drop_ohm = 0.0;            // mean voltage per mean current
-    double square_share = 1.0;        // mean square of the current over the square of its mean
-    double ripple_share = 0.0;        // of the PWM ripple's heat
-    double tau_s = 0.0, blend = 0.0;  // of the mean current, drop included
-  };
-  void find_overlap();
   Winding conduct(double voltage_V, double dt_s) const;
   double mean_speed(const Winding& winding, const ShaftLoad& load, double dt_s) const;
   void diode_limit(const Drive& drive, double dt_s, Winding& winding) const;
+  void settle(const Winding& winding, double mean_radps, double dt_s, Trial& trial) const;
 
   MotorParams params_;
   double speed_ = 0.0, rise_radps_ = 0.0;  // the second over the last sub-step
   double current_ = 0.0;
   double temperature_K_;
   double resistance_;
-  Overlap overlap_;
-  double prepared_dt_s_ = 0.0, prepared_ohm_ = 0.0;  // what the blend was found for
+  Commutation commutation_;
+  double prepared_ohm_ = 0.0, tau_s_ = 0.0, blend_ = 0.0;  // of the pair's mean current
+  Pulses pulses_;
   bool blocked_ = false;
 };
 

@@ -136,6 +136,16 @@ MotorBooks SwitchedMotor::run(double dt_s) {
   return books;
 }
 
+// A charge into phase k, counted along the pattern: in at the driven leg, out at the low one.
+double SwitchedMotor::along(int k, double charge) const {
+  const auto driven = [](Leg leg) { return leg == Leg::high || leg == Leg::pwm; };
+  const bool patterned =
+      std::any_of(bridge_.leg.begin(), bridge_.leg.end(), driven) &&
+      std::find(bridge_.leg.begin(), bridge_.leg.end(), Leg::low) != bridge_.leg.end();
+  if (!patterned || bridge_.leg[k] == Leg::off) return std::abs(charge);
+  return driven(bridge_.leg[k]) ? charge : -charge;
+}
+
 // One inner step; returns how far it went (a diode that stops conducting ends it early).
 double SwitchedMotor::advance(double dt_s, MotorBooks& books) {
   const double pace = params_.pole_pairs * std::abs(speed_);
@@ -168,7 +178,7 @@ double SwitchedMotor::advance(double dt_s, MotorBooks& books) {
     books.magnetic_J += 0.5 * L * (next * next - current_[k] * current_[k]);
     if (c.diode[k]) books.diode_J += params_.diode_drop_V * std::abs(charge);
     if (c.to_bus[k]) books.bus_charge_C += charge, books.electrical_in_J += bus_V_ * charge;
-    books.winding_charge_C += 0.5 * std::abs(charge);
+    books.winding_charge_C += 0.5 * along(k, charge);
     impulse += back_emf(k, angle) * charge;
     peak_A_ = std::max({peak_A_, std::abs(next), std::abs(current_[k])});
     current_[k] = next;

@@ -58,6 +58,7 @@ class SwitchedMotor {
   bool conducts(int phase, Circuit& c) const;
   double advance(double dt_s, MotorBooks& books);
   void turn(double impulse_Nms, double dt_s, double angle_gain, MotorBooks& books);
+  double along(int phase, double charge_C) const;
   double back_emf(int phase, double angle) const;  // V s/rad of the shaft
 
   MotorParams params_;

@@ -10,21 +10,7 @@
 namespace whirl::plant {
 namespace {
 
-constexpr double kDeg = M_PI / 180.0, kPeriod_s = 5e-5;
-
-// Bridge commutated at the right angle, PWM at 20 kHz, in slices of 2 us.
-MotorBooks run_period(SwitchedMotor& motor, double duty, bool synchronous) {
-  MotorBooks sum;
-  const double on_s = duty * kPeriod_s;
-  for (double t = 0.0; t < kPeriod_s - 1e-12;) {
-    const bool on = t < on_s - 1e-12;
-    const double h = std::min(2e-6, (on ? on_s : kPeriod_s) - t);
-    motor.set_bridge(six_step(sector_of(motor.electrical_angle_rad()), on, synchronous));
-    sum += motor.run(h);
-    t += h;
-  }
-  return sum;
-}
+constexpr double kDeg = M_PI / 180.0;
 
 double imbalance_J(const MotorBooks& b) {
   return b.electrical_in_J - b.copper_J - b.diode_J - b.no_load_J - b.magnetic_J - b.kinetic_J -
@@ -149,74 +135,6 @@ TEST(SwitchedMotor, EnergyBooksCloseForAnyPattern) {
     }
     EXPECT_TRUE(near(imbalance_J(sum) / throughput, 0.0, stated(1e-4, "speed held within a step")));
   }
-}
-
-struct Face {
-  double speed_radps, bus_A;
-};
-
-Face averaged(const MotorParams& params, const ShaftLoad& load, double duty, bool synchronous) {
-  AveragedMotor motor(params);
-  motor.set_speed(300.0);
-  const Drive drive{.bus_V = 16.4, .duty = duty, .diode = !synchronous};
-  for (int k = 0; k < 20000; ++k) motor.step(drive, load, 1.25e-4);
-  return {motor.speed_radps(), motor.step(drive, load, 1.25e-4).bus_charge_C / 1.25e-4};
-}
-
-Face switched(const MotorParams& params, const ShaftLoad& load, double duty, bool synchronous,
-              double start_radps) {
-  SwitchedMotor motor(params);
-  motor.set_bus(16.4);
-  motor.set_load(load);
-  motor.set_speed(start_radps);
-  for (int k = 0; k < 10000; ++k) run_period(motor, duty, synchronous);
-  double charge = 0.0, speed = 0.0;
-  for (int k = 0; k < 4000; ++k) {
-    charge += run_period(motor, duty, synchronous).bus_charge_C;
-    speed += motor.speed_radps() / 4000.0;
-  }
-  return {speed, charge / (4000.0 * kPeriod_s)};
-}
-
-// From idle to 5000 RPM, with what hovers and twice it. Speed is what thrust is made of.
-TEST(MotorFaces, AveragedAndSwitchedAgreeInSteadyState) {
-  for (BackEmf shape : {BackEmf::trapezoidal, BackEmf::sinusoidal}) {
-    for (bool synchronous :
-         {true}) {  // diodes: ripple runs dry after commutations, not yet counted
-      for (double duty : {0.1, 0.2, 0.3, 0.4}) {
-        MotorParams params;
-        params.back_emf = shape;
-        const ShaftLoad load{1.9e-7, 0.0};
-        const Face a = averaged(params, load, duty, synchronous);
-        const Face s = switched(params, load, duty, synchronous, a.speed_radps);
-        EXPECT_TRUE(near(s.speed_radps / a.speed_radps, 1.0, stated(0.0105, "issue: 1 %")))
-            << duty << synchronous;
-        EXPECT_TRUE(near(s.bus_A / a.bus_A, 1.0, stated(0.035, "one pole for the recovery")))
-            << duty << synchronous;
-      }
-    }
-  }
-}
-
-// Without overlap (an inductance too small to matter) both are the plain DC motor.
-TEST(MotorFaces, WithoutInductanceBothAreTheDcMotor) {
-  MotorParams params;
-  params.inductance_H = 1e-6;
-  const ShaftLoad load{1.9e-7, 0.0};
-  const Face a = averaged(params, load, 1.0, true);
-  const Face s = switched(params, load, 1.0, true, a.speed_radps);
-  EXPECT_TRUE(near(s.speed_radps / a.speed_radps, 1.0, stated(0.01, "issue: 1 %")));
-  EXPECT_TRUE(near(s.bus_A / a.bus_A, 1.0, stated(0.02, "overlap that is left")));
-}
-
-// What an apparent resistance is: with the DC resistance alone the motor would run faster.
-TEST(MotorFaces, CommutationSlowsTheMotor) {
-  MotorParams params, slow;
-  slow.inductance_H = 2e-6;
-  const ShaftLoad load{1.9e-7, 0.0};
-  const Face with = switched(params, load, 0.5, true, 600.0);
-  const Face without = switched(slow, load, 0.5, true, 600.0);
-  EXPECT_LT(with.speed_radps, 0.98 * without.speed_radps);
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ flight::FlightParams quad() {
 TEST(Sweep, ElectricalPowerIsShaftPowerAndTheNamedLosses) {
   for (double voltage_V : {3.0, 6.0, 12.0}) {
     const DrivePoint p = drive_point(quad(), voltage_V, 16.4);
-    EXPECT_TRUE(near(p.electrical_W, p.shaft_W + p.copper_W + p.no_load_W,
+    EXPECT_TRUE(near(p.electrical_W, p.shaft_W + p.copper_W + p.diode_W + p.no_load_W,
                      stated(1e-3 * p.electrical_W, "speed has settled to 1e-7 of itself a piece")));
   }
 }
