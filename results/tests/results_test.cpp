@@ -138,6 +138,19 @@ TEST(Truth, ColumnsCarryTheirUnits) {
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 5001);
 }
 
+TEST(Truth, ALongRunKeepsEveryThirdRowInItsFile) {
+  const Folder folder;
+  TruthLog log({{"height", "m", "m"}}, 1'000'000);
+  for (int i = 0; i < 450'001; ++i) {
+    const double row[] = {i == 449'997 ? 9.0 : 1.0};  // a multiple of three
+    log.append(row);
+  }
+  ASSERT_TRUE(log.write_csv(folder.path + "/truth.csv").ok());
+  const std::string csv = folder.read("truth.csv");
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 150'001);
+  EXPECT_NE(csv.find("\n449.997,9\n"), std::string::npos);
+}
+
 TEST(Page, IsOneFileWithoutNetworkAndKeepsEverySpike) {
   const std::string page = page_html(sample(), truth());
   for (const char* outside : {"http://", "https://", "src=", "<link"}) {

@@ -4,7 +4,7 @@ include "include/start.lua"
 plan "silence" {
   image = "esc", board = "esc32v2",
   stand = { prop = "hk_10x4.5", battery = "4s_2200" },
-  tags = { "esc" },
+  tags = { "quick", "esc" },
   timeout = "20 s",
   run = function(t)
     start(t, "2 N")

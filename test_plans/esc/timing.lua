@@ -8,7 +8,7 @@ local function timing(mode, number, low, high)
     image = "esc", board = "esc32v2",
     stand = { prop = "hk_10x4.5", battery = "4s_2200", mode = mode },
     watch = { "fw::esc::sampling_task", "fw::esc::commutation_task", "adc1" },
-    tags = { "esc", "timing" },
+    tags = { number == 2 and "quick" or "nightly", "esc", "timing" },
     timeout = "20 s",
     run = function(t)
       t:wait "50 ms"

@@ -5,7 +5,7 @@ include "include/start.lua"
 plan "watchdog" {
   image = "esc", board = "esc32v2",
   stand = { prop = "hk_10x4.5", battery = "4s_2200" },
-  tags = { "esc", "faults" },
+  tags = { "quick", "esc", "faults" },
   timeout = "20 s", may_reset = true,
   run = function(t)
     start(t, "2 N")
