@@ -10,6 +10,9 @@ constexpr Innovation kSpeedGains{.kp = 120.0f, .ki = 3600.0f};  // two poles at 
 constexpr float kSmoothing_s = 0.05f;                           // of CP, at constant speed
 constexpr float kMinSpeed_radps = 150.0f;  // below, w^3 makes noise of everything
 
+constexpr float kPower_error = 0.004f;  // the shunt wanders by 10 mA
+constexpr float kUsual_change = 0.05f;
+
 }  // namespace
 
 ThrustEstimator::ThrustEstimator(const Calibration& calibration, float period_s)
@@ -61,7 +64,7 @@ void ThrustEstimator::update(float bus_V, float duty, float bus_A, float speed_r
   CP_ = power_ratio_ * calibration_.free_air.CP(w);
 
   last_ = conclude();
-  const float found = last_.status == Estimate::converged ? last_.CT / still_.CT : 1.0f;
+  const float found = 1.0f + confidence() * (last_.CT / still_.CT - 1.0f);
   thrust_ratio_ += blend * (found - thrust_ratio_);
   CT_ = thrust_ratio_ * calibration_.free_air.CT(w);
   thrust_N_ = CT_ * w * w;
@@ -75,11 +78,19 @@ ThrustEstimate ThrustEstimator::conclude() {
   return solver_.solve(power_ratio_ * still_.CP);
 }
 
+// Between still air and what power says, as their variances weigh: power errs by kPower_error, which
+// the leverage makes an error of thrust; inflow moves thrust by kUsual_change.
+float ThrustEstimator::confidence() const {
+  if (!observable()) return 0.0f;
+  const float noise = last_.leverage * kPower_error / kUsual_change;
+  return 1.0f / (1.0f + noise * noise);
+}
+
 float ThrustEstimator::thrust_per_ampere() const {
   if (!observable() || !(power_W_ > 0.0f)) return 0.0f;
   const float duty = duty_.value();
   const float watts = power_per_bus_ampere_W(calibration_.losses, bus_V_ * duty, current_A_, duty);
-  return thrust_N_ * last_.leverage * watts / power_W_;
+  return thrust_N_ * confidence() * last_.leverage * watts / power_W_;
 }
 
 }  // namespace fw::esc

@@ -5,7 +5,8 @@
 //           speed; inflow and CT by ThrustSolver; T = CT w^2
 //   Scale   the model gives the shape over inflow, the static map thrust and power in still air: so
 //           both follow the Reynolds number, and in still air both controllers agree
-//   Where power decides nothing about inflow, CT of free air is used and observable() says so.
+//   Where power decides nothing about inflow, CT of free air is used and observable() says so; where
+//           it decides little, the estimate lies between the two, as their errors weigh
 //   Source  [Bangura 2017, eq. 5.4 and Algorithm 1]
 #pragma once
 #include "firmware/esc/core/calibration.hpp"
@@ -37,6 +38,7 @@ class ThrustEstimator {
 
  private:
   ThrustEstimate conclude();
+  float confidence() const;
 
   Calibration calibration_;
   float period_s_;
