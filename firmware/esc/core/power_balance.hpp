@@ -19,6 +19,15 @@ inline float aerodynamic_power_W(const LossMap& map, float voltage_V, float curr
   return (voltage_V - map.loss_ohm * current_A - map.loss_V) * current_A - map.drag_Nm * w;
 }
 
+// Under diode freewheel the winding current falls to nothing between two pulses if it is smaller than
+// half its ripple; the losses are others then.
+inline bool has_gaps(const MotorConstants& motor, float bus_V, float duty, float current_A) {
+  constexpr float kPwm_Hz = 20e3f;
+  constexpr float kMargin = 1.1f;
+  const float ripple_A = bus_V * duty * (1.0f - duty) / (motor.inductance_H * kPwm_Hz);
+  return current_A < kMargin * 0.5f * ripple_A;
+}
+
 // What one ampere of the bus more would add to it: how far an offset of the shunt goes.
 inline float power_per_bus_ampere_W(const LossMap& map, float voltage_V, float current_A,
                                     float duty) {

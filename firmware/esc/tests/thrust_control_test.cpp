@@ -212,6 +212,14 @@ TEST(Power, HoldsTheAerodynamicPowerInMovingAir) {
   }
 }
 
+TEST(PowerBalance, KnowsWhereTheCurrentHasGaps) {
+  // 16 V at half duty on 40 uH: 5 A of ripple, so 2.5 A of mean current touch zero.
+  const MotorConstants motor{.inductance_H = 40e-6f};
+  EXPECT_TRUE(has_gaps(motor, 16.0f, 0.5f, 2.5f));
+  EXPECT_FALSE(has_gaps(motor, 16.0f, 0.5f, 2.8f));
+  EXPECT_FALSE(has_gaps(motor, 16.0f, 0.1f, 1.0f)) << "1.8 A of ripple";
+}
+
 TEST(ThrustDemand, InvertsTheStaticMaps) {
   // A soft blade's [fit of the stand's propeller, 230 to 750 rad/s].
   const StaticMap map{
