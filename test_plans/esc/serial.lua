@@ -5,6 +5,7 @@ local function line_plan(name, run)
   plan(name) {
     image = "esc", board = "esc32v2",
     stand = { prop = "hk_10x4.5", battery = "4s_2200" },
+    watch = { "fw::esc::control_task", "fw::esc::commutation_task" },
     tags = { "esc", "quick" },
     timeout = "30 s",
     run = run,
@@ -40,8 +41,12 @@ line_plan("serial_stream", function(t)
   t:step "500 frames a second, 10 answers a second"
   t:ask("stream 500", "^ok$")
   t:wait "50 ms"
+  t:budget("fw::esc::control_task") { period = "1 ms", jitter = "20 us", response = "500 us", during = "2 s" }
+  t:budget("fw::esc::commutation_task") { latency = "10 us", during = "2 s" }
+  t:budget("cpu") { busy = "60 %", during = "2 s" }
   for _ = 1, 10 do
     t:ask("status", "^mode 2 flags %d+ rpm %d+ mA %d+ mV %d+ mN %d+ mW %d+ ")
+    t:ask("get all", "^kt ")
     t:wait "90 ms"
   end
   t:expect(t:value "esc_frames_lost", "frames lost"):equal(0)

@@ -64,6 +64,7 @@ struct Bench {
   void keep(const io::Reader& r) {
     if (r.header().kind == io::Kind::uart_frame)
       typed.append(r.payload().begin(), r.payload().end());
+    if (r.header().kind == io::Kind::pulse_train) trains.push_back(r.as<io::PulseTrain>());
     if (r.header().kind == io::Kind::shaft_load) load = r.as<io::ShaftLoad>();
     if (r.header().kind != io::Kind::i2c_order) return;
     const auto order = r.as<io::I2cOrder>();
@@ -91,6 +92,7 @@ struct Bench {
   std::vector<std::int64_t> writes_ns, reads_ns;
   std::vector<std::uint8_t> last_write;
   std::vector<io::I2cReplyHead> replies;
+  std::vector<io::PulseTrain> trains;
   std::vector<std::uint8_t> serial;  // from the board in the next step
   std::string typed;                 // to it
   bool answers = false;
@@ -230,6 +232,27 @@ TEST(Stand, RawTransfersGoOutAsTheyStandAndMoveThroughTheirMillisecond) {
                                                     first + 14 * kMs - 200'000}));
   EXPECT_FALSE(b.world.command(table(R"({ i2c_raw = { bytes = "5A G1" } })"), b.t_ns).ok());
   EXPECT_FALSE(b.world.command(table("{ i2c_raw = {} }"), b.t_ns).ok());
+}
+
+TEST(Stand, PulsesCarryTheSetPointsAndNothingIsWrittenOverI2c) {
+  Bench b(params(
+      R"({ prop = "hk_10x4.5", supply = "16 V", throttle = "pwm", pulse_rate = "400 Hz" })"));
+  b.run_until(200 * kMs, 0.0);
+  EXPECT_TRUE(b.writes_ns.empty());
+  EXPECT_FALSE(b.reads_ns.empty());
+  ASSERT_EQ(b.trains.size(), 1u);
+  EXPECT_EQ(b.trains[0].width_ns, 1'000'000);
+  EXPECT_EQ(b.trains[0].period_ns, 2'500'000);
+  ASSERT_TRUE(b.world.command(table(R"({ thrust = "8 N" })"), b.t_ns).ok());  // the mode's end
+  b.run_until(210 * kMs, 0.0);
+  ASSERT_EQ(b.trains.size(), 2u);
+  EXPECT_EQ(b.trains[1].width_ns, 1'950'000);
+  ASSERT_TRUE(b.world.command(table("{ silence = true }"), b.t_ns).ok());
+  b.run_until(220 * kMs, 0.0);
+  ASSERT_EQ(b.trains.size(), 3u);
+  EXPECT_EQ(b.trains[2].width_ns, 0);
+  const auto wrong = table(R"({ pulses = { width = "3 ms", rate = "400 Hz" } })");
+  EXPECT_FALSE(b.world.command(wrong, b.t_ns).ok());
 }
 
 TEST(Stand, StreamedSignalsAreNoNumbersBeforeAndLongAfterAFrame) {
