@@ -233,15 +233,6 @@ double reynolds_of_level(int level) {
   return kReynolds_low * std::pow(kReynolds_high / kReynolds_low, level / (kReynolds - 1.0));
 }
 
-ReynoldsSlot reynolds_slot(double reynolds) {
-  static const double kLevels_per_log =
-      (kReynolds - 1.0) / std::log(kReynolds_high / kReynolds_low);
-  const double clamped = std::clamp(reynolds, kReynolds_low, kReynolds_high);
-  const double at = kLevels_per_log * std::log(clamped / kReynolds_low);
-  const int level = std::min(static_cast<int>(at), kReynolds - 2);
-  return {level, at - level};
-}
-
 SectionCoefficients look_up(const SectionTable& table, ReynoldsSlot slot, double alpha_rad) {
   const double at = (alpha_rad / kDeg + 180.0) * 2.0;
   const int i = std::clamp(static_cast<int>(at), 0, kAngles - 2);

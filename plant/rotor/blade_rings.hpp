@@ -5,7 +5,9 @@
 //   Error    table against PolarFamily::at under 0.04 in lift, 13 % in drag, both
 //            at the kinks where given curves meet (tests/blade_test.cpp)
 #pragma once
+#include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -74,8 +76,31 @@ struct ReynoldsSlot {
   int level = 0;
   double weight = 0.0;  // of level + 1
 };
-ReynoldsSlot reynolds_slot(double reynolds);
 double reynolds_of_level(int level);
+
+// log2 of x >= 1 to 2e-5, exact at powers of two, continuous and rising: the exponent from its bits,
+// the mantissa m by the series of artanh((m - 1) / (m + 1)), scaled to end at 1 for m = 2.
+constexpr double artanh_series(double z) {
+  const double z2 = z * z;
+  return z * ((1.0 + z2 * (1.0 / 3.0)) + z2 * z2 * (0.2 + z2 * (1.0 / 7.0)));
+}
+
+inline double quick_log2(double x) {
+  const auto bits = std::bit_cast<std::uint64_t>(x);
+  const auto exponent = static_cast<double>(static_cast<std::int64_t>(bits >> 52) - 1023);
+  const double m = std::bit_cast<double>((bits & 0x000fffffffffffffULL) | 0x3ff0000000000000ULL);
+  constexpr double kScale = 1.0 / artanh_series(1.0 / 3.0);
+  return exponent + kScale * artanh_series((m - 1.0) / (m + 1.0));
+}
+
+inline ReynoldsSlot reynolds_slot(double reynolds) {
+  constexpr double kLevels_per_octave = (kReynolds - 1.0) / 5.906890595608519;  // log2(high / low)
+  static_assert(kReynolds_high / kReynolds_low == 60.0);
+  const double clamped = std::clamp(reynolds, kReynolds_low, kReynolds_high);
+  const double at = kLevels_per_octave * quick_log2(clamped / kReynolds_low);
+  const int level = std::min(static_cast<int>(at), kReynolds - 2);
+  return {level, at - level};
+}
 
 // Coefficients from the table; alpha in -pi..pi.
 SectionCoefficients look_up(const SectionTable& table, ReynoldsSlot slot, double alpha_rad);

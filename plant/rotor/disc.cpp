@@ -29,10 +29,14 @@ struct Wake {
   double in_plane_mps = 0.0;
 };
 
+double in_plane_mps(const DiscFlow& f) {
+  return std::sqrt(f.vx_mps * f.vx_mps + f.vy_mps * f.vy_mps);
+}
+
 Wake mean_wake(const DiscFlow& f, const DiscLoads& disc) {
   Wake w;
   w.along_mps = f.climb_mps + disc.induced_mps;
-  w.in_plane_mps = std::hypot(f.vx_mps, f.vy_mps);
+  w.in_plane_mps = in_plane_mps(f);
   w.mass_flow_mps = mass_flow_mps(disc.induced_mps, f.climb_mps, w.in_plane_mps);
   return w;
 }
@@ -68,7 +72,7 @@ DiscFlow disc_flow(const Blade& blade, int spin, const RotorConditions& c,
   f.blade_count = blade.count;
   f.ground_factor = ground_factor(c, R, clamped);
   const double tip_speed = std::abs(f.omega_radps) * R;
-  const double in_plane = std::hypot(f.vx_mps, f.vy_mps);
+  const double in_plane = in_plane_mps(f);
   validity.beyond_advance_ratio = in_plane > 0.3 * tip_speed && in_plane > 0.5;
   return f;
 }
@@ -110,7 +114,7 @@ RotorLoads airframe_loads(const Blade& blade, const DiscFlow& f, const DiscLoads
   out.shaft_power_W = d.torque_Nm * f.omega_radps;
   out.induced_velocity_mps = d.induced_mps;
   if (d.thrust_N > 0.0 && out.shaft_power_W > 0.0) {
-    const double ideal = std::sqrt(std::pow(d.thrust_N, 3) /
+    const double ideal = std::sqrt(d.thrust_N * d.thrust_N * d.thrust_N /
                                    (2.0 * f.density_kgpm3 * kPi * blade.radius_m * blade.radius_m));
     out.figure_of_merit = ideal / out.shaft_power_W;
   }
@@ -118,7 +122,7 @@ RotorLoads airframe_loads(const Blade& blade, const DiscFlow& f, const DiscLoads
   out.validity.stalled = d.stalled > 1.0 / 3.0;
   const double u = d.induced_mps;
   const double xi = u == 0.0 ? 0.0 : f.climb_mps / u;
-  out.validity.vortex_ring = xi < 0.0 && xi > -2.0 && std::hypot(f.vx_mps, f.vy_mps) < std::abs(u);
+  out.validity.vortex_ring = xi < 0.0 && xi > -2.0 && in_plane_mps(f) < std::abs(u);
   return out;
 }
 
@@ -127,7 +131,7 @@ RingWake ring_wake(const Blade& blade, const Ring& ring, const DiscFlow& f) {
           .dr_m = ring.dr_m,
           .density_kgpm3 = f.density_kgpm3,
           .climb_mps = f.climb_mps,
-          .in_plane_mps = std::hypot(f.vx_mps, f.vy_mps),
+          .in_plane_mps = in_plane_mps(f),
           .blade_speed_mps = f.omega_radps * ring.r_m,
           .blade_count = blade.count,
           .tip_m = blade.radius_m,
@@ -138,8 +142,10 @@ RingWake ring_wake(const Blade& blade, const Ring& ring, const DiscFlow& f) {
 
 Harmonic wanted_tilt(const Blade& blade, const DiscFlow& f, const DiscLoads& d) {
   const Wake w = mean_wake(f, d);
-  const double skew = std::atan2(w.in_plane_mps, std::abs(w.along_mps) + 1e-9);
-  const double cos_skew = std::cos(skew);
+  const double along_mps = std::abs(w.along_mps) + 1e-9;
+  const double speed = std::sqrt(w.in_plane_mps * w.in_plane_mps + along_mps * along_mps);
+  const double cos_skew = along_mps / speed;
+  const double tan_half_skew = w.in_plane_mps / (speed + along_mps);
   const double wx = w.in_plane_mps > 1e-9 ? -f.vx_mps / w.in_plane_mps : 1.0;  // downstream
   const double wy = w.in_plane_mps > 1e-9 ? -f.vy_mps / w.in_plane_mps : 0.0;
   const double per_moment = 1.0 / std::max(f.density_kgpm3 * kPi * blade.radius_m * blade.radius_m *
@@ -147,7 +153,7 @@ Harmonic wanted_tilt(const Blade& blade, const DiscFlow& f, const DiscLoads& d) 
                                            1e-9);
   const double along = d.moment_c_Nm * wx + d.moment_s_Nm * wy;
   const double across = -d.moment_c_Nm * wy + d.moment_s_Nm * wx;
-  const double fore_aft = 15.0 * kPi / 32.0 * std::tan(0.5 * skew) * d.induced_mps +
+  const double fore_aft = 15.0 * kPi / 32.0 * tan_half_skew * d.induced_mps +
                           4.0 * cos_skew / (1.0 + cos_skew) * along * per_moment;
   const double lateral = 4.0 / (1.0 + cos_skew) * across * per_moment;
   const double most = 2.0 * std::abs(d.induced_mps) + 1.0;

@@ -21,6 +21,7 @@ constexpr double kPi = 3.14159265358979323846;
 constexpr int kLanes = 4;
 constexpr int kGroups = kAzimuths / kLanes;
 using Vec = double __attribute__((vector_size(sizeof(double) * kLanes)));
+using Float4 = float __attribute__((vector_size(sizeof(float) * kLanes)));
 using Int4 = int __attribute__((vector_size(sizeof(int) * kLanes)));
 
 struct Azimuths {
@@ -54,15 +55,15 @@ WHIRL_INLINE void angle_of(const Vec& y, const Vec& x, Vec& out) {
   const Vec small = ax > ay ? ay : ax;
   const Vec t = small / (big + 1e-300);
   const Vec z = t * t;
-  Vec p = z * -1.701170068078e-03 + 1.048764927387e-02;
-  p = p * z - 3.035186482312e-02;
-  p = p * z + 5.708955597024e-02;
-  p = p * z - 8.349724970809e-02;
-  p = p * z + 1.093234150224e-01;
-  p = p * z - 1.426001608302e-01;
-  p = p * z + 1.999807528117e-01;
-  p = p * z - 3.333327629198e-01;
-  p = p * z + 9.999999971605e-01;
+  // Estrin's order: pairs first, so that the terms do not wait for one another.
+  const Vec z2 = z * z;
+  const Vec z4 = z2 * z2;
+  const Vec low = (9.999999971605e-01 - z * 3.333327629198e-01) +
+                  (1.999807528117e-01 - z * 1.426001608302e-01) * z2;
+  const Vec middle = (1.093234150224e-01 - z * 8.349724970809e-02) +
+                     (5.708955597024e-02 - z * 3.035186482312e-02) * z2;
+  const Vec high = 1.048764927387e-02 - z * 1.701170068078e-03;
+  const Vec p = low + (middle + high * z4) * z4;
   Vec a = p * t;
   a = ay > ax ? 0.5 * kPi - a : a;
   a = x < zero ? kPi - a : a;
@@ -74,27 +75,42 @@ struct Coefficients {
   Vec cd;
 };
 
+// Two neighbouring cells of one level, wherever they lie: cl, cd, cl, cd.
+WHIRL_INLINE void pair_at(const SectionTable::Cell* cell, Vec& out) {
+  Float4 pair;
+  __builtin_memcpy(&pair, cell, sizeof pair);
+  out = __builtin_convertvector(pair, Vec);
+}
+
+// Float in the table, double from here on: a balance is sought to 1e-11.
 WHIRL_INLINE void look_up_four(const SectionTable& table, const ReynoldsSlot& slot,
                                const Vec& alpha, Coefficients& out) {
   const Vec at = alpha * (360.0 / kPi) + 360.0;
-  const Int4 index = __builtin_convertvector(at, Int4);
+  Int4 cell = __builtin_convertvector(at, Int4);
+  const Int4 last = Int4{} + (kAngles - 2);
+  cell = cell > last ? last : cell;
+  cell = cell < Int4{} ? Int4{} : cell;
+  const Vec w = at - __builtin_convertvector(cell, Vec);
   const auto* level = table.cells.data() + static_cast<std::ptrdiff_t>(slot.level) * kAngles;
-  Vec c[8];  // lift and drag at the four corners; float in the table, double from here on
-  Vec w;
+  Vec c[kLanes];  // mixed over Reynolds number; one lane's two cells each
   for (int i = 0; i < kLanes; ++i) {
-    const int cell = std::clamp(index[i], 0, kAngles - 2);
-    const auto* lo = level + cell;
-    const auto* hi = lo + kAngles;
-    w[i] = at[i] - cell;
-    c[0][i] = lo[0].cl, c[1][i] = lo[0].cd, c[2][i] = lo[1].cl, c[3][i] = lo[1].cd;
-    c[4][i] = hi[0].cl, c[5][i] = hi[0].cd, c[6][i] = hi[1].cl, c[7][i] = hi[1].cd;
+    const auto* here = level + cell[i];
+    Vec lo, hi;
+    pair_at(here, lo);
+    pair_at(here + kAngles, hi);
+    c[i] = lo + slot.weight * (hi - lo);
   }
-  const Vec cl0 = c[0] + w * (c[2] - c[0]);
-  const Vec cd0 = c[1] + w * (c[3] - c[1]);
-  const Vec cl1 = c[4] + w * (c[6] - c[4]);
-  const Vec cd1 = c[5] + w * (c[7] - c[5]);
-  out.cl = cl0 + slot.weight * (cl1 - cl0);
-  out.cd = cd0 + slot.weight * (cd1 - cd0);
+  // Turned over, so that a vector holds one quantity of four lanes.
+  const Vec here01 = __builtin_shufflevector(c[0], c[1], 0, 4, 1, 5);
+  const Vec here23 = __builtin_shufflevector(c[2], c[3], 0, 4, 1, 5);
+  const Vec next01 = __builtin_shufflevector(c[0], c[1], 2, 6, 3, 7);
+  const Vec next23 = __builtin_shufflevector(c[2], c[3], 2, 6, 3, 7);
+  const Vec cl0 = __builtin_shufflevector(here01, here23, 0, 1, 4, 5);
+  const Vec cd0 = __builtin_shufflevector(here01, here23, 2, 3, 6, 7);
+  const Vec cl1 = __builtin_shufflevector(next01, next23, 0, 1, 4, 5);
+  const Vec cd1 = __builtin_shufflevector(next01, next23, 2, 3, 6, 7);
+  out.cl = cl0 + w * (cl1 - cl0);
+  out.cd = cd0 + w * (cd1 - cd0);
 }
 
 struct Winds {

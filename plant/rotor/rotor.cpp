@@ -36,11 +36,15 @@ RotorLoads Rotor::step(const RotorConditions& conditions, double dt_s) {
   flow.tip_twist_rad = s.tip_twist_rad;
   const DiscLoads disc = disc_loads(*blade_, flow, s.u_mps, s.v_mps);
 
+  RingWake wake = ring_wake(*blade_, blade_->rings[0], flow);
   for (std::size_t i = 0; i < kRing_count; ++i) {
     const Ring& ring = blade_->rings[i];
     const RingLoads& loads = disc.rings[i];
-    const RingMomentum m = ring_momentum(
-        ring_wake(*blade_, ring, flow), {loads.thrust_N, loads.drive_N, loads.sin_phi}, s.u_mps[i]);
+    wake.r_m = ring.r_m;
+    wake.dr_m = ring.dr_m;
+    wake.blade_speed_mps = flow.omega_radps * ring.r_m;
+    const RingMomentum m =
+        ring_momentum(wake, {loads.thrust_N, loads.drive_N, loads.sin_phi}, s.u_mps[i]);
     const double mass =
         kApparent_mass * flow.density_kgpm3 * blade_->radius_m * 2.0 * kPi * ring.r_m * ring.dr_m;
     // Linearly implicit Euler: stable for any step, and its rest point is the balance itself.
