@@ -14,9 +14,14 @@ namespace whirl::flight {
 namespace {
 
 Result<std::shared_ptr<const plant::PolarFamily>> load_polar(const lua::Table& file,
+                                                             const std::string& place,
                                                              const std::string& name) {
   std::string path = file.sibling(name);
-  if (!std::filesystem::exists(path)) path = file.sibling("../../plant/data/polars/" + name);
+  if (!std::filesystem::exists(path)) path = std::string(WHIRL_POLARS) + "/" + name;
+  if (!std::filesystem::exists(path)) {
+    return Error{ErrorKind::bad_input, place, "polar '" + name + "' is nowhere to be found",
+                 "put it beside this file, or name one of plant/data/polars"};
+  }
   const auto text = lua::read_whole_file(path);
   if (!text) return text.error();
   auto polar = plant::read_polar(text.value(), path);
@@ -80,7 +85,7 @@ Result<std::shared_ptr<const plant::Blade>> read_propeller(const std::string& pa
   }
   if (const auto good = t.finish(); !good) return good.error();
   for (const auto& [r, name] : polars) {
-    auto polar = load_polar(t, name);
+    auto polar = load_polar(t, path, name);
     if (!polar) return polar.error();
     d.sections.push_back({r, polar.value()});
   }

@@ -1,5 +1,6 @@
 // A propeller as a Lua file (test_plans/propellers): stations, sections, and the polars it names.
-// Polars are looked for beside the file, then in plant/data/polars of the tree the file is in.
+// Polars are looked for beside the file, then in plant/data/polars of the house. A file that names
+// none gets sections by its thickness (plant/rotor/section_rules.hpp).
 #pragma once
 #include <memory>
 #include <string>
