@@ -28,8 +28,7 @@ inline std::shared_ptr<const PolarFamily> section(const std::string& name) {
 }
 
 inline std::shared_ptr<const Blade> hobbyking() {
-  static const auto blade =
-      make_blade(hobbyking_10x4_5(section("bw3"), section("e63"))).value();
+  static const auto blade = make_blade(hobbyking_10x4_5(section("bw3"), section("e63"))).value();
   return blade;
 }
 
