@@ -12,6 +12,7 @@ struct SteadyPoint {
   double esc_A = 0.0, esc_V = 0.0;      // bus current and voltage as the ESC reports them
   double meter_A = 0.0, meter_V = 0.0;  // the stand's own
   double thrust_N = 0.0, torque_Nm = 0.0;
+  double esc_A_half_width = 0.0;  // 95 % interval of the mean esc_A
 };
 
 struct Sample {  // of a transient
@@ -28,7 +29,14 @@ struct StandData {
   std::vector<SteadyPoint> still;  // several thrusts, no wind
   std::vector<SteadyPoint> blown;  // several thrusts at several winds
   std::vector<SteadyPoint> zero;   // about zero thrust
+  std::vector<SteadyPoint> updraft;
   std::vector<Sample> steps, sinusoid;
 };
+
+// The points in wind, and those of still air at such speeds: where the motor is loaded enough for its
+// winding's current to have no gaps, and Reynolds number is about the same.
+bool is_working(const StandData& data, double speed_radps);
+std::vector<SteadyPoint> working_points(const StandData& data);
+std::vector<SteadyPoint> working_still(const StandData& data);
 
 }  // namespace whirl::calibrate

@@ -1,5 +1,6 @@
 #include "harness/calibrate/identify.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace whirl::calibrate {
@@ -20,6 +21,29 @@ std::vector<double> ones(const std::vector<T>& points) {
 
 }  // namespace
 
+bool is_working(const StandData& data, double speed_radps) {
+  const auto slower = [](const SteadyPoint& a, const SteadyPoint& b) {
+    return a.speed_radps < b.speed_radps;
+  };
+  if (data.blown.empty()) return false;
+  const auto [low, high] = std::minmax_element(data.blown.begin(), data.blown.end(), slower);
+  return speed_radps > 0.95 * low->speed_radps && speed_radps < 1.05 * high->speed_radps;
+}
+
+std::vector<SteadyPoint> working_still(const StandData& data) {
+  std::vector<SteadyPoint> points;
+  for (const SteadyPoint& x : data.still) {
+    if (is_working(data, x.speed_radps)) points.push_back(x);
+  }
+  return points;
+}
+
+std::vector<SteadyPoint> working_points(const StandData& data) {
+  std::vector<SteadyPoint> points = working_still(data);
+  points.insert(points.end(), data.blown.begin(), data.blown.end());
+  return points;
+}
+
 Result<Done> physical(const Coefficient& c, double low) {
   if (c.value > low) return Done{};
   return Error{ErrorKind::bad_input, "fit of " + c.name,
@@ -27,44 +51,74 @@ Result<Done> physical(const Coefficient& c, double low) {
                "look at the data's page: is the stand wired and set as the file says?"};
 }
 
+// The image takes its zero anew whenever the motor rests; what the offset wanders by meanwhile is not
+// a constant, so the gain's line goes through that zero.
 Result<SenseFit> fit_sense(const StandData& data) {
-  std::vector<SteadyPoint> points = data.rest;
-  points.insert(points.end(), data.still.begin(), data.still.end());
-  Problem p{"current sense",
-            "current told by the ESC",
-            "A",
-            column(points, [](const auto& x) { return x.esc_A; }),
-            {{"offset", "A", ones(points)},
-             {"slope", "", column(points, [](const auto& x) { return x.meter_A; })}}};
+  const Problem p{"current sense",
+                  "current told by the ESC",
+                  "A",
+                  column(data.still, [](const auto& x) { return x.esc_A; }),
+                  {{"slope", "", column(data.still, [](const auto& x) { return x.meter_A; })}}};
   auto fit = solve(p);
   if (!fit) return fit.error();
-  SenseFit sense{inverse(fit.value(), "slope", "gain", ""), fit.value()["offset"], fit.value()};
-  if (auto good = physical(sense.gain, 0.0); !good) return good.error();
-  return sense;
+  if (data.rest.empty()) {
+    return Error{ErrorKind::bad_input, "fit of current sense", "no point is at rest", ""};
+  }
+  const Coefficient offset{"offset", "A", data.rest.front().esc_A - data.rest.front().meter_A, 0.0,
+                           data.rest.front().esc_A_half_width};
+  return SenseFit{inverse(fit.value(), "slope", "gain", ""), offset, fit.value()};
 }
 
-Result<StillAirFit> fit_still_air(const StandData& data) {
-  const auto& points = data.still;
-  const auto w = column(points, [](const auto& x) { return x.speed_radps; });
-  const auto w2 = column(points, [](const auto& x) { return x.speed_radps * x.speed_radps; });
-  auto thrust = solve({"static thrust",
-                       "thrust",
-                       "N",
-                       column(points, [](const auto& x) { return x.thrust_N; }),
-                       {{"a2", "N s2/rad2", w2}, {"a1", "N s/rad", w}}});
+// Errors count as shares, those outside the working speeds a fifth.
+Problem map_problem(const StandData& data, const std::string& name, const std::string& unit,
+                    std::vector<Column> columns, const std::vector<int>& powers,
+                    const std::vector<double>& y) {
+  Problem p{name, name, unit, y, std::move(columns)};
+  for (std::size_t i = 0; i < y.size(); ++i) {
+    const double w = data.still[i].speed_radps;
+    for (std::size_t k = 0; k < powers.size(); ++k) {
+      p.columns[k].x.push_back(std::pow(w, powers[k]));
+    }
+    p.weights.push_back((is_working(data, w) ? 1.0 : 0.2) / y[i]);
+  }
+  return p;
+}
+
+Result<StillAirFit> fit_still_air(const StandData& data, const MotorFit& motor) {
+  const auto thrust_N = column(data.still, [](const auto& x) { return x.thrust_N; });
+  // By the ESC's own power balance where that holds, by the load cell elsewhere.
+  const auto torque_Nm = column(data.still, [&](const auto& x) {
+    return is_working(data, x.speed_radps) ? motor.power_W(x) / x.speed_radps : x.torque_Nm;
+  });
+  auto thrust =
+      solve(map_problem(data, "static thrust", "N",
+                        {{"a2", "N s2/rad2", {}}, {"a1", "N s/rad", {}}, {"a3", "N s3/rad3", {}}},
+                        {2, 1, 3}, thrust_N));
   if (!thrust) return thrust.error();
-  auto torque = solve({"static torque",
-                       "torque",
-                       "N m",
-                       column(points, [](const auto& x) { return x.torque_Nm; }),
-                       {{"q2", "N m s2/rad2", w2}, {"q1", "N m s/rad", w}}});
+  auto torque = solve(
+      map_problem(data, "static torque", "N m",
+                  {{"q2", "N m s2/rad2", {}}, {"q3", "N m s3/rad3", {}}, {"q4", "N m s4/rad4", {}}},
+                  {2, 3, 4}, torque_Nm));
   if (!torque) return torque.error();
-  StillAirFit fit{thrust.value()["a2"], thrust.value()["a1"], torque.value()["q2"],
-                  torque.value()["q1"], thrust.value(),       torque.value()};
-  for (const Coefficient* c : {&fit.a2, &fit.q2}) {
-    if (auto good = physical(*c, 0.0); !good) return good.error();
+  StillAirFit fit;
+  fit.thrust = thrust.value();
+  fit.torque = torque.value();
+  fit.a = fit.thrust.coefficients;
+  fit.q = fit.torque.coefficients;
+  for (const SteadyPoint& x : data.updraft) {
+    const double w = x.speed_radps;
+    const double share = motor.power_W(x) / (w * w * w * fit.CP(w));
+    if (fit.updraft_share == 0.0 || share < fit.updraft_share) fit.updraft_share = share;
   }
   return fit;
+}
+
+double StillAirFit::CT(double w) const {
+  return a[0].value + a[1].value / w + a[2].value * w;
+}
+
+double StillAirFit::CP(double w) const {
+  return q[0].value + q[1].value * w + q[2].value * w * w;
 }
 
 }  // namespace whirl::calibrate

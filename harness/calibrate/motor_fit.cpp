@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "firmware/esc/core/power_balance.hpp"
 #include "harness/calibrate/identify.hpp"
 
 namespace whirl::calibrate {
@@ -16,13 +17,6 @@ Moment moment(const Sample& s) {
   return {s.duty * s.bus_V, s.bus_A / s.duty, s.speed_radps};
 }
 
-std::vector<SteadyPoint> turning(const StandData& data) {
-  std::vector<SteadyPoint> points = data.still;
-  points.insert(points.end(), data.blown.begin(), data.blown.end());
-  points.insert(points.end(), data.zero.begin(), data.zero.end());
-  return points;
-}
-
 Problem line_problem(const std::vector<SteadyPoint>& points) {
   Problem p{"torque constant",
             "winding current",
@@ -37,18 +31,20 @@ Problem line_problem(const std::vector<SteadyPoint>& points) {
   return p;
 }
 
-Problem map_problem(const std::vector<SteadyPoint>& points) {
-  Problem p{"torque map",
-            "shaft torque",
-            "N m",
+// What of the electrical power does not reach the air. A share of power counts alike at all powers.
+Problem loss_problem(const std::vector<SteadyPoint>& points) {
+  Problem p{"losses",
+            "electrical less shaft power",
+            "W",
             {},
-            {{"kq0", "N m/A", {}}, {"kq1", "N m/A2", {}}, {"drag", "N m", {}}}};
+            {{"loss_ohm", "ohm", {}}, {"loss_volt", "V", {}}, {"drag", "N m", {}}}};
   for (const SteadyPoint& x : points) {
-    const double amps = x.meter_A / x.duty;
-    p.y.push_back(x.torque_Nm);
-    p.columns[0].x.push_back(amps);
-    p.columns[1].x.push_back(amps * amps);
-    p.columns[2].x.push_back(-1.0);
+    const double amps = x.meter_A / x.duty, shaft_W = x.torque_Nm * x.speed_radps;
+    p.y.push_back(x.esc_V * x.meter_A - shaft_W);
+    p.columns[0].x.push_back(amps * amps);
+    p.columns[1].x.push_back(amps);
+    p.columns[2].x.push_back(x.speed_radps);
+    p.weights.push_back(1.0 / shaft_W);
   }
   return p;
 }
@@ -71,6 +67,10 @@ Problem voltage_problem(const std::vector<Sample>& samples) {
   return p;
 }
 
+double motor_torque_Nm(const MotorFit& motor, const Moment& m) {
+  return motor.power_W(m.voltage_V, m.current_A, m.speed_radps) / m.speed_radps;
+}
+
 // The motor's torque over a window of time: what the rotor gained and what the air took.
 void add_windows(Problem& p, const MotorFit& motor, const std::vector<Sample>& samples) {
   for (std::size_t i = 0; i + kWindow < samples.size(); i += kWindow) {
@@ -78,7 +78,7 @@ void add_windows(Problem& p, const MotorFit& motor, const std::vector<Sample>& s
     for (std::size_t k = i; k < i + kWindow; ++k) {
       const Moment a = moment(samples[k]), b = moment(samples[k + 1]);
       const double half_s = 0.5 * (samples[k + 1].t_s - samples[k].t_s);
-      impulse += half_s * (motor.torque_Nm(a.current_A) + motor.torque_Nm(b.current_A));
+      impulse += half_s * (motor_torque_Nm(motor, a) + motor_torque_Nm(motor, b));
       square += half_s * (a.speed_radps * a.speed_radps + b.speed_radps * b.speed_radps);
     }
     p.y.push_back(impulse);
@@ -104,7 +104,7 @@ Problem impulse_problem(const StandData& data, const SenseFit& sense, const Moto
 
 Result<Done> check_duty(const StandData& data) {
   const auto wrong = [](const auto& x) { return !(x.duty >= kShortest_duty); };
-  const auto points = turning(data);
+  const auto points = working_points(data);
   if (std::none_of(points.begin(), points.end(), wrong) &&
       std::none_of(data.steps.begin(), data.steps.end(), wrong) &&
       std::none_of(data.sinusoid.begin(), data.sinusoid.end(), wrong)) {
@@ -116,13 +116,23 @@ Result<Done> check_duty(const StandData& data) {
 
 }  // namespace
 
+double MotorFit::power_W(double voltage_V, double current_A, double speed_radps) const {
+  const auto f = [](double x) { return static_cast<float>(x); };
+  return fw::esc::aerodynamic_power_W({f(loss_ohm.value), f(loss_V.value), f(drag.value)},
+                                      f(voltage_V), f(current_A), f(speed_radps));
+}
+
+double MotorFit::power_W(const SteadyPoint& x) const {
+  return power_W(x.esc_V * x.duty, x.meter_A / x.duty, x.speed_radps);
+}
+
 Result<MotorFit> fit_motor(const StandData& data, const SenseFit& sense) {
   if (auto good = check_duty(data); !good) return good.error();
-  const std::vector<SteadyPoint> points = turning(data);
+  const std::vector<SteadyPoint> points = working_points(data);
   auto line = solve(line_problem(points));
   if (!line) return line.error();
-  auto map = solve(map_problem(points));
-  if (!map) return map.error();
+  auto losses = solve(loss_problem(points));
+  if (!losses) return losses.error();
   std::vector<Sample> samples = data.sinusoid;
   for (Sample& s : samples) s.bus_A = sense.true_A(s.bus_A);
   for (const SteadyPoint& x : data.still) {
@@ -132,12 +142,12 @@ Result<MotorFit> fit_motor(const StandData& data, const SenseFit& sense) {
   if (!voltage) return voltage.error();
 
   MotorFit motor;
-  motor.map = map.value();
+  motor.losses = losses.value();
   motor.torque = line.value();
   motor.voltage = voltage.value();
-  motor.kq0 = motor.map["kq0"];
-  motor.kq1 = motor.map["kq1"];
-  motor.drag = motor.map["drag"];
+  motor.loss_ohm = motor.losses["loss_ohm"];
+  motor.loss_V = motor.losses["loss_volt"];
+  motor.drag = motor.losses["drag"];
   motor.torque_constant = inverse(motor.torque, "per torque", "kt", "N m/A");
   motor.no_load_current = motor.torque["no_load"];
   motor.back_emf = motor.voltage["ke"];
@@ -147,10 +157,6 @@ Result<MotorFit> fit_motor(const StandData& data, const SenseFit& sense) {
   if (!impulse) return impulse.error();
   motor.impulse = impulse.value();
   motor.inertia = motor.impulse["inertia"];
-  for (const Coefficient* c :
-       {&motor.torque_constant, &motor.back_emf, &motor.resistance, &motor.inertia}) {
-    if (auto good = physical(*c, 0.0); !good) return good.error();
-  }
   return motor;
 }
 

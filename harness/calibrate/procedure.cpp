@@ -1,5 +1,6 @@
 #include "harness/calibrate/procedure.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <numbers>
@@ -34,7 +35,8 @@ class Mean {  // of what the instruments and the ESC say
   void add(const io::EscSample& told) {
     duty_ += told.duty;
     speed_ += told.speed_radps;
-    current_ += told.raw_current_A - told.zero_current_A;
+    current_ += told.bus_current_A;
+    square_ += static_cast<double>(told.bus_current_A) * told.bus_current_A;
     voltage_ += told.bus_voltage_V;
     ++tells_;
   }
@@ -48,12 +50,18 @@ class Mean {  // of what the instruments and the ESC say
             sum_.current_A / reads_,
             sum_.voltage_V / reads_,
             sum_.thrust_N / reads_,
-            sum_.torque_Nm / reads_};
+            sum_.torque_Nm / reads_,
+            1.96 * spread_A() / std::sqrt(tells_)};
   }
 
  private:
+  double spread_A() const {
+    const double mean = current_ / tells_;
+    return std::sqrt(std::max(0.0, square_ / tells_ - mean * mean));
+  }
+
   Instruments sum_;
-  double duty_ = 0.0, speed_ = 0.0, current_ = 0.0, voltage_ = 0.0;
+  double duty_ = 0.0, speed_ = 0.0, current_ = 0.0, square_ = 0.0, voltage_ = 0.0;
   double reads_ = 0.0, tells_ = 0.0;
 };
 
@@ -68,8 +76,8 @@ class Procedure {
   Result<StandData> go() {
     for (const auto step :
          {&Procedure::power_up, &Procedure::rest, &Procedure::start_motor, &Procedure::still,
-          &Procedure::steps, &Procedure::sinusoid, &Procedure::blown, &Procedure::zero,
-          &Procedure::stop_motor, &Procedure::rest}) {
+          &Procedure::steps, &Procedure::sinusoid, &Procedure::blown, &Procedure::updraft,
+          &Procedure::zero, &Procedure::stop_motor, &Procedure::rest}) {
       if (auto good = (this->*step)(); !good) return good.error();
     }
     return std::move(data_);
@@ -81,6 +89,9 @@ class Procedure {
     if (auto good = bench_.run(kBoot_ms); !good) return good;
     if (auto good = bench_.command("{ silence = true }"); !good) return good;
     if (auto good = bench_.must("watch 0"); !good) return good;
+    for (const char* line : {"set gain 1", "set offset 0"}) {  // whatever its flash may hold
+      if (auto good = bench_.must(line); !good) return good;
+    }
     if (auto good = bench_.must("stream " + number(kStream_Hz)); !good) return good;
     return bench_.run(setup_.warm_up_ms);
   }
@@ -125,6 +136,15 @@ class Procedure {
       }
     }
     return Done{};
+  }
+
+  Result<Done> updraft() {
+    if (!(setup_.updraft_mps > 0.0)) return Done{};
+    tell_("updraft " + number(setup_.updraft_mps) + " m/s");
+    if (auto good = bench_.blow(-setup_.updraft_mps); !good) return good;
+    const double duty = setup_.blown[setup_.blown.size() / 2];
+    if (auto good = turn(duty); !good) return good;
+    return measure(-setup_.updraft_mps, data_.updraft, true);
   }
 
   // The wind is raised until thrust changes its sign; two more points lie beyond.
@@ -175,8 +195,8 @@ class Procedure {
   Result<Done> follow(std::int64_t duration_ms, std::int64_t every_ms, std::vector<Sample>& into,
                       Law law) {
     const auto sink = [&](const io::EscSample& told) {
-      into.push_back({1e-3 * told.tick, told.duty, told.speed_radps,
-                      told.raw_current_A - told.zero_current_A, told.bus_voltage_V});
+      into.push_back(
+          {1e-3 * told.tick, told.duty, told.speed_radps, told.bus_current_A, told.bus_voltage_V});
     };
     return listen(sink, true, [&]() -> Result<Done> {
       for (std::int64_t ms = 0; ms < duration_ms; ms += every_ms) {

@@ -4,6 +4,7 @@
 //   Still    rising duties in still air: sense's gain, motor, static maps
 //   Transients  duty in steps and as a sinusoid: back-EMF against resistance, inertia
 //   Blown    several duties in each wind: the rotor's power and thrust over inflow
+//   Updraft  how much less than in still air the rotor takes: power alone does not tell up from down
 //   Zero     wind raised until the load cell reads no thrust, and points about it: profile power
 //   Source   [Bangura 2017, 3.3, 3.4, 5.3.3]
 #pragma once

@@ -16,7 +16,7 @@ std::string format(const char* form, T... values) {
 }
 
 struct Setting {
-  const char* name;
+  std::string name;
   double value;
 };
 
@@ -24,14 +24,10 @@ std::vector<Setting> settings(const Calibration& c) {
   std::vector<Setting> all = {
       {"gain", c.sense.gain.value},
       {"offset", c.sense.offset.value},
-      {"kt", c.motor.back_emf.value},
-      {"no_load", c.motor.no_load_current.value},
-      {"resistance", c.motor.resistance.value},
-      {"overlap", c.motor.overlap.value},
+      {"loss_ohm", c.motor.loss_ohm.value},
+      {"loss_volt", c.motor.loss_V.value},
+      {"drag", c.motor.drag.value},
       {"inertia", c.motor.inertia.value},
-      {"a2", c.still.a2.value},
-      {"a1", c.still.a1.value},
-      {"q2", c.still.q2.value},
       {"c0", c.rotor.c0.value},
       {"c1", c.rotor.c1.value},
       {"c2", c.rotor.c2.value},
@@ -40,6 +36,16 @@ std::vector<Setting> settings(const Calibration& c) {
       {"d0", c.rotor.d0.value},
       {"d1", c.rotor.d1.value},
   };
+  if (c.tell_motor) {
+    all.push_back({"kt", c.motor.back_emf.value});
+    all.push_back({"no_load", c.motor.no_load_current.value});
+    all.push_back({"resistance", c.motor.resistance.value});
+    all.push_back({"overlap", c.motor.overlap.value});
+  }
+  for (const auto& map : {c.still.a, c.still.q}) {
+    for (const Coefficient& x : map) all.push_back({x.name, x.value});
+  }
+  if (c.still.updraft_share > 0.0) all.push_back({"shared", c.still.updraft_share});
   return all;
 }
 
@@ -69,24 +75,34 @@ Result<Calibration> identify(StandData data) {
   if (!sense) return sense.error();
   auto motor = fit_motor(data, sense.value());
   if (!motor) return motor.error();
-  auto still = fit_still_air(data);
+  auto still = fit_still_air(data, motor.value());
   if (!still) return still.error();
   auto rotor = fit_rotor(data, motor.value(), still.value());
   if (!rotor) return rotor.error();
   return Calibration{std::move(data), sense.value(), motor.value(), still.value(), rotor.value()};
 }
 
+Result<Done> physical(const Calibration& c) {
+  for (const Coefficient* x :
+       {&c.sense.gain, &c.motor.torque_constant, &c.motor.back_emf, &c.motor.resistance,
+        &c.motor.inertia, &c.still.a[0], &c.still.q[0]}) {
+    if (auto good = physical(*x, 0.0); !good) return good;
+  }
+  return physical(c.rotor, c.data.radius_m);
+}
+
 std::vector<std::string> lines(const Calibration& c) {
   std::vector<std::string> out;
-  for (const Setting& s : settings(c)) out.push_back(format("set %s %.7g", s.name, s.value));
+  for (const Setting& s : settings(c))
+    out.push_back(format("set %s %.7g", s.name.c_str(), s.value));
   return out;
 }
 
 std::string lua_file(const Calibration& c, const std::string& made_by) {
-  std::string text =
-      "-- Made by: " + made_by + "\n-- What the ESC is told over its serial line.\nreturn {\n";
+  std::string text = "-- Made by: " + made_by +
+                     "\n-- What the ESC is told over its serial line, SI.\ncalibration = {\n";
   for (const std::string& line : lines(c)) text += "  \"" + line + "\",\n";
-  return text + "}\n";
+  return text + "}\nreturn { kind = \"esc_calibration\", set = calibration }\n";
 }
 
 std::string table(const Calibration& c) {
@@ -95,12 +111,16 @@ std::string table(const Calibration& c) {
       block(c.motor.torque, {c.motor.torque_constant, c.motor.no_load_current}) +
       block(c.motor.voltage, {c.motor.back_emf, c.motor.resistance, c.motor.overlap});
   text += block(c.motor.impulse, {c.motor.inertia}) +
-          block(c.motor.map, {c.motor.kq0, c.motor.kq1, c.motor.drag});
-  text += block(c.still.thrust, {c.still.a2, c.still.a1}) +
-          block(c.still.torque, {c.still.q2, c.still.q1}) + block(c.rotor.zero, {c.rotor.c3}) +
+          block(c.motor.losses, {c.motor.loss_ohm, c.motor.loss_V, c.motor.drag});
+  text += block(c.still.thrust, c.still.a) + block(c.still.torque, c.still.q) +
+          block(c.rotor.zero, {c.rotor.c3}) +
           block(c.rotor.power, {c.rotor.c0, c.rotor.d0, c.rotor.d1}) +
           block(c.rotor.line, {c.rotor.c1, c.rotor.c2}) +
           format("  %-14s %13.5g  computed\n", "c4", c.rotor.c4);
+  if (c.still.updraft_share > 0.0) {
+    text += format("  %-14s %13.5g  of still air's power in an updraft\n", "shared",
+                   c.still.updraft_share);
+  }
   text += "thrust found back from power:\n    wind    rpm   thrust   kappa   error\n";
   const std::vector<double> errors = found_back(c.rotor);
   for (std::size_t i = 0; i < errors.size(); ++i) {
@@ -114,13 +134,15 @@ std::string table(const Calibration& c) {
 }
 
 std::vector<double> found_back(const RotorFit& rotor) {
+  const fw::esc::ThrustModel model = model_of(rotor);
+  const fw::esc::RotorPoint still = fw::esc::at_inflow(model, 0.0f);
   std::vector<double> errors;
   for (const RotorPoint& p : rotor.points) {
-    fw::esc::ThrustSolver solver(model_of(rotor));
-    const fw::esc::ThrustEstimate e = solver.solve(static_cast<float>(p.CP));
-    errors.push_back(e.status == fw::esc::Estimate::converged
-                         ? static_cast<double>(e.CT) / p.CT - 1.0
-                         : std::nan(""));
+    fw::esc::ThrustSolver solver(model);
+    const double ratio = p.CP / rotor.still_CP;  // as ThrustEstimator does it
+    const fw::esc::ThrustEstimate e = solver.solve(static_cast<float>(ratio) * still.CP);
+    const double CT = static_cast<double>(e.CT / still.CT) * rotor.still_CT;
+    errors.push_back(e.status == fw::esc::Estimate::converged ? CT / p.CT - 1.0 : std::nan(""));
   }
   return errors;
 }

@@ -15,9 +15,14 @@ struct Calibration {
   MotorFit motor;
   StillAirFit still;
   RotorFit rotor;
+  // Also kt, no_load, resistance, overlap. They are apparent, of bus current over duty, which is up to a
+  // tenth less than the winding's: the ESC's bound on the winding's current would let that much more pass.
+  bool tell_motor = false;
 };
 
 Result<Calibration> identify(StandData data);
+// What must hold before an ESC is told: see physical() of each fit.
+Result<Done> physical(const Calibration& calibration);
 
 // "set kt 0.01005", in the ESC's own words and units.
 std::vector<std::string> lines(const Calibration& calibration);

@@ -58,25 +58,22 @@ std::vector<double> column(const std::vector<T>& points, F value) {
 std::vector<Chart> charts(const Calibration& c) {
   std::vector<Chart> all;
   const auto rpm = [](const auto& p) { return p.speed_radps * 9.549297; };
-  std::vector<SteadyPoint> sensed = c.data.rest, turning = c.data.still;
-  sensed.insert(sensed.end(), c.data.still.begin(), c.data.still.end());
-  turning.insert(turning.end(), c.data.blown.begin(), c.data.blown.end());
-  turning.insert(turning.end(), c.data.zero.begin(), c.data.zero.end());
+  const std::vector<SteadyPoint> working = working_points(c.data);
   add_fit(all, "Current sense", c.sense.fit, {c.sense.gain, c.sense.offset},
           "bus current by the stand's ammeter / A",
-          column(sensed, [](const auto& p) { return p.meter_A; }));
+          column(c.data.still, [](const auto& p) { return p.meter_A; }));
   add_fit(all, "Motor", c.motor.torque, {c.motor.torque_constant, c.motor.no_load_current},
           "torque by the load cell / (N m)",
-          column(turning, [](const auto& p) { return p.torque_Nm; }));
+          column(working, [](const auto& p) { return p.torque_Nm; }));
+  add_fit(all, "Motor", c.motor.losses, {c.motor.loss_ohm, c.motor.loss_V, c.motor.drag},
+          "speed / rpm", column(working, rpm));
   std::vector<double> x = column(c.data.sinusoid, rpm);
-  for (const SteadyPoint& p : turning) x.push_back(rpm(p));
+  for (const SteadyPoint& p : c.data.still) x.push_back(rpm(p));
   add_fit(all, "Motor", c.motor.voltage, {c.motor.back_emf, c.motor.resistance, c.motor.overlap},
           "speed / rpm", x);
   const auto still = column(c.data.still, rpm);
-  add_fit(all, "Propeller in still air", c.still.thrust, {c.still.a2, c.still.a1}, "speed / rpm",
-          still);
-  add_fit(all, "Propeller in still air", c.still.torque, {c.still.q2, c.still.q1}, "speed / rpm",
-          still);
+  add_fit(all, "Propeller in still air", c.still.thrust, c.still.a, "speed / rpm", still);
+  add_fit(all, "Propeller in still air", c.still.torque, c.still.q, "speed / rpm", still);
   const auto lambda = column(c.rotor.points, [](const auto& p) { return p.li + p.ls; });
   add_fit(all, "Propeller in wind", c.rotor.power, {c.rotor.c0, c.rotor.d0, c.rotor.d1},
           "inflow ratio lambda", lambda);

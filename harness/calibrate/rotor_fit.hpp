@@ -5,11 +5,12 @@
 //            CT = T/w^2, CP = P/w^3, inflow ratios over w R with the blade's R; c4 = 2 rho A R^2
 //   Scale    CT and CP of a point are over those of still air at its own speed (the ESC's maps), times
 //            those at one middle speed: Reynolds number is the maps' matter, inflow is the model's
-//   Power    Kt (i - i0) w as the ESC has it, i = bus current / duty, but with the stand's ammeter: the
+//   Power    by the ESC's own power balance (firmware/esc/core/power_balance.hpp), but with the stand's ammeter: the
 //            ESC's own current wanders by more than inflow changes it
-//   Order    c3 where thrust is zero; then c0, d0, d1 in one regression on
-//            CP - c3 = c0 CT ls + c0 d0 CT li + c0 d1 CT^2 li with li of momentum theory; then c1, c2
-//            by a line of CT over lambda
+//   Order    c3 from the torque where thrust is zero; c1, c2 by a line of CT over lambda through still
+//            air; then c0, d0, d1 in one regression on CP - c3 = c0 CT ls + c0 d0 CT li + c0 d1 CT^2 li
+//            with ls where that line has the measured CT: what the line misses of inflow does not
+//            spoil the way from power to thrust. (The thesis turns the last two about.)
 //   Source   [Bangura 2017, 5.3.3]
 #pragma once
 #include "harness/calibrate/identify.hpp"
@@ -19,13 +20,14 @@ namespace whirl::calibrate {
 struct RotorPoint {
   double wind_mps, speed_radps, thrust_N;
   double CT, CP;  // scaled
-  double ls, li;
-  double kappa;  // what this point alone says, given c0 and c3
+  double ls, li;  // as blown, and induced by the measured thrust
+  double kappa;   // what this point alone says, given c0 and c3
 };
 
 struct RotorFit {
   Coefficient c0, c1, c2, c3, d0, d1;
-  double c4 = 0.0, middle_radps = 0.0;
+  double c4 = 0.0;
+  double middle_radps = 0.0, still_CT = 0.0, still_CP = 0.0;  // what points are scaled to
   Fit zero, power, line;
   std::vector<RotorPoint> points;
 };
@@ -34,5 +36,8 @@ struct RotorFit {
 double induced_inflow(double CT, double ls, double c4);
 
 Result<RotorFit> fit_rotor(const StandData& data, const MotorFit& motor, const StillAirFit& still);
+
+// A bad_input error unless coefficients are positive and no point needs less than ideal power.
+Result<Done> physical(const RotorFit& fit, double radius_m);
 
 }  // namespace whirl::calibrate

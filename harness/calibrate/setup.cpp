@@ -6,9 +6,10 @@ namespace whirl::calibrate {
 namespace {
 
 constexpr std::int64_t kMs_ns = 1'000'000;
-const std::vector<double> kStill = {0.16, 0.20, 0.25, 0.30, 0.35, 0.40, 0.45, 0.50, 0.55, 0.60};
-const std::vector<double> kBlown = {0.32, 0.38, 0.44, 0.50, 0.56};
-const std::vector<double> kWinds_mps = {1.5, 2.3, 3.3, 4.2};
+const std::vector<double> kStill = {0.16, 0.20, 0.25, 0.30, 0.33, 0.36,
+                                    0.39, 0.42, 0.45, 0.48, 0.52, 0.60};
+const std::vector<double> kBlown = {0.33, 0.38, 0.43, 0.48};
+const std::vector<double> kWinds_mps = {0.8, 1.5, 2.3, 3.3, 4.2, 5.0};
 
 std::vector<double> duties(const lua::Table& t, const char* key, std::size_t fewest) {
   auto values = t.quantities(key, Dimension::ratio, lua::between(0.05, 1.0));
@@ -44,9 +45,12 @@ Result<Setup> read_setup(const std::string& path) {
   }
   s.winds_mps = t.has("winds") ? t.quantities("winds", Dimension::speed, lua::between(0.1, 15.0))
                                : kWinds_mps;
+  s.updraft_mps =
+      t.quantity_or("updraft", Dimension::speed, s.updraft_mps, lua::between(0.0, 10.0));
   s.warm_up_ms = t.duration_ns_or("warm_up", 0) / kMs_ns;
   s.settle_ms = t.duration_ns_or("settle", s.settle_ms * kMs_ns) / kMs_ns;
   s.measure_ms = t.duration_ns_or("measure", s.measure_ms * kMs_ns) / kMs_ns;
+  s.tell_motor = t.flag_or("tell_motor", false);
   s.seed = static_cast<std::uint64_t>(t.integer_or("seed", 1, 0));
   if (const auto good = t.finish_except({"stand"}); !good) return good.error();
   return s;

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "harness/calibrate/data_file.hpp"
 #include "harness/calibrate/procedure.hpp"
 #include "harness/calibrate/report.hpp"
 #include "harness/cli/console.hpp"
@@ -25,30 +26,45 @@ std::string named(const std::string& written, const std::string& folder,
   return written.find('/') != std::string::npos ? written : folder + "/" + written + extension;
 }
 
-// Measures, concludes, and stores the constants in the ESC, all in one power-up.
-Result<Calibration> calibrate_esc(const calibrate::Setup& setup, const Composition& composition) {
+struct Parts {
+  plan::Plan plan;
+  Board board;
+  std::unique_ptr<World> world;
+  std::unique_ptr<Target> target;
+};
+
+Result<Done> compose(const calibrate::Setup& setup, const Composition& composition, Parts& parts) {
   const std::string& root = composition.root;
   auto board = read_board(named(setup.board, root + "/test_plans/boards", ".lua"));
   if (!board) return board.error();
-  board.value().watch.clear();
-  plan::Plan plan;
-  plan.name = "calibration";
-  plan.file = plan.place = setup.file;
-  plan.stand = setup.stand;
+  parts.board = board.value();
+  parts.board.watch.clear();
+  parts.plan.name = "calibration";
+  parts.plan.file = parts.plan.place = setup.file;
+  parts.plan.stand = setup.stand;
   const std::string image = named(setup.image, root + "/build/firmware", ".elf");
   if (!fs::is_regular_file(image)) {
     return Error{ErrorKind::bad_input, setup.file, "no image at " + image, "./whirl builds it"};
   }
-  const Setup parts{plan,       board.value(),
-                    root,       image,
-                    "",         board_json(board.value(), {.image = image, .seed = setup.seed}),
-                    setup.seed, 0};
-  auto world = composition.world(parts);
+  const Setup all{parts.plan, parts.board,
+                  root,       image,
+                  "",         board_json(parts.board, {.image = image, .seed = setup.seed}),
+                  setup.seed, 0};
+  auto world = composition.world(all);
   if (!world) return world.error();
-  auto target = composition.target(parts);
+  auto target = composition.target(all);
   if (!target) return target.error();
+  parts.world = std::move(world.value());
+  parts.target = std::move(target.value());
+  return Done{};
+}
 
-  calibrate::Bench bench(*world.value(), *target.value(), setup.serial);
+// Measures, concludes, and stores the constants in the ESC, all in one power-up.
+Result<Calibration> on_the_stand(const calibrate::Setup& setup, const Composition& composition,
+                                 const std::string& data_path) {
+  Parts parts;
+  if (auto good = compose(setup, composition, parts); !good) return good.error();
+  calibrate::Bench bench(*parts.world, *parts.target, setup.serial);
   if (auto started = bench.start(); !started) return started.error();
   const auto tell = [&](const std::string& words) {
     std::fprintf(stderr, "%7.1f s  %s\n", static_cast<double>(bench.now_ns()) * 1e-9,
@@ -56,11 +72,20 @@ Result<Calibration> calibrate_esc(const calibrate::Setup& setup, const Compositi
   };
   auto data = measure_all(bench, setup, tell);
   if (!data) return data.error();
+  const auto kept = results::write_text(data_path, data_text(data.value()));
+  if (!kept) return kept.error();
   auto result = calibrate::identify(std::move(data.value()));
-  if (!result) return result.error();
+  if (result) result.value().tell_motor = setup.tell_motor;
+  if (!result || !physical(result.value())) return result;
   tell("storing the constants in the ESC");
   if (auto stored = store(bench, lines(result.value())); !stored) return stored.error();
   return result;
+}
+
+Result<Calibration> again(const std::string& data_path) {
+  auto data = calibrate::read_data(data_path);
+  if (!data) return data.error();
+  return calibrate::identify(std::move(data.value()));
 }
 
 }  // namespace
@@ -68,21 +93,25 @@ Result<Calibration> calibrate_esc(const calibrate::Setup& setup, const Compositi
 int calibrate_esc_command(const CalibrateOptions& options, const Composition& composition) {
   const auto setup = calibrate::read_setup(options.file);
   if (!setup) return complain(setup.error());
-  const auto result = calibrate_esc(setup.value(), composition);
-  if (!result) return complain(result.error());
-  const Calibration& c = result.value();
-
   const std::string name = fs::path(options.file).stem();
   const fs::path folder = fs::path(composition.results) / "calibrations" / name;
   std::error_code status;
   fs::create_directories(folder, status);
+  const std::string data = (folder / "data.txt").string();
+  auto result =
+      options.data.empty() ? on_the_stand(setup.value(), composition, data) : again(options.data);
+  if (!result) return complain(result.error());
+  result.value().tell_motor = setup.value().tell_motor;
+  const Calibration& c = result.value();
+
   const std::string constants = lua_file(c, options.command);
   const std::string page = (folder / "index.html").string();
   const std::string about = "Calibration of an ESC on the stand: " + options.command;
   std::vector<std::pair<std::string, std::string>> files = {
       {page, results::charts_html(name, about, charts(c))},
       {(folder / "constants.lua").string(), constants}};
-  if (!options.write.empty()) files.emplace_back(options.write, constants);
+  const auto believed = physical(c);
+  if (believed.ok() && !options.write.empty()) files.emplace_back(options.write, constants);
   for (const auto& [path, text] : files) {
     if (const auto written = results::write_text(path, text); !written) {
       return complain(written.error());
@@ -90,6 +119,7 @@ int calibrate_esc_command(const CalibrateOptions& options, const Composition& co
   }
   std::printf("%s", table(c).c_str());
   for (const auto& [path, text] : files) std::printf("%s\n", shown_path(path).c_str());
+  if (!believed) return complain(believed.error());
   return 0;
 }
 

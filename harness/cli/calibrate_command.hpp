@@ -10,6 +10,7 @@ namespace whirl::cli {
 struct CalibrateOptions {
   std::string file;     // test_plans/calibrations/NAME.lua
   std::string write;    // the Lua file of constants; empty: into the results' folder only
+  std::string data;     // of an earlier run: only fit it again, without the stand
   std::string command;  // as typed, noted in that file
 };
 

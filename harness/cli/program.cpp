@@ -88,6 +88,8 @@ int run_program(int argc, char** argv, const Composition& composition) {
       ->required();
   esc->add_option("--write", calibration.write, "the constants as a file that plans include");
 
+  esc->add_option("--data", calibration.data, "fit this data.txt of an earlier run again");
+
   auto* doctor = app.add_subcommand("doctor", "check tools and versions");
 
   try {
@@ -101,7 +103,9 @@ int run_program(int argc, char** argv, const Composition& composition) {
   if (*sweeps) return sweep_command(sweep, composition);
   if (*validate) return validate_command(composition);
   if (*calibrates) {
-    calibration.command = "whirl calibrate esc " + calibration.file;
+    calibration.command = "whirl calibrate esc " + calibration.file +
+                          (calibration.write.empty() ? "" : " --write " + calibration.write) +
+                          (calibration.data.empty() ? "" : " --data " + calibration.data);
     return calibrate_esc_command(calibration, composition);
   }
   if (*doctor) return doctor_command(composition.root);

@@ -1,0 +1,9 @@
+-- Constants of the stock board (seed 1) with its motor and the hk_10x4.5, as `whirl calibrate esc` found them.
+local stored = include "include/hk_10x4.5_calibration.lua"
+
+-- Types them at rest; they hold until power-down, or for ever after `save`.
+function calibrate(t)
+  t:step "calibrate"
+  for _, line in ipairs(stored.set) do t:ask(line, "^ok$") end
+  t:ask("identified 1", "^ok$")
+end
