@@ -121,7 +121,7 @@ Result<Fit> solve(const Problem& p) {
     if (length(c) > 0.0) scaled.col(c) /= length(c);
   }
   const Eigen::JacobiSVD<MatrixXd> svd(scaled, Eigen::ComputeThinU | Eigen::ComputeThinV);
-  const VectorXd s = svd.singularValues();
+  const VectorXd& s = svd.singularValues();
   const double condition = s(0) / std::max(s(columns - 1), 1e-300);
   if (!(condition < kWorstCondition)) {
     return refuse(p,
