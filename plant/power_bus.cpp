@@ -51,7 +51,7 @@ BusDraw step_bus(std::span<AveragedMotor> motors, std::span<Drive> drives,
     motors[i].accept(trials[i]);
     books[i] = trials[i].books;
   }
-  battery.draw(draw.charge_C, dt_s);
+  draw.battery = battery.draw(draw.charge_C, dt_s);
   return draw;
 }
 

@@ -16,6 +16,7 @@ struct BusDraw {  // one sub-step
   double bus_V = 0.0;
   double charge_C = 0.0;
   double residual_V = 0.0;  // how far Ohm's law across the series resistance is missed
+  BatteryBooks battery{};
 };
 
 // `drives[i].bus_V` is filled in (and is the first guess next time); `books[i]` receives the motors' books.

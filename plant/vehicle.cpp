@@ -34,6 +34,20 @@ ShaftLoad shaft_load(const RotorLoads& loads, double at_speed_radps) {
   return {torque / (at_speed_radps * at_speed_radps), 0.0};
 }
 
+EnergyBooks sum_of(const std::array<MotorBooks, 4>& motors, const BatteryBooks& pack) {
+  EnergyBooks sum{.chemical_J = pack.chemical_J,
+                  .battery_J = pack.series_J + pack.relaxation_J + pack.dip_J};
+  for (const MotorBooks& m : motors) {
+    sum.copper_J += m.copper_J;
+    sum.diode_J += m.diode_J;
+    sum.no_load_J += m.no_load_J;
+    sum.magnetic_J += m.magnetic_J;
+    sum.kinetic_J += m.kinetic_J;
+    sum.air_J += m.air_J;
+  }
+  return sum;
+}
+
 }  // namespace
 
 struct Vehicle::Parts {
@@ -96,12 +110,15 @@ void Vehicle::Parts::run_motors(double dt_s) {
   }
   battery.set_dip(below_V);
   const int steps = std::max(1, static_cast<int>(std::ceil(dt_s / kSubStep_s - 1e-9)));
-  double charge = 0.0, voltage = 0.0;
+  double charge = 0.0, voltage = 0.0, avionics_J = 0.0;
+  BatteryBooks pack;
   for (int k = 0; k < steps; ++k) {
     const BusDraw draw =
         step_bus(motors, drives, shaft, params.avionics_current_A, battery, dt_s / steps, books);
     charge += draw.charge_C;
     voltage += draw.bus_V / steps;
+    avionics_J += draw.bus_V * params.avionics_current_A * dt_s / steps;
+    pack += draw.battery;
     for (int i = 0; i < 4; ++i) {
       total[i] += books[i];
       state.motors[i].winding_peak_A =
@@ -120,6 +137,8 @@ void Vehicle::Parts::run_motors(double dt_s) {
   state.bus_voltage_V = voltage;
   state.battery_current_A = charge / dt_s;
   state.charge_used_C = battery.charge_used_C();
+  state.energy = sum_of(total, pack);
+  state.energy.avionics_J = avionics_J;
 }
 
 Forcing Vehicle::Parts::run_rotors(double dt_s) {

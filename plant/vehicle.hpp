@@ -64,6 +64,15 @@ struct MotorState {
   bool blocked = false;  // the propeller struck the ground and has stopped
 };
 
+struct EnergyBooks {  // of one step: what the pack gave is the sum of the rest
+  double chemical_J = 0.0;
+  double battery_J = 0.0;  // heat and relaxation of the pack, and a dip that a plan imposes
+  double avionics_J = 0.0;
+  double copper_J = 0.0, diode_J = 0.0, no_load_J = 0.0;
+  double magnetic_J = 0.0, kinetic_J = 0.0;  // what the windings and the shafts store
+  double air_J = 0.0;                        // work of the shafts on the air
+};
+
 struct VehicleState {
   double t_s = 0.0;
   Eigen::Vector3d p_WB_W_m = Eigen::Vector3d::Zero();
@@ -76,6 +85,7 @@ struct VehicleState {
   double bus_voltage_V = 0.0;      // mean over the step
   double battery_current_A = 0.0;  // mean over the step, avionics included
   double charge_used_C = 0.0;
+  EnergyBooks energy;
   Eigen::Vector3d wind_W_mps = Eigen::Vector3d::Zero();  // at the centre of mass
   double static_pressure_Pa = 0.0, air_temperature_K = 0.0, air_density_kgpm3 = 0.0;
   double contact_impulse_Ns = 0.0;  // what the ground gave in this step

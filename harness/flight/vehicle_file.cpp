@@ -55,10 +55,23 @@ void read_motor(const Table& t, plant::MotorParams& m) {
   m.resistance_ohm = t.quantity("resistance", Dimension::resistance, above(0.0));
   m.winding_resistance_ohm = t.quantity_or("winding_resistance", Dimension::resistance,
                                            m.winding_resistance_ohm, above(0.0));
-  m.inductance_H = t.quantity("inductance", Dimension::inductance, above(0.0));
+  // Data sheets keep quiet about it: 0.2 ms x resistance is usual among outrunners.
+  m.inductance_H =
+      t.quantity_or("inductance", Dimension::inductance, 2e-4 * m.resistance_ohm, above(0.0));
   m.no_load_current_A = t.quantity("no_load_current", Dimension::current, at_least(0.0));
   m.inertia_kgm2 = t.quantity("inertia", Dimension::inertia, above(0.0));
   m.pole_pairs = static_cast<int>(t.integer_or("pole_pairs", m.pole_pairs, 1, 100));
+  // A resistance read from a running motor holds what commutation looks like at that speed.
+  const double fitted_radps =
+      t.quantity_or("resistance_fitted_at", Dimension::angular_rate, 0.0, at_least(0.0));
+  const double commutation_ohm =
+      1.5 / std::numbers::pi * m.pole_pairs * fitted_radps * m.inductance_H;
+  if (fitted_radps > 0.0 && commutation_ohm >= m.resistance_ohm) {
+    return t.refuse("resistance_fitted_at",
+                    "at this speed commutation alone looks like more than the whole resistance");
+  }
+  m.resistance_ohm -= commutation_ohm;
+  m.winding_resistance_ohm = std::min(m.winding_resistance_ohm, m.resistance_ohm);
 }
 
 void read_battery(const Table& t, plant::BatteryParams& b) {

@@ -69,7 +69,21 @@ double Battery::open_circuit_V() const {
   return std::max(0.0, a.voltage_V + slope * (depth - a.depth_of_discharge));
 }
 
-void Battery::draw(double charge_C, double dt_s) {
+BatteryBooks& BatteryBooks::operator+=(const BatteryBooks& other) {
+  chemical_J += other.chemical_J;
+  series_J += other.series_J;
+  relaxation_J += other.relaxation_J;
+  dip_J += other.dip_J;
+  return *this;
+}
+
+BatteryBooks Battery::draw(double charge_C, double dt_s) {
+  const BatteryBooks books{
+      .chemical_J = (source_V_ + relaxation_V_) * charge_C,
+      .series_J = params_.series_resistance_ohm * charge_C * charge_C / dt_s,
+      .relaxation_J = relaxation_V_ * charge_C,
+      .dip_J = dip_V_ * charge_C,
+  };
   if (dt_s != last_dt_s_) {
     last_dt_s_ = dt_s;
     last_blend_ = -std::expm1(-dt_s / params_.relaxation_time_s);
@@ -78,6 +92,7 @@ void Battery::draw(double charge_C, double dt_s) {
   const double settled_V = params_.relaxation_resistance_ohm * charge_C / dt_s;
   relaxation_V_ += (settled_V - relaxation_V_) * last_blend_;
   source_V_ = open_circuit_V() - relaxation_V_;
+  return books;
 }
 
 }  // namespace whirl::plant

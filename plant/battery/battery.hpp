@@ -9,6 +9,14 @@
 
 namespace whirl::plant {
 
+struct BatteryBooks {         // energy of one draw
+  double chemical_J = 0.0;    // open-circuit voltage at its start x charge
+  double series_J = 0.0;      // heat of the series resistance
+  double relaxation_J = 0.0;  // into the relaxation branch: heat and what it stores
+  double dip_J = 0.0;         // taken by a dip that a plan imposes
+  BatteryBooks& operator+=(const BatteryBooks& other);
+};
+
 class Battery {
  public:
   explicit Battery(const BatteryParams& params);
@@ -19,7 +27,7 @@ class Battery {
   double charge_used_C() const { return used_C_; }
   double depth_of_discharge() const;
 
-  void draw(double charge_C, double dt_s);
+  BatteryBooks draw(double charge_C, double dt_s);
   void set_dip(double below_V) { dip_V_ = below_V; }
 
  private:

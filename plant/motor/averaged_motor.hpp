@@ -11,7 +11,8 @@
 //   Source  [Bangura2017, 3.4] with the current read as bus current; [Erickson2001, ch. 5] for
 //           discontinuous conduction
 //   Error   power balance to round-off, closed forms to 1e-6 (tests/averaged_motor_test.cpp); against
-//           the switched face 1 % in speed, torque, winding and bus current (tests/faces_test.cpp)
+//           the switched face 1 % in speed, torque, winding and bus current, but 2 % where the dips of
+//           a sinusoidal motor run dry under diodes (tests/faces_test.cpp)
 //   Left out magnetic saturation, current fed back through diodes at overspeed, timing other than
 //           neutral
 #pragma once

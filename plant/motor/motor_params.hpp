@@ -7,7 +7,7 @@
 //            is larger: moving the current from phase to phase against the inductance takes
 //            (3/pi) w_e (L/2) I, and both faces count that by themselves. The thesis's steady points
 //            show 0.12 to 0.18 ohm; with 7 pole pairs 0.1 mH alone would look like 0.17 ohm at
-//            5000 RPM. 0.070 ohm of winding, 0.050 of bridge, leads and warmth and 22 uH look like 0.15 to
+//            5000 RPM. 0.070 ohm of winding, 0.050 of bridge, leads and warmth and 20 uH look like 0.15 to
 //            0.165 ohm from 4000 to 5500 RPM and meet voltage, bus current and thrust at once
 #pragma once
 #include <string>
@@ -22,7 +22,7 @@ struct MotorParams {
   double torque_constant_NmpA = 0.01005;  // = back-EMF constant in V s/rad = 60/(2 pi Kv)
   double resistance_ohm = 0.120;          // winding, bridge and leads, at winding_ref_temp_K
   double winding_resistance_ohm = 0.070;  // the share of it that warms with the winding
-  double inductance_H = 2.2e-5;
+  double inductance_H = 2.0e-5;
   double no_load_current_A = 1.0;  // iron and friction: a torque that opposes rotation
   double inertia_kgm2 = 3.752e-5;  // rotor, bell and propeller about the shaft
   int pole_pairs = 7;

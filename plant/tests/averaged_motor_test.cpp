@@ -40,7 +40,7 @@ TEST(AveragedMotor, HeldShaftFollowsTheExponentialOfResistanceAndInductance) {
   for (int k = 0; k < 20; ++k) {
     motor.step({.bus_V = 2.0, .duty = 0.5}, {}, 1e-4);
     t += 1e-4;
-    const double want = 1.0 / 0.12 * (1.0 - std::exp(-t * 0.12 / 2.2e-5));
+    const double want = 1.0 / 0.12 * (1.0 - std::exp(-t * 0.12 / 2.0e-5));
     EXPECT_TRUE(near(motor.current_A(), want, round_off(40, 8.4)));
   }
 }
@@ -113,7 +113,7 @@ TEST(AveragedMotor, EnergyBooksCloseAtEveryStepUnderAbsurdCommands) {
       if (k % 31 == 0) load = {3e-7 * random.uniform(), 0.02 * (random.uniform() - 0.7)};
       const MotorBooks books = motor.step(drive, load, 1.25e-4);
       const double w = motor.speed_radps() + 10.0, i = motor.current_A() + 10.0;
-      const double stored_J = 0.5 * (3.752e-5 * w * w + 2.2e-5 * i * i);
+      const double stored_J = 0.5 * (3.752e-5 * w * w + 2.0e-5 * i * i);
       ASSERT_TRUE(near(imbalance_J(books), 0.0, round_off(20, scale_J(books) + stored_J)))
           << k << " " << diode;
       ASSERT_GE(books.copper_J, 0.0);
@@ -135,7 +135,7 @@ TEST(AveragedMotor, DiodeCurrentInLightLoadIsThePulseTrainsMean) {
   params.pole_pairs = 1;
   AveragedMotor motor(params);
   motor.set_speed(60.0);  // so slow that the open phase's diode never conducts
-  const double emf = 0.603, V = 16.0, D = 0.02, T = 5e-5, L = 2.2e-5;
+  const double emf = 0.603, V = 16.0, D = 0.02, T = 5e-5, L = 2.0e-5;
   for (int k = 0; k < 50; ++k) motor.step({.bus_V = V, .duty = D, .diode = true}, {}, 1e-4);
   const double want = (V - emf) * (V + 0.7) * D * D * T / (2.0 * L * (emf + 0.7));
   EXPECT_TRUE(near(motor.current_A(), want, stated(1e-3 * want, "1 mohm is left")));

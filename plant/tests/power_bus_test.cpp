@@ -49,7 +49,7 @@ TEST(PowerBus, FourStalledMotorsShareOnePack) {
   for (auto& drive : rig.drives) drive.duty = 0.5;
   BusDraw draw;
   for (int k = 0; k < 400; ++k) draw = rig.step(pack, 0.0);
-  const double R = 0.12, ripple_ApV = 0.25 / (2.2e-5 * 20e3);  // peak to peak
+  const double R = 0.12, ripple_ApV = 0.25 / (2.0e-5 * 20e3);  // peak to peak
   const double per_volt = 0.25 / R + R * ripple_ApV * ripple_ApV / 12.0;
   EXPECT_TRUE(near(draw.bus_V, 16.0 / (1.0 + 4.0 * 0.05 * per_volt),
                    stated(2e-4, "a turn per second counts as standing")));

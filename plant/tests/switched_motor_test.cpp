@@ -25,7 +25,7 @@ TEST(SwitchedMotor, HeldShaftIsTheLineToLineCircuit) {
   motor.set_bus(1.6);
   motor.set_bridge(six_step(0, true, true));
   motor.run(4e-4);
-  const double want = 1.6 / 0.12 * (1.0 - std::exp(-4e-4 * 0.12 / 2.2e-5));
+  const double want = 1.6 / 0.12 * (1.0 - std::exp(-4e-4 * 0.12 / 2.0e-5));
   EXPECT_TRUE(near(motor.phase_currents_A()[0], want, round_off(200, 16.0)));
   EXPECT_TRUE(near(motor.phase_currents_A()[1], -want, round_off(200, 16.0)));
   EXPECT_EQ(motor.phase_currents_A()[2], 0.0);
@@ -59,7 +59,7 @@ TEST(SwitchedMotor, SwitchedOffPhaseFreewheelsThroughADiodeUntilItsCurrentIsGone
   EXPECT_TRUE(near(motor.phase_voltages()[0], -0.7, round_off(4, 1.0)));
   EXPECT_TRUE(near(motor.phase_voltages()[1], 16.7, round_off(4, 16.0)));
   EXPECT_LT(motor.bus_current_A(), 0.0);
-  const double tau = 2.2e-5 / 0.12, dead = tau * std::log1p(peak * 0.12 / 17.4);
+  const double tau = 2.0e-5 / 0.12, dead = tau * std::log1p(peak * 0.12 / 17.4);
   motor.run(0.98 * dead);
   EXPECT_GT(motor.phase_currents_A()[0], 0.0);
   motor.run(0.03 * dead);

@@ -17,7 +17,7 @@ return {
     kv_rpm_per_V = 950,
     resistance = "120 mohm",
     winding_resistance = "70 mohm",
-    inductance = "22 uH",
+    inductance = "20 uH",
     no_load_current = "1 A",
     inertia = "3.752e-5 kg m2", -- with propeller
     pole_pairs = 7,

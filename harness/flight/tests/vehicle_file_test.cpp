@@ -62,6 +62,25 @@ TEST(VehicleFile, HpQuadIsTheVehicleOfTheThesis) {
   EXPECT_EQ(params.value().esc.pole_pairs, 7);
 }
 
+// 1.5/pi x 7 x 523.6 rad/s x 20 uH = 35 mohm of commutation at 5000 rpm.
+TEST(VehicleFile, ResistanceOfARunningMotorLosesItsCommutation) {
+  const auto params =
+      read_changed("resistance = \"120 mohm\"",
+                   "resistance = \"155 mohm\", resistance_fitted_at = \"5000 rpm\"");
+  ASSERT_TRUE(params.ok()) << params.error().message();
+  EXPECT_TRUE(near(params.value().vehicle.motor.resistance_ohm, 0.120, printed_to(1e-3)));
+  EXPECT_NE(complaint_about("resistance = \"120 mohm\"",
+                            "resistance = \"30 mohm\", resistance_fitted_at = \"5000 rpm\"")
+                .find("resistance_fitted_at"),
+            std::string::npos);
+}
+
+TEST(VehicleFile, InductanceThatNobodyPrintsIsTheUsualOne) {
+  const auto params = read_changed("inductance = \"20 uH\",", "");
+  ASSERT_TRUE(params.ok()) << params.error().message();
+  EXPECT_TRUE(near(params.value().vehicle.motor.inductance_H, 24e-6, round_off(8, 24e-6)));
+}
+
 TEST(VehicleFile, CalibrationHasTheNamesOfTheImagesSet) {
   const auto params = read_changed(
       "esc = { mode = \"thrust_by_rpm\"",

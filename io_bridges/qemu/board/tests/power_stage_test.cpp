@@ -104,9 +104,9 @@ TEST(PowerStage, StalledCurrentRisesWithTheWindingsTimeConstant) {
   s.now = 5 * kMs;
   s.set(1, false, true);
   s.set(0, true, true);
-  s.now += 600 * kUs;  // L/R is 183 us; the bus sags by the supply's 30 mohm meanwhile
+  s.now += 600 * kUs;  // L/R is 167 us; the bus sags by the supply's 30 mohm meanwhile
   s.stage.bus_V(s.now);
-  const double R = 0.12 + 0.03, tau_s = 2.2e-5 / R;
+  const double R = 0.12 + 0.03, tau_s = 2.0e-5 / R;
   const double expected_A = 16.0 / R * -std::expm1(-600e-6 / tau_s);
   EXPECT_TRUE(near(s.stage.motor().phase_currents_A()[0], expected_A,
                    stated(0.02 * expected_A, "the bus capacitor delays by 14 us")));
