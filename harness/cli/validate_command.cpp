@@ -55,6 +55,7 @@ int validate_command(const Composition& composition) {
   add(charts, "Motor", plant::motor_proofs(blade.value()));
   add(charts, "Battery", plant::battery_proofs(blade.value()));
   add(charts, "Airframe", plant::airframe_proofs());
+  add(charts, "Free flight", plant::flight_proofs(blade.value()));
   add(charts, "Sensors", plant::sensor_proofs());
 
   const fs::path folder = fs::path(composition.results) / "validation";
