@@ -74,10 +74,10 @@ std::vector<Proof> flight_proofs(const std::shared_ptr<const Blade>& blade) {
                         rotor_mean - hand.profile_and_induced_spm, 0.004, "s/m"},
                        {"what blades hinged at the shaft would add, by hand",
                         hand.free_flapping_spm, 0.02, "s/m"}},
-           .note = "Profile and induced drag of the disc explain a fifth to a quarter of what "
-                   "flights show. Even blades hinged at the shaft, a1 = 2 mu (4/3 theta - lambda), "
-                   "would leave half of it: the rest is the airframe's rotor_drag_spm, measured "
-                   "only as a whole."}};
+           .note =
+               "Profile and induced drag of the disc explain a seventh of what flights show. Even "
+               "blades hinged at the shaft, a1 = 2 mu (4/3 theta - lambda), would leave three "
+               "quarters: the rest is the airframe's rotor_drag_spm, measured only as a whole."}};
 }
 
 }  // namespace whirl::plant
