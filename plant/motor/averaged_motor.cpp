@@ -81,6 +81,8 @@ MotorBooks AveragedMotor::step(const Drive& drive, const ShaftLoad& load, double
 
 void AveragedMotor::prepare(const Drive& about, double dt_s) {
   const double speed = std::max(0.0, speed_ + 0.5 * rise_radps_);
+  if (still_holds(about, speed, dt_s)) return;
+  found_for_ = {about, speed, current_, resistance_, dt_s, blocked_};
   const double emf = params_.torque_constant_NmpA * speed;
   pulses_ = {};
   const double ripple = ripple_A(params_, about);
@@ -106,6 +108,16 @@ void AveragedMotor::prepare(const Drive& about, double dt_s) {
   prepared_ohm_ = resistance_ + commutation_.ohm;
   tau_s_ = params_.inductance_H / prepared_ohm_;
   blend_ = -std::expm1(-dt_s / tau_s_);
+}
+
+// Commutation is found anew when what it depends on has moved by what cannot matter much.
+bool AveragedMotor::still_holds(const Drive& about, double speed, double dt_s) const {
+  const FoundFor& f = found_for_;
+  return f.dt_s == dt_s && f.drive.duty == about.duty && f.drive.diode == about.diode &&
+         f.ohm == resistance_ && f.blocked == blocked_ &&
+         std::abs(f.drive.bus_V - about.bus_V) <= 1e-3 * about.bus_V &&
+         std::abs(f.speed_radps - speed) <= 5e-4 * speed &&
+         std::abs(f.current_A - current_) <= 0.01 * std::abs(current_);
 }
 
 double AveragedMotor::bus_charge_per_volt(const Drive& drive, double dt_s) const {

@@ -97,6 +97,14 @@ class AveragedMotor {
   double current_ = 0.0;
   double temperature_K_;
   double resistance_;
+  struct FoundFor {
+    Drive drive;
+    double speed_radps = 0.0, current_A = 0.0, ohm = 0.0, dt_s = 0.0;
+    bool blocked = false;
+  };
+  bool still_holds(const Drive& about, double speed_radps, double dt_s) const;
+
+  FoundFor found_for_;  // which state commutation_ and what follows are of
   Commutation commutation_;
   double prepared_ohm_ = 0.0, tau_s_ = 0.0, blend_ = 0.0;  // of the pair's mean current
   Pulses pulses_;
