@@ -147,11 +147,11 @@ class Procedure {
     return measure(-setup_.updraft_mps, data_.updraft, true);
   }
 
-  // The wind is raised until thrust changes its sign; two more points lie beyond.
+  // The wind is raised until thrust changes its sign; two points or more lie beyond.
   Result<Done> zero() {
     if (auto good = turn(setup_.blown.front()); !good) return good;
     double wind_mps = setup_.winds_mps.back();
-    for (int beyond = 0; beyond < 2;) {
+    for (int beyond = 0; beyond < 2 || data_.zero.size() < kFewest_about_zero;) {
       wind_mps += 0.5;
       if (wind_mps > kMost_wind_mps) return failed("no wind up to 19 m/s takes the thrust away");
       tell_("towards zero thrust, wind " + number(wind_mps) + " m/s");
@@ -228,7 +228,8 @@ class Procedure {
     });
   }
 
-  static constexpr double kNear_N = 0.25;  // of zero thrust
+  static constexpr double kNear_N = 0.45;  // of zero thrust
+  static constexpr std::size_t kFewest_about_zero = 5;
   static constexpr double kStream_Hz = 500.0, kSwing_Hz = 2.0;
   static constexpr std::int64_t kTransient_ms = 5000;
 
