@@ -296,9 +296,10 @@ Report validate_unseen_propellers(const ReadData& read) {
   Report report{
       "Unseen propellers: static and in flight", "UIUC Propeller Database [UiucProp]", {}, {}, {}};
   report.notes.push_back(
-      "No number was settled on these propellers, but that solid blades take NACA 4412 rather than "
-      "NACA 6409 was decided with the APC E and the Graupner in view; their growth of CT is "
-      "reported only. Flight CT may miss by 16 %: two runs of the APC E 9x4.5 at one "
+      "Not quite unseen: that solid blades take NACA 4412 rather than NACA 6409 was decided with "
+      "the APC E and the Graupner in view, and the limit of 16 % on flight CT was set after the "
+      "APC E 11x5.5 had shown 15.4 % (the next worst is 10.1 %). Only the APC SF 10x4.7 had no "
+      "part in any choice. Growth of CT is reported only. Two runs of the APC E 9x4.5 at one "
       "speed differ by 27 % among themselves at J 0.455.");
   const SectionOf section = section_reader(read);
   for (const Measured& m : all_unseen()) {
