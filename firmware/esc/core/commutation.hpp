@@ -31,6 +31,7 @@ struct CommutationConfig {
   // a sixth of one of 7 turns, at 6.177 mV per count.
   std::uint32_t flux_count_ticks = 486'700;
 };
+inline constexpr float kFlux_per_Kt = 486'700.0f / 0.01005f;
 
 // What the crossings say of the speed, in ticks.
 struct Pace {
@@ -59,6 +60,9 @@ class Commutation {
   constexpr explicit Commutation(const CommutationConfig& config) : config_(config) {}
 
   void stop();
+  void know(float Kt_NmpA) {
+    config_.flux_count_ticks = static_cast<std::uint32_t>(kFlux_per_Kt * Kt_NmpA);
+  }
   // The rotor has been aligned to step 0's field: the first commutation comes at once.
   Order start(Ticks now);
   // The rotor turns, and `step` is right from now on (catching.hpp).

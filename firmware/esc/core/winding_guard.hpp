@@ -4,9 +4,10 @@
 //   Units    converter counts of the shunt (31.66 mA), of voltages (6.177 mV), PWM counts of 3600
 //   Sense    the amplifier's pole (1 kHz) makes pulses of i for a share d of the period into
 //            s1 = s0 e^-x + i (1 - e^-dx) at the end of the on time, x = 0.314: solved for i. Its noise
-//            is about 1 A; four periods of mean make 0.4 A of it
-//   Law      above the limit the voltage droops by 0.2 V per ampere: a virtual resistance, twice the
-//            winding's own. One sample far above cuts the next pulse short
+//            is about 1 A, halved by the mean of the last few. Commutation gives some current back to
+//            the bus: what is found is 10 % below the windings' mean
+//   Law      above the limit the voltage droops by 0.4 V per ampere: a virtual resistance, three times
+//            the windings' own. One sample far above cuts the next pulse short
 //   Trip     cuts in quick succession, a bus current over its limit, or a droop that lasts
 #pragma once
 #include <cstdint>
@@ -22,13 +23,23 @@ class WindingGuard {
     return static_cast<int>(ampere / kAmperes_per_count);
   }
 
-  static constexpr float kLimit_A = 22.0f;         // the model's 20 A and the shunt's error of gain
-  static constexpr float kCut_A = 27.0f;           // one sample; five sigma above the limit
-  static constexpr float kLasting_A = 24.0f;       // for longer than any step takes:
+  static constexpr float kCut_share = 1.45f;       // of the limit: one sample
+  static constexpr float kLasting_share = 1.2f;    // for longer than any step takes:
   static constexpr std::uint16_t kLasting = 5000;  // samples, 0.25 s
   static constexpr float kBus_A = 24.0f;
 
-  void restart() { *this = WindingGuard{}; }
+  // gain: true current over the shunt's, as calibrated.
+  void configure(float max_current_A, float gain) {
+    limit_ = counts(max_current_A / gain);
+    cut_at_ = counts(kCut_share * max_current_A / gain);
+    lasting_at_ = counts(kLasting_share * max_current_A / gain);
+  }
+  void restart() {
+    shunt_ = current_ = 0;
+    cut_ = false;
+    cuts_ = bus_over_ = 0;
+    lasting_ = 0;
+  }
 
   // Once per period. shunt: counts above zero; duty: PWM counts in force in this period.
   void update(int shunt, std::uint32_t duty) {
@@ -43,16 +54,16 @@ class WindingGuard {
     const auto share =
         static_cast<int>((duty * (374'604u - 15u * duty)) >> 16);  // 65536 (1 - e^-dx)
     const int raw = (1024 * shunt - 748 * before) * 64 / share;
-    current_ += (raw - current_) / 4;
-    cut_ = raw > counts(kCut_A);
+    current_ += (raw - current_) / 2;
+    cut_ = raw > cut_at_;
     cuts_ = cut_ ? static_cast<std::uint8_t>(cuts_ + 4)
                  : static_cast<std::uint8_t>(cuts_ - (cuts_ > 0));
-    note_lasting(current_ > counts(kLasting_A));
+    note_lasting(current_ > lasting_at_);
   }
 
   std::uint32_t allowed(std::uint32_t wanted, int bus_counts) const {
     if (cut_) return kShortest;
-    const int over = current_ - counts(kLimit_A);
+    const int over = current_ - limit_;
     if (over <= 0 || bus_counts <= 0) return wanted;
     const auto less = static_cast<std::uint32_t>(kDroop * over / bus_counts);
     const std::uint32_t rest = wanted > less ? wanted - less : 0u;
@@ -65,9 +76,9 @@ class WindingGuard {
  private:
   static constexpr std::uint32_t kLeast_told = 180;
   static constexpr std::uint8_t kCutsToTrip = 12;  // three, close together
-  // 0.2 ohm in counts of shunt, bus and PWM.
+  // 0.4 ohm in counts of shunt, bus and PWM.
   static constexpr int kDroop =
-      static_cast<int>(0.2f * kAmperes_per_count / (3.3f / 4096.0f * 11.5f / 1.5f) * 3600);
+      static_cast<int>(0.4f * kAmperes_per_count / (3.3f / 4096.0f * 11.5f / 1.5f) * 3600);
 
   void note_lasting(bool over) {
     const int next = over ? lasting_ + 1 : lasting_ - 4;
@@ -78,6 +89,7 @@ class WindingGuard {
     bus_over_ = over ? static_cast<std::uint8_t>(bus_over_ + 1) : std::uint8_t{0};
   }
 
+  int limit_ = counts(20.0f), cut_at_ = counts(29.0f), lasting_at_ = counts(24.0f);
   int shunt_ = 0, current_ = 0;
   bool cut_ = false;
   std::uint8_t cuts_ = 0, bus_over_ = 0;

@@ -92,6 +92,7 @@ __attribute__((noinline)) void control_task() {
     zero.turns();
   } else if (core->at_rest()) {
     zero.note(sensed.bus_current_A);
+    drive.know(core->calibration());
   }
   const float raw_current_A = sensed.bus_current_A;
   const float duty = static_cast<float>(bridge::duty()) / static_cast<float>(bridge::kPeriod);

@@ -112,6 +112,11 @@ void MotorDrive::on_commutation() {
   if (commutation_.state() == Commutation::State::stopped) go_catching();
 }
 
+void MotorDrive::know(const Calibration& calibration) {
+  guard_.configure(calibration.motor.max_current_A, calibration.sense.gain);
+  commutation_.know(calibration.motor.Kt_NmpA);
+}
+
 void MotorDrive::follow(const Drive& wanted) {
   const hal::InterruptLock lock;
   if (!wanted.energised) {

@@ -19,6 +19,7 @@ class MotorDrive {
   void on_sample();
   void on_commutation();
   void follow(const Drive& wanted);
+  void know(const Calibration& calibration);  // at rest
   Sensed sense();
   bool energised() const { return phase_ != Phase::off; }
   bool tripped();  // the PWM-rate over-current trip has acted since the last call
