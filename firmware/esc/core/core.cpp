@@ -22,6 +22,12 @@ float clamped(float x, float low, float high) {
   return x < low ? low : x > high ? high : x;
 }
 
+// Of the highest current. A slow rotor under all of it would gain an eighth of its speed from one
+// crossing to the next, and commutation come late.
+float share_at(float speed_radps) {
+  return clamped((speed_radps - 40.0f) / 120.0f, kHeld_share, 1.0f);
+}
+
 }  // namespace
 
 Core::Core(const Calibration& calibration)
@@ -145,7 +151,7 @@ Drive Core::regulate(float value) {
   const float bus_V = sensed_.bus_voltage_V;
   const float latest_radps =
       sensed_.latest_radps >= 0.0f ? sensed_.latest_radps : sensed_.speed_radps;
-  const float share = sensed_.slowing ? kHeld_share : 1.0f;
+  const float share = sensed_.slowing ? kHeld_share : share_at(latest_radps);
   VoltageDemand demand{};
   if (calibration_.mode == Mode::duty) {
     demand = within_current_limits(calibration_.motor, value * bus_V, latest_radps, bus_V, share);

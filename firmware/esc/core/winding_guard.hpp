@@ -23,6 +23,7 @@ class WindingGuard {
     return static_cast<int>(ampere / kAmperes_per_count);
   }
 
+  static constexpr float kLimit_share = 1.06f;     // above what the model's bound alone allows
   static constexpr float kCut_share = 1.45f;       // of the limit: one sample
   static constexpr float kLasting_share = 1.2f;    // for longer than any step takes:
   static constexpr std::uint16_t kLasting = 5000;  // samples, 0.25 s
@@ -30,7 +31,7 @@ class WindingGuard {
 
   // gain: true current over the shunt's, as calibrated.
   void configure(float max_current_A, float gain) {
-    limit_ = counts(max_current_A / gain);
+    limit_ = counts(kLimit_share * max_current_A / gain);
     cut_at_ = counts(kCut_share * max_current_A / gain);
     lasting_at_ = counts(kLasting_share * max_current_A / gain);
   }
@@ -89,7 +90,7 @@ class WindingGuard {
     bus_over_ = over ? static_cast<std::uint8_t>(bus_over_ + 1) : std::uint8_t{0};
   }
 
-  int limit_ = counts(20.0f), cut_at_ = counts(29.0f), lasting_at_ = counts(24.0f);
+  int limit_ = counts(21.2f), cut_at_ = counts(29.0f), lasting_at_ = counts(24.0f);
   int shunt_ = 0, current_ = 0;
   bool cut_ = false;
   std::uint8_t cuts_ = 0, bus_over_ = 0;

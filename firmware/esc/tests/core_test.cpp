@@ -209,17 +209,20 @@ TEST(Core, BoundOfTheCurrentFollowsTheLatestSpeed) {
   Sensed sensed{.bus_voltage_V = 16.4f, .speed_radps = 0.0f};
   for (int i = 0; i < 26; ++i) core.tick(sensed), core.on_setpoint(0);
   core.on_setpoint(2047);
-  sensed = {.bus_voltage_V = 16.4f, .speed_radps = 500.0f, .in_sync = true, .latest_radps = 100.0f};
-  for (int i = 0; i < 3; ++i) core.tick(sensed);
-  // 95 % of 20 A through 0.12 ohm above the EMF of 100 rad/s, while the diodes take 0.7 V of the rest.
-  const double duty = core.drive().duty;
-  EXPECT_TRUE(
-      near(duty * 16.4 - (1 - duty) * 0.7, 0.01005 * 100 + 19 * 0.12, stated(1e-3, "float")));
-  sensed.slowing = true;  // held by something: 40 % of that
-  core.tick(sensed);
-  const double less = core.drive().duty;
-  EXPECT_TRUE(
-      near(less * 16.4 - (1 - less) * 0.7, 0.01005 * 100 + 7.6 * 0.12, stated(1e-3, "float")));
+  sensed = {.bus_voltage_V = 16.4f, .speed_radps = 500.0f, .in_sync = true};
+  // What drives current through 0.12 ohm above the EMF, while the diodes take 0.7 V of the rest.
+  const auto current_A = [&](double latest_radps) {
+    sensed.latest_radps = static_cast<float>(latest_radps);
+    for (int i = 0; i < 3; ++i) core.tick(sensed);
+    const double duty = core.drive().duty;
+    return (duty * 16.4 - (1 - duty) * 0.7 - 0.01005 * latest_radps) / 0.12;
+  };
+  EXPECT_TRUE(near(current_A(200.0), 0.97 * 20.0, stated(0.01, "float")));
+  EXPECT_TRUE(near(current_A(400.0), 0.97 * 20.0, stated(0.01, "float")));
+  EXPECT_TRUE(near(current_A(80.0), 0.4 * 0.97 * 20.0, stated(0.01, "float"))) << "still slow";
+  sensed.slowing = true;
+  EXPECT_TRUE(near(current_A(400.0), 0.4 * 0.97 * 20.0, stated(0.01, "float")))
+      << "held by something";
 }
 
 TEST(Core, ModeStaysWhileTheMotorTurns) {

@@ -67,7 +67,7 @@ TEST(WindingGuard, DroopsByTwoFifthsOfAVoltPerAmpere) {
   Amplifier amplifier;
   for (int k = 0; k < 100; ++k) guard.update(amplifier.pulse(25.0, 0.5), 1800);
   const double less_V = (1800.0 - guard.allowed(1800, kBus_counts)) / 3600.0 * 16.8;
-  EXPECT_TRUE(near(less_V, 0.4 * 5.0, stated(0.16, "whole counts, the series")));
+  EXPECT_TRUE(near(less_V, 0.4 * 3.8, stated(0.16, "whole counts, the series")));
 }
 
 TEST(WindingGuard, CutsThePulseAfterOneFarTooHighAndTripsAfterThree) {
