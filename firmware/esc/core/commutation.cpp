@@ -17,7 +17,7 @@ void Commutation::stop() {
   state_ = State::stopped;
   sectors_.fill(0);
   good_ = missed_ = unfit_ = 0;
-  ordered_ = false;
+  ordered_ = braked_ = false;
 }
 
 void Commutation::join(Ticks now, std::uint8_t step, Ticks sector) {
@@ -61,6 +61,11 @@ Commutation::Order Commutation::on_commutated(Ticks now) {
 }
 
 void Commutation::note_sector(Ticks length) {
+  const auto last = [&](unsigned back) -> std::uint32_t {
+    return sectors_[(newest_ + 6u - back) % 6u];
+  };
+  const std::uint32_t before = last(2) + last(3);
+  braked_ = last(3) > 0 && (length + last(1)) * 64u > before * 65u;
   sectors_[newest_] = length;
   newest_ = static_cast<std::uint8_t>(newest_ == 5 ? 0 : newest_ + 1);
   // While starting, the rotor gains speed within one sector: follow faster.

@@ -79,6 +79,8 @@ class Commutation {
     const Pace p = pace();
     return p.radps(p.revolution, 6, config_);
   }
+  // Pace::slowing as of the last crossing, for those who come by more often.
+  bool braked() const { return state_ == State::running && braked_; }
   const CommutationConfig& config() const { return config_; }
   bool in_sync() const { return state_ == State::running; }
   std::uint32_t bad_detections() const { return bad_detections_; }
@@ -105,6 +107,7 @@ class Commutation {
   int before_counts_ = 0;
   bool seen_before_ = false;
   bool ordered_ = false;
+  bool braked_ = false;
   bool crossing_known_ = false;  // of the last sector
   std::uint8_t good_ = 0, missed_ = 0, unfit_ = 0;
   Ticks sampled_at_ = 0;

@@ -62,9 +62,10 @@ class WindingGuard {
     note_lasting(current_ > lasting_at_);
   }
 
-  std::uint32_t allowed(std::uint32_t wanted, int bus_counts) const {
+  // braked: the rotor slows down although it is driven; 40 % of the limit will do.
+  std::uint32_t allowed(std::uint32_t wanted, int bus_counts, bool braked = false) const {
     if (cut_) return kShortest;
-    const int over = current_ - limit_;
+    const int over = current_ - (braked ? 2 * limit_ / 5 : limit_);
     if (over <= 0 || bus_counts <= 0) return wanted;
     const auto less = static_cast<std::uint32_t>(kDroop * over / bus_counts);
     const std::uint32_t rest = wanted > less ? wanted - less : 0u;

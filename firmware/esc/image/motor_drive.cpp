@@ -88,7 +88,7 @@ void MotorDrive::watch_current(int shunt_counts, int bus_counts) {
     tripped_ = true;
     return;
   }
-  const std::uint32_t allowed = guard_.allowed(wanted_duty_, bus_counts);
+  const std::uint32_t allowed = guard_.allowed(wanted_duty_, bus_counts, commutation_.braked());
   // A pulse too short to be sampled would hide the zero crossings; the shortest one drives nothing.
   bridge::set_duty(allowed > bridge::kShortest_on ? allowed : bridge::kShortest_on);
 }

@@ -70,6 +70,15 @@ TEST(WindingGuard, DroopsByTwoFifthsOfAVoltPerAmpere) {
   EXPECT_TRUE(near(less_V, 0.4 * 3.8, stated(0.16, "whole counts, the series")));
 }
 
+TEST(WindingGuard, BrakedRotorGetsTwoFifths) {
+  WindingGuard guard;
+  Amplifier amplifier;
+  for (int k = 0; k < 100; ++k) guard.update(amplifier.pulse(15.0, 0.5), 1800);
+  EXPECT_EQ(guard.allowed(1800, kBus_counts), 1800u);
+  const double less_V = (1800.0 - guard.allowed(1800, kBus_counts, true)) / 3600.0 * 16.8;
+  EXPECT_TRUE(near(less_V, 0.4 * (15.0 - 0.4 * 21.2), stated(0.16, "whole counts, the series")));
+}
+
 TEST(WindingGuard, CutsThePulseAfterOneFarTooHighAndTripsAfterThree) {
   WindingGuard guard;
   Amplifier amplifier;
