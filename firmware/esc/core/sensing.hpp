@@ -23,9 +23,9 @@ class ZeroCurrent {
   float offset_A() const { return offset_A_; }
 
  private:
-  static constexpr std::uint16_t kDecay_ms = 20;      // until amplifier and windings are quiet
-  static constexpr std::uint16_t kTrust_ms = 50;      // weight of the rests before
-  static constexpr std::uint16_t kLongest_ms = 1000;  // of the mean: a wandering offset is followed
+  static constexpr std::uint16_t kDecay_ms = 20;     // until amplifier and windings are quiet
+  static constexpr std::uint16_t kTrust_ms = 50;     // weight of the rests before
+  static constexpr std::uint16_t kLongest_ms = 400;  // of the mean: a wandering offset is followed
 
   float offset_A_ = 0.0f;
   std::uint16_t rest_ms_ = 0;
