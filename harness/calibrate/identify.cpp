@@ -51,22 +51,20 @@ Result<Done> physical(const Coefficient& c, double low) {
                "look at the data's page: is the stand wired and set as the file says?"};
 }
 
-// The image takes its zero anew whenever the motor rests; what the offset wanders by meanwhile is not
-// a constant, so the gain's line goes through that zero.
+// A line with an intercept: while the PWM runs, sampling in step with a rippling current leaves a
+// constant (the ripple hardly moves with duty) that the zero found at rest does not hold. Points in
+// still air only, which follow the zero at once: what the offset wanders by later is no constant.
 Result<SenseFit> fit_sense(const StandData& data) {
-  const Problem p{"current sense",
-                  "current told by the ESC",
-                  "A",
-                  column(data.still, [](const auto& x) { return x.esc_A; }),
-                  {{"slope", "", column(data.still, [](const auto& x) { return x.meter_A; })}}};
+  Problem p{"current sense",
+            "current told by the ESC",
+            "A",
+            column(data.still, [](const auto& x) { return x.esc_A; }),
+            {{"slope", "", column(data.still, [](const auto& x) { return x.meter_A; })},
+             {"offset", "A", ones(data.still)}}};
+  p.weights = column(data.still, [](const auto& x) { return 1.0 / x.meter_A; });
   auto fit = solve(p);
   if (!fit) return fit.error();
-  if (data.rest.empty()) {
-    return Error{ErrorKind::bad_input, "fit of current sense", "no point is at rest", ""};
-  }
-  const Coefficient offset{"offset", "A", data.rest.front().esc_A - data.rest.front().meter_A, 0.0,
-                           data.rest.front().esc_A_half_width};
-  return SenseFit{inverse(fit.value(), "slope", "gain", ""), offset, fit.value()};
+  return SenseFit{inverse(fit.value(), "slope", "gain", ""), fit.value()["offset"], fit.value()};
 }
 
 // Errors count as shares, those outside the working speeds a fifth.
