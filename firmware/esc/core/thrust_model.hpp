@@ -51,8 +51,8 @@ class ThrustSolver {
   struct Bounds {
     float ls_min = -0.008f;  // half a metre per second up: momentum theory still holds
     float ls_max = 0.16f;
-    float tolerance = 1e-4f;      // of CP, relative
-    float most_leverage = 12.0f;  // beyond, half a percent of power is six percent of thrust
+    float tolerance = 1e-4f;     // of CP, relative
+    float most_leverage = 5.0f;  // beyond, half a percent of power is over two of thrust
   };
   static constexpr int kMaxIterations = 6;
 
