@@ -1,0 +1,45 @@
+-- The power-based controller on the calibrated image steps from 2.0 to 3.2 N and back as fast as the RPM controller:
+-- on a full, a used and a nearly empty pack, with 12 % more and less inertia, and in a downdraft of 3.5 m/s.
+include "include/start.lua"
+include "include/calibration.lua"
+
+local function rise(name, tags, options)
+  plan("rise_by_power_" .. name) {
+    image = "esc", board = "esc32v2",
+    stand = { prop = "hk_10x4.5", supply = "16.8 V", mode = "thrust_by_power", motor = options.motor },
+    tags = tags,
+    timeout = "30 s",
+    run = function(t)
+      t:wait "200 ms"
+      calibrate(t)
+      t:ask("mode 5", "^ok$")
+      t:ask("stream 500", "^ok$")
+      start(t, "2 N")
+      if options.missing then t:fault { kind = "supply_dip", value = options.missing } end
+      if options.down then t:gust { down = options.down, edge = "300 ms" } end
+      t:wait "2 s"
+      local signals = { "thrust", "winding_peak", "bus_peak" }
+      t:step "rise"
+      local up = t:record(signals, "1 s", function() t:command { thrust = "3.2 N" } end)
+      t:expect(up:rise_time "thrust", "thrust rise 2.0 to 3.2 N, 10 to 90 %"):at_most "50 ms"
+      t:expect(up:response_time "thrust", "command on the wire to 90 %"):at_most "70 ms"
+      t:expect(up:overshoot "thrust", "overshoot"):at_most "10 %"
+      t:expect(up:settled("thrust", "2 %"), "settled within 2 %"):at_most "150 ms"
+      t:step "fall"
+      local down = t:record(signals, "1 s", function() t:command { thrust = "2 N" } end)
+      t:expect(down:fall_time "thrust", "thrust fall 3.2 to 2.0 N"):at_most "70 ms"
+      for name, r in pairs { rise = up, fall = down } do
+        t:expect(r:max "winding_peak", "winding current, " .. name):at_most "30 A"
+        t:expect(r:max "bus_peak", "bus current, " .. name):at_most "22 A"
+      end
+      t:expect(t:value "armed", "still armed"):equal(1)
+    end,
+  }
+end
+
+rise("16v8", { "quick", "esc" }, {})
+rise("15v7", { "esc" }, { missing = "1.1 V" })
+rise("14v0", { "esc" }, { missing = "2.8 V" })
+rise("heavy", { "esc" }, { motor = { inertia = "+12 %" } })
+rise("light", { "esc" }, { motor = { inertia = "-12 %" } })
+rise("downdraft", { "esc" }, { down = "3.5 m/s" })
