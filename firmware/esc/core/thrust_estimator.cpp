@@ -64,7 +64,7 @@ void ThrustEstimator::update(float bus_V, float duty, float bus_A, float speed_r
   CP_ = power_ratio_ * calibration_.free_air.CP(w);
 
   last_ = conclude();
-  const float found = 1.0f + confidence() * (last_.CT / still_.CT - 1.0f);
+  const float found = observable() ? 1.0f + confidence() * (last_.CT / still_.CT - 1.0f) : 1.0f;
   thrust_ratio_ += blend * (found - thrust_ratio_);
   CT_ = thrust_ratio_ * calibration_.free_air.CT(w);
   thrust_N_ = CT_ * w * w;

@@ -130,6 +130,17 @@ TEST(ThrustByPower, AnUpdraftLeavesItWithTheStaticMapAndItSaysSo) {
       near(by_power.mean_thrust_N(500), by_rpm.mean_thrust_N(500), stated(0.01, "same map")));
 }
 
+TEST(ThrustByPower, WithoutACalibrationItIsTheStaticMap) {
+  Bench bench(Mode::thrust_by_power);
+  Calibration bare = calibrated(Mode::thrust_by_power);
+  bare.rotor = {};
+  bare.identified = false;
+  bench.hold(0.0, 10);
+  ASSERT_TRUE(bench.core.recalibrate(bare));
+  bench.start(3.2);
+  EXPECT_TRUE(near(bench.mean_thrust_N(500), 3.2, stated(0.02, "set-point step")));
+}
+
 // Told that an updraft may share this power, it concludes nothing from it.
 TEST(ThrustByPower, ConcludesNothingFromPowerThatAnUpdraftMayShare) {
   for (double down : {2.2, 4.2}) {
