@@ -27,7 +27,7 @@ local function bound_s(low, high, inertia)
     w = w + dt / inertia * (Kt * (limit_A - no_load_A) - torque(w))
     t = t + dt
   end
-  return t - from
+  return t - (from or t)
 end
 
 local function point(t)
