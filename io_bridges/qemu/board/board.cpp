@@ -93,7 +93,7 @@ Result<Done> Board::build_devices() {
 
 // "adc1" in the watch list: each of its sequences is told like a call, from its trigger to its end.
 Result<Done> Board::watch_converters() {
-  for (std::uint16_t i = 0; i < setup_.config.watch.size(); ++i) {
+  for (std::size_t i = 0; i < setup_.config.watch.size(); ++i) {
     const std::string& name = setup_.config.watch[i];
     int number = 0;
     if (std::sscanf(name.c_str(), "adc%1d", &number) != 1 || name.size() != 4) continue;
@@ -102,8 +102,9 @@ Result<Done> Board::watch_converters() {
       return Error{ErrorKind::bad_input, setup_.config.board + ": watch",
                    "the part has no '" + name + "'", ""};
     }
-    converter->on_sequence([this, i](Nanoseconds began, Nanoseconds ended) {
-      happened_.add(io::Kind::function_call, i, ended, io::FunctionCall{began, ended - began});
+    const auto place = static_cast<std::uint16_t>(i);
+    converter->on_sequence([this, place](Nanoseconds began, Nanoseconds ended) {
+      happened_.add(io::Kind::function_call, place, ended, io::FunctionCall{began, ended - began});
     });
   }
   return Done{};
