@@ -74,7 +74,7 @@ ThrustEstimate ThrustEstimator::conclude() {
   ThrustEstimate nothing;
   if (!calibration_.identified || !still_.real) return nothing;
   nothing.status = Estimate::not_observable;
-  if (power_ratio_ >= calibration_.shared_power) return nothing;
+  if (power_ratio_ >= calibration_.shared_power - 2.0f * kPower_error) return nothing;
   if (has_gaps(calibration_.motor, bus_V_, duty_.value(), current_A_)) return nothing;
   return solver_.solve(power_ratio_ * still_.CP);
 }
