@@ -36,7 +36,7 @@ inline float steady_voltage_V(const MotorConstants& motor, const StaticMap& free
 // less. share: of the highest current.
 inline constexpr float kHeld_share = 0.4f;
 // Of the highest current, on the mean: between commutations it is a fifth higher, PWM ripple beside.
-inline constexpr float kMean_share = 0.95f;
+inline constexpr float kMean_share = 0.93f;
 
 inline VoltageDemand within_current_limits(const MotorConstants& motor, float wanted_V, float w,
                                            float bus_V, float share = 1.0f) {

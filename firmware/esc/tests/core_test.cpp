@@ -217,11 +217,11 @@ TEST(Core, BoundOfTheCurrentFollowsTheLatestSpeed) {
     const double duty = core.drive().duty;
     return (duty * 16.4 - (1 - duty) * 0.7 - 0.01005 * latest_radps) / 0.12;
   };
-  EXPECT_TRUE(near(current_A(200.0), 0.95 * 20.0, stated(0.01, "float")));
-  EXPECT_TRUE(near(current_A(400.0), 0.95 * 20.0, stated(0.01, "float")));
-  EXPECT_TRUE(near(current_A(80.0), 0.4 * 0.95 * 20.0, stated(0.01, "float"))) << "still slow";
+  EXPECT_TRUE(near(current_A(200.0), 0.93 * 20.0, stated(0.01, "float")));
+  EXPECT_TRUE(near(current_A(400.0), 0.93 * 20.0, stated(0.01, "float")));
+  EXPECT_TRUE(near(current_A(80.0), 0.4 * 0.93 * 20.0, stated(0.01, "float"))) << "still slow";
   sensed.slowing = true;
-  EXPECT_TRUE(near(current_A(400.0), 0.4 * 0.95 * 20.0, stated(0.01, "float")))
+  EXPECT_TRUE(near(current_A(400.0), 0.4 * 0.93 * 20.0, stated(0.01, "float")))
       << "held by something";
 }
 
