@@ -39,4 +39,13 @@ bool is_working(const StandData& data, double speed_radps);
 std::vector<SteadyPoint> working_points(const StandData& data);
 std::vector<SteadyPoint> working_still(const StandData& data);
 
+// One figure of each point or sample.
+template <typename T, typename F>
+std::vector<double> column(const std::vector<T>& points, F value) {
+  std::vector<double> out;
+  out.reserve(points.size());
+  for (const T& p : points) out.push_back(value(p));
+  return out;
+}
+
 }  // namespace whirl::calibrate

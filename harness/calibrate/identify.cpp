@@ -6,14 +6,6 @@
 namespace whirl::calibrate {
 namespace {
 
-template <typename T, typename F>
-std::vector<double> column(const std::vector<T>& points, F value) {
-  std::vector<double> out;
-  out.reserve(points.size());
-  for (const T& p : points) out.push_back(value(p));
-  return out;
-}
-
 template <typename T>
 std::vector<double> ones(const std::vector<T>& points) {
   return std::vector<double>(points.size(), 1.0);

@@ -46,14 +46,6 @@ void add_fit(std::vector<Chart>& charts, const std::string& group, const Fit& fi
                     {}});
 }
 
-template <typename T, typename F>
-std::vector<double> column(const std::vector<T>& points, F value) {
-  std::vector<double> out;
-  out.reserve(points.size());
-  for (const T& p : points) out.push_back(value(p));
-  return out;
-}
-
 }  // namespace
 
 std::vector<Chart> charts(const Calibration& c) {
