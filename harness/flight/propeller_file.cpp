@@ -38,6 +38,7 @@ plant::BladeMaterial material_of(const lua::Table& t) {
       {"wood", plant::kWood}};
   if (!t.has("material")) return {};
   std::vector<std::string> words;
+  words.reserve(std::size(kMaterials));
   for (const auto& [word, material] : kMaterials) words.push_back(word);
   const auto found = kMaterials.find(t.choice("material", words));
   return found == kMaterials.end() ? plant::BladeMaterial{} : found->second;
