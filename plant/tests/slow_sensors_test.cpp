@@ -189,8 +189,9 @@ TEST(CurrentShunt, ReadsTheAverageOfPwmPulsesTimesItsGainPlusItsOffset) {
     shunt.flow(4.4, 15e-6);
     shunt.flow(0.0, 35e-6);
   }
+  // Just before a pulse the ripple is at its trough: half of 5.5 A x 0.3 x 0.7 x 50 us / 159 us below.
   EXPECT_TRUE(
-      near(shunt.sample_A(), 4.3 + 1.25 * 0.3 * 4.4, stated(0.15, "ripple behind a 1 kHz pole")));
+      near(shunt.sample_A(), 4.3 + 1.25 * 0.3 * 4.4, stated(0.19, "ripple behind a 1 kHz pole")));
 }
 
 TEST(CurrentShunt, OffsetSettlesInAHundredSeconds) {
