@@ -27,7 +27,7 @@ ThrustEstimator::ThrustEstimator(const Calibration& calibration, float period_s)
 void ThrustEstimator::restart(float speed_radps) {
   bus_A_.restart(0.0f);
   duty_.restart(0.0f);
-  current_A_ = 0.0f;
+  current_A_ = gapless_s_ = 0.0f;
   speed_.restart(speed_radps);
   solver_.restart();
   last_ = {};
@@ -63,6 +63,8 @@ void ThrustEstimator::update(float bus_V, float duty, float bus_A, float speed_r
   power_ratio_ += blend * trust * (ratio - power_ratio_);
   CP_ = power_ratio_ * calibration_.free_air.CP(w);
 
+  const bool gaps = has_gaps(calibration_.motor, bus_V_, duty_.value(), current_A_);
+  gapless_s_ = gaps ? 0.0f : gapless_s_ + period_s_;
   last_ = conclude();
   const float found = observable() ? 1.0f + confidence() * (last_.CT / still_.CT - 1.0f) : 1.0f;
   thrust_ratio_ += blend * (found - thrust_ratio_);
@@ -75,7 +77,7 @@ ThrustEstimate ThrustEstimator::conclude() {
   if (!calibration_.identified || !still_.real) return nothing;
   nothing.status = Estimate::not_observable;
   if (power_ratio_ >= calibration_.shared_power - 2.0f * kPower_error) return nothing;
-  if (has_gaps(calibration_.motor, bus_V_, duty_.value(), current_A_)) return nothing;
+  if (gapless_s_ < kSmoothing_s) return nothing;  // the ratio still holds what gaps made of it
   return solver_.solve(power_ratio_ * still_.CP);
 }
 

@@ -52,6 +52,7 @@ class ThrustEstimator {
   float power_W_ = 0.0f;
   float CP_ = 0.0f;
   float CT_ = 0.0f;
+  float gapless_s_ = 0.0f;  // how long the winding current has had none
   float power_ratio_ = 1.0f;
   float thrust_ratio_ = 1.0f;
   float thrust_N_ = 0.0f;
