@@ -7,7 +7,7 @@
 //            the lowest Re drag is held and lift falls as Re^0.1 or as the file says (computed from 60k
 //            to 30k: E63, 4 % thick, Re^0.1; NACA 4412, 12 %, Re^0.45); above the highest friction falls as Re^-1/5.
 //   Source   plate: [Hoerner]; drag at 90 deg 1.11 + 0.018 AR [Viterna]
-//   Left out pitching moment (blades are stiff in torsion), hysteresis at stall, compressibility.
+//   Left out pitching moment (torsion.hpp takes it from the angle of zero lift), hysteresis at stall, compressibility.
 #pragma once
 #include <string>
 #include <string_view>

@@ -70,7 +70,7 @@ const std::vector<Measured>& all_measured() {
   return all;
 }
 
-// Never used to settle a number; nothing but the twist of each is fitted, on its static thrust.
+// Only the twist of each is fitted, on its static thrust; what they had a part in: the report's note.
 const std::vector<Measured>& all_unseen() {
   static const std::vector<Measured> all = {
       {"apcsf_10x4.7",

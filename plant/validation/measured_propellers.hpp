@@ -25,7 +25,7 @@ using SectionOf = std::function<std::shared_ptr<const PolarFamily>(const std::st
 SectionOf section_reader(ReadData read);
 
 Report validate_measured_propellers(const ReadData& read);
-// Propellers whose flight data nobody had in view when the rules were settled.
+// Propellers that fitted nothing; which choices they had a part in all the same, the report says.
 Report validate_unseen_propellers(const ReadData& read);
 
 }  // namespace whirl::plant

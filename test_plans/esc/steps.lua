@@ -1,7 +1,7 @@
 -- Steps of thrust on a full, a used and a nearly empty pack, and with more and less inertia. What a supply lacks
 -- below 15.7 V is taken from it once the rotor turns. How long 20 A alone would take from 0.8 to 4.0 N is computed
 -- here, from the stand's own inertia and motor and from the torque that it shows at both ends.
--- Left out: the power-based controller, open loop (modes.lua, downdraft.lua).
+-- The power-based controller: rise_by_power.lua; open loop: open_loop.lua.
 include "include/start.lua"
 
 local inertia_kgm2 = 3.752e-5

@@ -4,9 +4,10 @@
 //   Numbers   a device's number is its place in the description's list; motors and UARTs have theirs
 //   Types     mpu6000 (bus spiN, cs, int), esc_i2c (bus i2cN, address, motor), mavlink_link
 //             (bus usartN or uartN, baud), serial (bus, baud: text lines and bytes as messages),
-//             i2c_master (bus i2cN; params rate: orders from the harness), power_stage (motor, params
-//             of motor and shunt; pins as power_stage.hpp says), volts (bus: an analog pin; params volts), jumper (cs: the pin it copies, int: the pin
-//             it drives)
+//             i2c_master (bus i2cN; params rate: orders from the harness), power_stage (motor,
+//             params of motor and shunt; pins as power_stage.hpp says), pulse_source (bus: the pin it
+//             drives; motor), volts (bus: an analog pin; params volts), jumper (cs: the pin it copies,
+//             int: the pin it drives)
 //   Logs      every I2C transaction; every SPI transaction with its first 16 pairs of bytes (MOSI,
 //             MISO); data-ready edges; set-points; frames down the radio and
 //             lines from a serial port
