@@ -4,6 +4,11 @@
 
 namespace fw::esc {
 
+// The ESC32v2's converter, 12 bits of 3.3 V: voltages behind 1.5/11.5 dividers, a shunt of 0.5 mohm
+// with a gain of 50.9.
+inline constexpr float kVolts_per_count = 3.3f / 4096.0f * 11.5f / 1.5f;
+inline constexpr float kAmperes_per_count = 3.3f / 4096.0f / (0.5e-3f * 50.9f);
+
 // The amplifier's offset wanders by amperes: averaged whenever the motor stands without current, from
 // anew at every rest.
 class ZeroCurrent {

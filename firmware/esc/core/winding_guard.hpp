@@ -12,13 +12,14 @@
 #pragma once
 #include <cstdint>
 
+#include "firmware/esc/core/sensing.hpp"
+
 namespace fw::esc {
 
 class WindingGuard {
  public:
   static constexpr std::uint32_t kPeriod = 3600;
   static constexpr std::uint32_t kShortest = 120;  // leaves room for a sample
-  static constexpr float kAmperes_per_count = 3.3f / 4096.0f / (0.5e-3f * 50.9f);
   static constexpr int counts(float ampere) {
     return static_cast<int>(ampere / kAmperes_per_count);
   }
@@ -80,7 +81,7 @@ class WindingGuard {
   static constexpr std::uint8_t kCutsToTrip = 12;  // three, close together
   // 0.4 ohm in counts of shunt, bus and PWM.
   static constexpr int kDroop =
-      static_cast<int>(0.4f * kAmperes_per_count / (3.3f / 4096.0f * 11.5f / 1.5f) * 3600);
+      static_cast<int>(0.4f * kAmperes_per_count / kVolts_per_count * 3600);
 
   void note_lasting(bool over) {
     const int next = over ? lasting_ + 1 : lasting_ - 4;

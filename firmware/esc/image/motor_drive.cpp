@@ -159,8 +159,8 @@ Sensed MotorDrive::sense() {
   const CommutationConfig& config = commutation_.config();
   const float revolution_radps = pace.radps(pace.revolution, 6, config);
   const float per_sample = n > 0 ? 1.0f / static_cast<float>(n) : 0.0f;
-  return {.bus_voltage_V = static_cast<float>(bus) * per_sample * sampling::kVolts_per_count,
-          .bus_current_A = static_cast<float>(shunt) * per_sample * sampling::kAmperes_per_count,
+  return {.bus_voltage_V = static_cast<float>(bus) * per_sample * kVolts_per_count,
+          .bus_current_A = static_cast<float>(shunt) * per_sample * kAmperes_per_count,
           .speed_radps = speed_.update(revolution_radps, pace.revolution > 0),
           .in_sync = pace.revolution > 0,
           .slowing = pace.slowing,

@@ -8,9 +8,6 @@
 
 namespace fw::esc::sampling {
 
-inline constexpr float kVolts_per_count = 3.3f / 4096.0f * 11.5f / 1.5f;
-inline constexpr float kAmperes_per_count = 3.3f / 4096.0f / (0.5e-3f * 50.9f);
-
 struct Sample {
   int floating, bus, shunt;  // counts
 };
