@@ -160,9 +160,6 @@ constexpr const char* kBoard = R"(return {
 }  // namespace
 
 FakeRoot::FakeRoot() {
-  std::string name = (fs::temp_directory_path() / "whirl_test_XXXXXX").string();
-  WHIRL_CHECK(mkdtemp(name.data()) != nullptr);
-  path_ = name;
   for (const char* image : {"flight", "crash", "asleep", "lost", "late", "drifting"}) {
     write(std::string("build/firmware/") + image + ".elf", "");
   }
@@ -170,19 +167,14 @@ FakeRoot::FakeRoot() {
   write("test_plans/vehicles/hp_quad.lua", "return {}");
 }
 
-FakeRoot::~FakeRoot() {
-  std::error_code ignored;
-  fs::remove_all(path_, ignored);
-}
-
 void FakeRoot::write(const std::string& relative, const std::string& text) const {
-  const fs::path path = fs::path(path_) / relative;
+  const fs::path path = folder_.file(relative);
   fs::create_directories(path.parent_path());
   std::ofstream(path, std::ios::binary) << text;
 }
 
 std::string FakeRoot::read(const std::string& relative) const {
-  std::ifstream in(fs::path(path_) / relative, std::ios::binary);
+  std::ifstream in(folder_.file(relative), std::ios::binary);
   return {std::istreambuf_iterator<char>(in), {}};
 }
 

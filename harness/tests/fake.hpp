@@ -6,6 +6,7 @@
 //   World    height answers a take-off as a first-order lag (tau 200 ms), thrust a command as one of
 //            50 ms; a gust moves `east` and it comes back with tau 500 ms
 #pragma once
+#include "harness/base/scratch_folder.hpp"
 #include "harness/cli/composition.hpp"
 
 namespace whirl::test {
@@ -14,13 +15,12 @@ namespace whirl::test {
 class FakeRoot {
  public:
   FakeRoot();
-  ~FakeRoot();
   void write(const std::string& relative, const std::string& text) const;
   std::string read(const std::string& relative) const;
-  const std::string& path() const { return path_; }
+  const std::string& path() const { return folder_.path(); }
 
  private:
-  std::string path_;
+  ScratchFolder folder_;
 };
 
 cli::Composition fake_composition(const std::string& root);

@@ -10,7 +10,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "harness/base/check.hpp"
+#include "harness/base/scratch_folder.hpp"
 
 namespace {
 
@@ -25,23 +25,17 @@ struct Outcome {
 
 class Real : public ::testing::Test {
  protected:
-  Real() {
-    std::string name = (fs::temp_directory_path() / "whirl_real_XXXXXX").string();
-    WHIRL_CHECK(mkdtemp(name.data()) != nullptr);
-    folder_ = name;
-    setenv("WHIRL_RESULTS", (folder_ + "/results").c_str(), 1);
-  }
-  ~Real() override { fs::remove_all(folder_); }
+  Real() { setenv("WHIRL_RESULTS", folder_.file("results").c_str(), 1); }
 
   void write(const std::string& name, const std::string& text) const {
-    std::ofstream(folder_ + "/" + name, std::ios::binary) << text;
+    std::ofstream(folder_.file(name), std::ios::binary) << text;
   }
   // A plan of one second on this image.
   Outcome run(const std::string& image, const std::string& body,
               const std::string& vehicle = "hp_quad") const {
     write("p.lua", "plan \"real\" { image = \"" + image + "\", vehicle = \"" + vehicle +
                        "\", timeout = \"3 s\",\nrun = function(t)\n" + body + "\nend }\n");
-    return whirl("run --json " + folder_ + "/p.lua");
+    return whirl("run --json " + folder_.file("p.lua"));
   }
   static Outcome whirl(const std::string& arguments) {
     std::FILE* pipe = popen((std::string(WHIRL_PROGRAM) + " " + arguments + " 2>&1").c_str(), "r");
@@ -58,7 +52,7 @@ class Real : public ::testing::Test {
     return outcome;
   }
 
-  std::string folder_;
+  whirl::ScratchFolder folder_;
 };
 
 constexpr const char* kSecond = "t:wait \"1 s\" t:expect(1):at_most(2)";
@@ -73,7 +67,7 @@ TEST_F(Real, AMissingImageIsNamed) {
 }
 
 TEST_F(Real, AnImageForAnotherCpuIsRefused) {
-  fs::copy_file("/proc/self/exe", folder_ + "/host.elf");
+  fs::copy_file("/proc/self/exe", folder_.file("host.elf"));
   expect_told(run("host.elf", kSecond), 2, "host.elf");
 }
 
@@ -147,10 +141,10 @@ TEST_F(Real, GdbStopsInATaskAndTheRunGoesOnAfterIt) {
                              "run = function(t) ") +
                      kSecond + " end }\n");
   const int port = 20000 + getpid() % 20000;
-  const std::string out = folder_ + "/whirl.txt";
+  const std::string out = folder_.file("whirl.txt");
   const std::string command =
       std::string("timeout 100 ") + WHIRL_PROGRAM + " run --gdb --gdb-port " +
-      std::to_string(port) + " " + folder_ + "/p.lua >" + out +
+      std::to_string(port) + " " + folder_.file("p.lua") + " >" + out +
       " 2>&1 & whirl=$!; gdb-multiarch -batch -nx " + WHIRL_IMAGES +
       "/flight.elf -ex 'set tcp connect-timeout 60' -ex 'target remote 127.0.0.1:" +
       std::to_string(port) +

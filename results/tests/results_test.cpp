@@ -7,6 +7,7 @@
 #include <pugixml.hpp>
 #include <set>
 
+#include "harness/base/scratch_folder.hpp"
 #include "results/folder.hpp"
 #include "results/history.hpp"
 
@@ -40,19 +41,10 @@ Report sample() {
   return r;
 }
 
-struct Folder {
-  Folder() {
-    std::string name = (fs::temp_directory_path() / "whirl_results_XXXXXX").string();
-    EXPECT_NE(mkdtemp(name.data()), nullptr);
-    path = name;
-  }
-  ~Folder() { fs::remove_all(path); }
-  std::string read(const std::string& file) const {
-    std::ifstream in(path + "/" + file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-  }
-  std::string path;
-};
+std::string contents(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
 
 TEST(Verdicts, PrecedenceIsInternalBadInputFailedInconclusivePass) {
   const int order[] = {0, 3, 1, 2, 4};
@@ -130,23 +122,23 @@ TruthLog truth() {
 }
 
 TEST(Truth, ColumnsCarryTheirUnits) {
-  const Folder folder;
-  ASSERT_TRUE(truth().write_csv(folder.path + "/truth.csv").ok());
-  const std::string csv = folder.read("truth.csv");
+  const ScratchFolder folder;
+  ASSERT_TRUE(truth().write_csv(folder.file("truth.csv")).ok());
+  const std::string csv = contents(folder.file("truth.csv"));
   EXPECT_EQ(csv.substr(0, csv.find('\n')), "t_s,height_m,climb_mps,armed");
   EXPECT_NE(csv.find("\n2.5,9,nan,1\n"), std::string::npos);
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 5001);
 }
 
 TEST(Truth, ALongRunKeepsEveryThirdRowInItsFile) {
-  const Folder folder;
+  const ScratchFolder folder;
   TruthLog log({{"height", "m", "m"}}, 1'000'000);
   for (int i = 0; i < 450'001; ++i) {
     const double row[] = {i == 449'997 ? 9.0 : 1.0};  // a multiple of three
     log.append(row);
   }
-  ASSERT_TRUE(log.write_csv(folder.path + "/truth.csv").ok());
-  const std::string csv = folder.read("truth.csv");
+  ASSERT_TRUE(log.write_csv(folder.file("truth.csv")).ok());
+  const std::string csv = contents(folder.file("truth.csv"));
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 150'001);
   EXPECT_NE(csv.find("\n449.997,9\n"), std::string::npos);
 }
@@ -173,15 +165,15 @@ TEST(Page, NoTextOfAPlanEndsTheScript) {
 }
 
 TEST(RunFolder, LatestPointsAtTheNewestAndNoRunOverwritesAnother) {
-  const Folder folder;
+  const ScratchFolder folder;
   Report r = sample();
   const EventLog events;
-  const auto first = make_run_folder(folder.path, r.plan),
-             second = make_run_folder(folder.path, r.plan);
+  const auto first = make_run_folder(folder.path(), r.plan),
+             second = make_run_folder(folder.path(), r.plan);
   ASSERT_TRUE(first.ok() && second.ok());
   EXPECT_NE(first.value(), second.value());
   ASSERT_TRUE(write_run(second.value(), r, truth(), events).ok());
-  EXPECT_EQ(fs::canonical(folder.path + "/runs/latest"), fs::canonical(second.value()));
+  EXPECT_EQ(fs::canonical(folder.file("runs/latest")), fs::canonical(second.value()));
 }
 
 TEST(Events, ATruncatedBatchIsNoticed) {
@@ -202,8 +194,8 @@ TEST(Events, BusyShareCountsWholePiecesOfTheWindow) {
 }
 
 TEST(History, GivesTheLastRunsOldestFirst) {
-  const Folder folder;
-  const std::string file = folder.path + "/history.sqlite";
+  const ScratchFolder folder;
+  const std::string file = folder.file("history.sqlite");
   for (int i = 0; i < 5; ++i) {
     Report r = sample();
     r.seed = static_cast<std::uint64_t>(i);
@@ -217,7 +209,7 @@ TEST(History, GivesTheLastRunsOldestFirst) {
   EXPECT_EQ(rows.value().back().margin, 4.0);
   const auto unmeasured = recall(file, "", "tilt", 1);
   EXPECT_TRUE(std::isnan(unmeasured.value().at(0).measured));
-  EXPECT_FALSE(recall(folder.path + "/none.sqlite", "", "", 1).ok());
+  EXPECT_FALSE(recall(folder.file("none.sqlite"), "", "", 1).ok());
 }
 
 }  // namespace

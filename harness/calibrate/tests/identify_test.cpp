@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "harness/base/random.hpp"
+#include "harness/base/scratch_folder.hpp"
 #include "harness/calibrate/data_file.hpp"
 #include "harness/calibrate/report.hpp"
 
@@ -219,7 +220,8 @@ TEST(Identify, PowerBelowIdealIsRefused) {  // as the thesis's own torque figure
 
 TEST(Identify, DataReadBackFromTheirFileGiveTheSameLines) {
   const StandData data = Stand(Truth{}, 1, 1e-5).all();
-  const std::string path = testing::TempDir() + "calibrate_data.txt";
+  const ScratchFolder folder;
+  const std::string path = folder.file("data.txt");
   std::ofstream(path) << data_text(data);
   const auto back = read_data(path);
   ASSERT_TRUE(back.ok()) << back.error().message();

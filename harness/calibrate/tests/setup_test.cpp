@@ -5,11 +5,14 @@
 
 #include <fstream>
 
+#include "harness/base/scratch_folder.hpp"
+
 namespace whirl::calibrate {
 namespace {
 
 Result<Setup> read(const std::string& body) {
-  const std::string path = testing::TempDir() + "calibration_setup.lua";
+  const ScratchFolder folder;
+  const std::string path = folder.file("calibration_setup.lua");
   std::ofstream(path)
       << "return {\n  kind = \"calibration\",\n  stand = { prop = \"x\", serial = 2 },\n"
       << body << "}\n";

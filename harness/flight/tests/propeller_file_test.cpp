@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "harness/base/near.hpp"
+#include "harness/base/scratch_folder.hpp"
 #include "plant/rotor/twist_fit.hpp"
 
 namespace whirl::flight {
@@ -23,7 +24,8 @@ class PropellerFile : public testing::Test {
  protected:
   Result<std::shared_ptr<const plant::Blade>> read(const std::string& more,
                                                    const std::string& diameter = "10 in") {
-    const std::string path = testing::TempDir() + "/my_prop.lua";
+    const ScratchFolder folder;
+    const std::string path = folder.file("my_prop.lua");
     std::ofstream(path)
         << "return { kind = \"propeller\", name = \"mine\", blades = 2, diameter = \"" << diameter
         << "\", mass = \"9 g\",\n"

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "harness/base/near.hpp"
+#include "harness/base/scratch_folder.hpp"
 #include "harness/flight/tests/paths.hpp"
 
 namespace whirl::flight {
@@ -23,16 +24,15 @@ Result<FlightParams> read_changed(const std::string& passage, const std::string&
   EXPECT_NE(at, std::string::npos) << passage;
   changed.replace(at, passage.size(), instead);
   // Its own paths lead to the propellers and to the polars.
-  const auto root = std::filesystem::path(::testing::TempDir()) / "whirl_vehicle_file_test";
-  std::filesystem::create_directories(root / "test_plans/vehicles");
-  for (const char* folder : {"test_plans/propellers", "plant"}) {
-    if (std::filesystem::exists(root / folder)) continue;
-    std::filesystem::create_directory_symlink(std::string(kSourceFolder) + "/" + folder,
-                                              root / folder);
+  const ScratchFolder root;
+  std::filesystem::create_directories(root.file("test_plans/vehicles"));
+  for (const char* folder : {"/test_plans/propellers", "/plant"}) {
+    std::filesystem::create_directory_symlink(kSourceFolder + std::string(folder),
+                                              root.path() + folder);
   }
-  const std::filesystem::path file = root / "test_plans/vehicles/quad.lua";
+  const std::string file = root.file("test_plans/vehicles/quad.lua");
   std::ofstream(file) << changed;
-  return read_vehicle(file.string());
+  return read_vehicle(file);
 }
 
 std::string complaint_about(const std::string& passage, const std::string& instead) {
@@ -98,11 +98,11 @@ TEST(VehicleFile, CalibrationHasTheNamesOfTheImagesSet) {
 }
 
 TEST(VehicleFile, CalibrationComesFromTheFileOfAStand) {
-  const auto with_file = [](const std::string& text, const std::string& more = "") {
-    const auto path = std::filesystem::path(::testing::TempDir()) / "whirl_esc_calibration.lua";
+  const ScratchFolder folder;
+  const std::string path = folder.file("esc_calibration.lua");
+  const auto with_file = [&path](const std::string& text, const std::string& more = "") {
     std::ofstream(path) << text;
-    return read_changed("esc = {",
-                        "esc = { calibration = { file = '" + path.string() + "'" + more + " },");
+    return read_changed("esc = {", "esc = { calibration = { file = '" + path + "'" + more + " },");
   };
   const std::string good =
       "return { kind = 'esc_calibration', set = { 'set kt 0.0101', "
