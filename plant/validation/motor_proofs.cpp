@@ -6,6 +6,7 @@
 #include "plant/motor/switched_motor.hpp"
 #include "plant/rotor/rotor.hpp"
 #include "plant/validation/kde2814.hpp"
+#include "plant/validation/motor_faces.hpp"
 #include "plant/validation/validation.hpp"
 
 namespace whirl::plant {
@@ -229,64 +230,16 @@ Proof open_loop_step(const StaticRotor& rotor) {
           .figures = {{"rise time less 100 ms", 1e3 * (t90 - t10) - 100.0, 20.0, "ms"}}};
 }
 
-struct Face {
-  double speed_radps, shaft_Nm, winding_A, bus_A;
-};
-
-Face face(const MotorBooks& books, double time_s, double speed_radps) {
-  const double shaft_J = books.air_J + books.no_load_J + books.kinetic_J;
-  return {speed_radps, shaft_J / time_s / speed_radps, books.winding_charge_C / time_s,
-          books.bus_charge_C / time_s};
-}
-
-Face averaged_face(const MotorParams& params, const ShaftLoad& load, double duty, bool diode) {
-  AveragedMotor motor(params);
-  motor.set_speed(0.8 * duty * kSupply_V / params.torque_constant_NmpA);
-  MotorBooks sum;
-  constexpr int kSettle = 14000, kMeasure = 2000;
-  for (int k = 0; k < kSettle + kMeasure; ++k) {
-    if (k == kSettle) sum = {};
-    sum += motor.step({kSupply_V, duty, diode}, load, kSubStep_s);
-  }
-  return face(sum, kMeasure * kSubStep_s, motor.speed_radps());
-}
-
-// The bridge-driven face under PWM, commutated at the right angle.
-Face switched_face(const MotorParams& params, const ShaftLoad& load, double duty, bool diode,
-                   double start_radps) {
-  const double period_s = 1.0 / params.pwm_Hz;
-  SwitchedMotor motor(params);
-  motor.set_bus(kSupply_V);
-  motor.set_load(load);
-  motor.set_speed(start_radps);
-  MotorBooks sum;
-  double speed = 0.0;
-  constexpr int kSettle = 6000, kMeasure = 3000;
-  for (int k = 0; k < kSettle + kMeasure; ++k) {
-    if (k == kSettle) sum = {}, speed = 0.0;
-    for (double t = 0.0; t < period_s - 1e-12;) {
-      const bool on = t < duty * period_s - 1e-12;
-      const double h = std::min(2e-6, (on ? duty * period_s : period_s) - t);
-      motor.set_bridge(six_step(sector_of(motor.electrical_angle_rad()), on, !diode));
-      sum += motor.run(h);
-      t += h;
-    }
-    speed += motor.speed_radps() / kMeasure;
-  }
-  return face(sum, kMeasure * period_s, speed);
-}
-
 Proof faces(const StaticRotor& rotor) {
-  const MotorParams params;
-  const ShaftLoad load = rotor.load(radps(4000.0));
+  const FaceCase c{MotorParams{}, kSupply_V, rotor.load(radps(4000.0)).quadratic_Nm_s2};
   std::vector<Curve> averaged, switched;
   double worst[4] = {};
   for (bool diode : {false, true}) {
     Curve a{diode ? "averaged, diode" : "averaged, synchronous", {}, {}}, s = a;
     s.name = diode ? "switched, diode" : "switched, synchronous";
     for (double duty : {0.1, 0.15, 0.2, 0.25, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9}) {
-      const Face mean = averaged_face(params, load, duty, diode);
-      const Face real = switched_face(params, load, duty, diode, mean.speed_radps);
+      const MotorFace mean = averaged_face(c, duty, diode);
+      const MotorFace real = switched_face(c, duty, diode, mean.speed_radps);
       const double off[] = {off_percent(mean.speed_radps, real.speed_radps),
                             off_percent(mean.shaft_Nm, real.shaft_Nm),
                             off_percent(mean.winding_A, real.winding_A),
