@@ -35,17 +35,16 @@ ShaftLoad shaft_load(const RotorLoads& loads, double at_speed_radps) {
 }
 
 EnergyBooks sum_of(const std::array<MotorBooks, 4>& motors, const BatteryBooks& pack) {
-  EnergyBooks sum{.chemical_J = pack.chemical_J,
-                  .battery_J = pack.series_J + pack.relaxation_J + pack.dip_J};
-  for (const MotorBooks& m : motors) {
-    sum.copper_J += m.copper_J;
-    sum.diode_J += m.diode_J;
-    sum.no_load_J += m.no_load_J;
-    sum.magnetic_J += m.magnetic_J;
-    sum.kinetic_J += m.kinetic_J;
-    sum.air_J += m.air_J;
-  }
-  return sum;
+  MotorBooks all;
+  for (const MotorBooks& m : motors) all += m;
+  return {.chemical_J = pack.chemical_J,
+          .battery_J = pack.series_J + pack.relaxation_J + pack.dip_J,
+          .copper_J = all.copper_J,
+          .diode_J = all.diode_J,
+          .no_load_J = all.no_load_J,
+          .magnetic_J = all.magnetic_J,
+          .kinetic_J = all.kinetic_J,
+          .air_J = all.air_J};
 }
 
 }  // namespace

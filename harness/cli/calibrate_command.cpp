@@ -59,6 +59,12 @@ Result<Done> compose(const calibrate::Setup& setup, const Composition& compositi
   return Done{};
 }
 
+Result<Calibration> concluded(calibrate::StandData data, const calibrate::Setup& setup) {
+  auto result = calibrate::identify(std::move(data));
+  if (result) result.value().tell_motor = setup.tell_motor;
+  return result;
+}
+
 // Measures, concludes, and stores the constants in the ESC, all in one power-up.
 Result<Calibration> on_the_stand(const calibrate::Setup& setup, const Composition& composition,
                                  const std::string& data_path) {
@@ -74,18 +80,17 @@ Result<Calibration> on_the_stand(const calibrate::Setup& setup, const Compositio
   if (!data) return data.error();
   const auto kept = results::write_text(data_path, data_text(data.value()));
   if (!kept) return kept.error();
-  auto result = calibrate::identify(std::move(data.value()));
-  if (result) result.value().tell_motor = setup.tell_motor;
+  auto result = concluded(std::move(data.value()), setup);
   if (!result || !physical(result.value())) return result;
   tell("storing the constants in the ESC");
   if (auto stored = store(bench, lines(result.value())); !stored) return stored.error();
   return result;
 }
 
-Result<Calibration> again(const std::string& data_path) {
+Result<Calibration> again(const std::string& data_path, const calibrate::Setup& setup) {
   auto data = calibrate::read_data(data_path);
   if (!data) return data.error();
-  return calibrate::identify(std::move(data.value()));
+  return concluded(std::move(data.value()), setup);
 }
 
 }  // namespace
@@ -98,10 +103,9 @@ int calibrate_esc_command(const CalibrateOptions& options, const Composition& co
   std::error_code status;
   fs::create_directories(folder, status);
   const std::string data = (folder / "data.txt").string();
-  auto result =
-      options.data.empty() ? on_the_stand(setup.value(), composition, data) : again(options.data);
+  const auto result = options.data.empty() ? on_the_stand(setup.value(), composition, data)
+                                           : again(options.data, setup.value());
   if (!result) return complain(result.error());
-  result.value().tell_motor = setup.value().tell_motor;
   const Calibration& c = result.value();
 
   const std::string constants = lua_file(c, options.command);
