@@ -15,11 +15,6 @@ end
 
 local signals = { "winding_peak", "bus_peak", "speed" }
 
-local function safe(t, record, words)
-  t:expect(record:max "winding_peak", "winding current, " .. words):at_most "30 A"
-  t:expect(record:max "bus_peak", "bus current, " .. words):at_most "22 A"
-end
-
 -- Stops the rotor and lets go of it after a while.
 local function stop_for(t, duration, words)
   local stop = t:record(signals, duration, function() t:command { brake = "1.3 N m" } end)

@@ -2,11 +2,6 @@
 -- motor off while it cannot turn, and off for good after one and a half seconds of tries.
 include "include/start.lua"
 
-local function safe(t, record, words)
-  t:expect(record:max "winding_peak", "winding current, " .. words):at_most "30 A"
-  t:expect(record:max "bus_peak", "bus current, " .. words):at_most "22 A"
-end
-
 -- Off although the rotor is free and set-points go on.
 local function latched(t)
   t:step "latched"

@@ -34,11 +34,6 @@ local function point(t)
   return { w = t:value("speed", "rad/s"), torque = t:value("torque", "N m"), thrust = t:value("thrust", "N") }
 end
 
-local function safe(t, record, words)
-  t:expect(record:max "winding_peak", "winding current, " .. words):at_most "30 A"
-  t:expect(record:max "bus_peak", "bus current, " .. words):at_most "22 A"
-end
-
 local signals = { "thrust", "winding_peak", "bus_peak" }
 
 local function small_steps(t)
