@@ -33,9 +33,14 @@ struct StandData {
   std::vector<Sample> steps, sinusoid;
 };
 
-// The points in wind, and those of still air at such speeds: where the motor is loaded enough for its
-// winding's current to have no gaps, and Reynolds number is about the same.
-bool is_working(const StandData& data, double speed_radps);
+struct Range {
+  double low = 0.0, high = 0.0;
+  bool holds(double x) const { return x > low && x < high; }
+};
+
+// Speeds of the points in wind, and the points there, in wind and in still air: where the motor is
+// loaded enough for its winding's current to have no gaps, and Reynolds number is about the same.
+Range working_radps(const StandData& data);
 std::vector<SteadyPoint> working_points(const StandData& data);
 std::vector<SteadyPoint> working_still(const StandData& data);
 

@@ -13,19 +13,20 @@ std::vector<double> ones(const std::vector<T>& points) {
 
 }  // namespace
 
-bool is_working(const StandData& data, double speed_radps) {
+Range working_radps(const StandData& data) {
   const auto slower = [](const SteadyPoint& a, const SteadyPoint& b) {
     return a.speed_radps < b.speed_radps;
   };
-  if (data.blown.empty()) return false;
+  if (data.blown.empty()) return {};
   const auto [low, high] = std::minmax_element(data.blown.begin(), data.blown.end(), slower);
-  return speed_radps > 0.95 * low->speed_radps && speed_radps < 1.05 * high->speed_radps;
+  return {0.95 * low->speed_radps, 1.05 * high->speed_radps};
 }
 
 std::vector<SteadyPoint> working_still(const StandData& data) {
+  const Range working = working_radps(data);
   std::vector<SteadyPoint> points;
   for (const SteadyPoint& x : data.still) {
-    if (is_working(data, x.speed_radps)) points.push_back(x);
+    if (working.holds(x.speed_radps)) points.push_back(x);
   }
   return points;
 }
@@ -59,17 +60,18 @@ Result<SenseFit> fit_sense(const StandData& data) {
   return SenseFit{inverse(fit.value(), "slope", "gain", ""), fit.value()["offset"], fit.value()};
 }
 
-// Errors count as shares, those outside the working speeds a fifth.
+// Errors count as shares, those outside the working speeds a tenth.
 Problem map_problem(const StandData& data, const std::string& name, const std::string& unit,
                     std::vector<Column> columns, const std::vector<int>& powers,
                     const std::vector<double>& y) {
   Problem p{name, name, unit, y, std::move(columns)};
+  const Range working = working_radps(data);
   for (std::size_t i = 0; i < y.size(); ++i) {
     const double w = data.still[i].speed_radps;
     for (std::size_t k = 0; k < powers.size(); ++k) {
       p.columns[k].x.push_back(std::pow(w, powers[k]));
     }
-    p.weights.push_back((is_working(data, w) ? 1.0 : 0.2) / y[i]);
+    p.weights.push_back((working.holds(w) ? 1.0 : 0.1) / y[i]);
   }
   return p;
 }
@@ -77,8 +79,9 @@ Problem map_problem(const StandData& data, const std::string& name, const std::s
 Result<StillAirFit> fit_still_air(const StandData& data, const MotorFit& motor) {
   const auto thrust_N = column(data.still, [](const auto& x) { return x.thrust_N; });
   // By the ESC's own power balance where that holds, by the load cell elsewhere.
+  const Range working = working_radps(data);
   const auto torque_Nm = column(data.still, [&](const auto& x) {
-    return is_working(data, x.speed_radps) ? motor.power_W(x) / x.speed_radps : x.torque_Nm;
+    return working.holds(x.speed_radps) ? motor.power_W(x) / x.speed_radps : x.torque_Nm;
   });
   auto thrust =
       solve(map_problem(data, "static thrust", "N",

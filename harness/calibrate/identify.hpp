@@ -20,7 +20,8 @@ struct SenseFit {
 };
 
 struct MotorFit {
-  Coefficient loss_ohm, loss_V, drag;            // Q w = va i - (loss_ohm i + loss_V) i - drag w
+  // Q w = va i - (loss_ohm i + loss_V + loss_share va + loss_emf w) i - drag w
+  Coefficient loss_ohm, loss_V, loss_share, loss_emf, drag;
   Coefficient torque_constant, no_load_current;  // i = no_load + Q / kt
   Coefficient back_emf, resistance, overlap;     // motor voltage over speed and current
   Coefficient inertia;                           // from the transients

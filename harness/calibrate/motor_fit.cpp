@@ -49,6 +49,35 @@ Problem loss_problem(const std::vector<SteadyPoint>& points) {
   return p;
 }
 
+// The same, and how the power by voltage and the power by back-EMF share in the truth. The voltage is
+// nearly the back-EMF and two drops, so only small departures tell the shares.
+Problem witness_problem(const std::vector<SteadyPoint>& points) {
+  Problem p = loss_problem(points);
+  p.columns.push_back({"loss_share", "", {}});
+  p.columns.push_back({"loss_emf", "V s/rad", {}});
+  for (const SteadyPoint& x : points) {
+    p.columns[3].x.push_back(x.esc_V * x.meter_A);
+    p.columns[4].x.push_back(x.speed_radps * x.meter_A / x.duty);
+  }
+  p.worst_condition = 5000.0;
+  return p;
+}
+
+// By both witnesses if the points tell them apart, and both have a share.
+Result<Fit> fit_losses(const std::vector<SteadyPoint>& points) {
+  const auto both = solve(witness_problem(points));
+  if (both && both.value().value("loss_share") > 0.0 && both.value().value("loss_share") < 1.0 &&
+      both.value().value("loss_emf") < 0.0) {
+    return both;
+  }
+  auto one = solve(loss_problem(points));
+  if (!one) return one.error();
+  for (const char* absent : {"loss_share", "loss_emf"}) {
+    one.value().coefficients.push_back({absent, "", 0.0, 0.0, 0.0});
+  }
+  return one;
+}
+
 Problem voltage_problem(const std::vector<Sample>& samples) {
   Problem p{"motor voltage",
             "motor voltage",
@@ -118,8 +147,12 @@ Result<Done> check_duty(const StandData& data) {
 
 double MotorFit::power_W(double voltage_V, double current_A, double speed_radps) const {
   const auto f = [](double x) { return static_cast<float>(x); };
-  return fw::esc::aerodynamic_power_W({f(loss_ohm.value), f(loss_V.value), f(drag.value)},
-                                      f(voltage_V), f(current_A), f(speed_radps));
+  const fw::esc::LossMap map{.loss_ohm = f(loss_ohm.value),
+                             .loss_V = f(loss_V.value),
+                             .share = f(loss_share.value),
+                             .back_emf_Vs = f(loss_emf.value),
+                             .drag_Nm = f(drag.value)};
+  return fw::esc::aerodynamic_power_W(map, f(voltage_V), f(current_A), f(speed_radps));
 }
 
 double MotorFit::power_W(const SteadyPoint& x) const {
@@ -131,7 +164,7 @@ Result<MotorFit> fit_motor(const StandData& data, const SenseFit& sense) {
   const std::vector<SteadyPoint> points = working_points(data);
   auto line = solve(line_problem(points));
   if (!line) return line.error();
-  auto losses = solve(loss_problem(points));
+  auto losses = fit_losses(points);
   if (!losses) return losses.error();
   std::vector<Sample> samples = data.sinusoid;
   for (Sample& s : samples) s.bus_A = sense.true_A(s.bus_A);
@@ -148,6 +181,8 @@ Result<MotorFit> fit_motor(const StandData& data, const SenseFit& sense) {
   motor.loss_ohm = motor.losses["loss_ohm"];
   motor.loss_V = motor.losses["loss_volt"];
   motor.drag = motor.losses["drag"];
+  motor.loss_share = motor.losses["loss_share"];
+  motor.loss_emf = motor.losses["loss_emf"];
   motor.torque_constant = inverse(motor.torque, "per torque", "kt", "N m/A");
   motor.no_load_current = motor.torque["no_load"];
   motor.back_emf = motor.voltage["ke"];

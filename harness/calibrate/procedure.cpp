@@ -75,9 +75,9 @@ class Procedure {
 
   Result<StandData> go() {
     for (const auto step :
-         {&Procedure::power_up, &Procedure::rest, &Procedure::start_motor, &Procedure::still,
-          &Procedure::steps, &Procedure::sinusoid, &Procedure::blown, &Procedure::updraft,
-          &Procedure::zero, &Procedure::stop_motor, &Procedure::rest}) {
+         {&Procedure::power_up, &Procedure::still, &Procedure::start_motor, &Procedure::steps,
+          &Procedure::sinusoid, &Procedure::blown, &Procedure::updraft, &Procedure::zero,
+          &Procedure::stop_motor, &Procedure::rest}) {
       if (auto good = (this->*step)(); !good) return good.error();
     }
     return std::move(data_);
@@ -117,13 +117,20 @@ class Procedure {
 
   Result<Done> turn(double duty) { return bench_.must("duty " + number(100.0 * duty)); }
 
+  // Every duty twice, in short runs that each start from a zero found anew: within seconds the shunt's
+  // offset wanders by more than the current sense shall err.
   Result<Done> still() {
-    for (const double duty : setup_.still) {
-      tell_("still air, duty " + number(100.0 * duty) + " %");
-      if (auto good = turn(duty); !good) return good;
-      if (auto good = measure(0.0, data_.still, true); !good) return good;
+    for (std::size_t run = 0; run < 2 * kInterleaved; ++run) {
+      if (auto good = rest(); !good) return good;
+      if (auto good = start_motor(); !good) return good;
+      for (std::size_t i = run % kInterleaved; i < setup_.still.size(); i += kInterleaved) {
+        tell_("still air, duty " + number(100.0 * setup_.still[i]) + " %");
+        if (auto good = turn(setup_.still[i]); !good) return good;
+        if (auto good = measure(0.0, data_.still, true); !good) return good;
+      }
+      if (auto good = stop_motor(); !good) return good;
     }
-    return Done{};
+    return rest();
   }
 
   Result<Done> blown() {
@@ -142,9 +149,11 @@ class Procedure {
     if (!(setup_.updraft_mps > 0.0)) return Done{};
     tell_("updraft " + number(setup_.updraft_mps) + " m/s");
     if (auto good = bench_.blow(-setup_.updraft_mps); !good) return good;
-    const double duty = setup_.blown[setup_.blown.size() / 2];
-    if (auto good = turn(duty); !good) return good;
-    return measure(-setup_.updraft_mps, data_.updraft, true);
+    for (const double duty : setup_.blown) {
+      if (auto good = turn(duty); !good) return good;
+      if (auto good = measure(-setup_.updraft_mps, data_.updraft, true); !good) return good;
+    }
+    return Done{};
   }
 
   // The wind is raised until thrust changes its sign; two points or more lie beyond.
@@ -230,6 +239,7 @@ class Procedure {
 
   static constexpr double kNear_N = 0.45;  // of zero thrust
   static constexpr std::size_t kFewest_about_zero = 5;
+  static constexpr std::size_t kInterleaved = 3;  // runs that make up all points in still air
   static constexpr double kStream_Hz = 500.0, kSwing_Hz = 2.0;
   static constexpr std::int64_t kTransient_ms = 5000;
 

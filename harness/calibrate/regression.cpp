@@ -123,10 +123,10 @@ Result<Fit> solve(const Problem& p) {
   const Eigen::JacobiSVD<MatrixXd> svd(scaled, Eigen::ComputeThinU | Eigen::ComputeThinV);
   const VectorXd& s = svd.singularValues();
   const double condition = s(0) / std::max(s(columns - 1), 1e-300);
-  if (!(condition < kWorstCondition)) {
+  if (!(condition < p.worst_condition)) {
     return refuse(p,
                   "the data do not tell " + blended(p, svd.matrixV().col(columns - 1)) +
-                      " apart (condition above " + std::to_string(std::lround(kWorstCondition)) +
+                      " apart (condition above " + std::to_string(std::lround(p.worst_condition)) +
                       ")",
                   "vary speed, thrust and inflow more");
   }

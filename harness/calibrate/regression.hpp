@@ -4,7 +4,7 @@
 //   Correlated residuals (samples of a transient) carry less than their number says: `ordered` widens
 //            the intervals by (1 + r) / (1 - r), r being the residuals' lag-one correlation
 //   Errors   bad_input: too few points, a value that is no number, columns that the data cannot tell
-//            apart (condition above kWorstCondition): the message names them
+//            apart (condition above worst_condition): the message names them
 #pragma once
 #include <string>
 #include <vector>
@@ -18,6 +18,8 @@ struct Column {
   std::vector<double> x;
 };
 
+inline constexpr double kWorstCondition = 1000.0;
+
 struct Problem {
   std::string name;          // "motor voltage"
   std::string wanted, unit;  // what y is
@@ -25,6 +27,7 @@ struct Problem {
   std::vector<Column> columns;    // y = sum of coefficient x column
   std::vector<double> weights{};  // of a residual, per point; empty: all 1
   bool ordered = false;           // in time: residuals may be correlated
+  double worst_condition = kWorstCondition;
 };
 
 struct Coefficient {
@@ -53,8 +56,6 @@ Coefficient quotient(const Fit& fit, const std::string& over, const std::string&
                      const std::string& name, const std::string& unit);
 Coefficient inverse(const Fit& fit, const std::string& of, const std::string& name,
                     const std::string& unit);
-
-inline constexpr double kWorstCondition = 1000.0;
 
 Result<Fit> solve(const Problem& problem);
 

@@ -26,6 +26,8 @@ std::vector<Setting> settings(const Calibration& c) {
       {"offset", c.sense.offset.value},
       {"loss_ohm", c.motor.loss_ohm.value},
       {"loss_volt", c.motor.loss_V.value},
+      {"loss_share", c.motor.loss_share.value},
+      {"loss_emf", c.motor.loss_emf.value},
       {"drag", c.motor.drag.value},
       {"inertia", c.motor.inertia.value},
       {"c0", c.rotor.c0.value},
@@ -35,6 +37,9 @@ std::vector<Setting> settings(const Calibration& c) {
       {"c4", c.rotor.c4},
       {"d0", c.rotor.d0.value},
       {"d1", c.rotor.d1.value},
+      {"power_from", c.rotor.range_radps.low},
+      {"power_to", c.rotor.range_radps.high},
+      {"speed_effect", c.rotor.speed_effect.value},
   };
   if (c.tell_motor) {
     all.push_back({"kt", c.motor.back_emf.value});
@@ -111,10 +116,10 @@ std::string table(const Calibration& c) {
       block(c.motor.torque, {c.motor.torque_constant, c.motor.no_load_current}) +
       block(c.motor.voltage, {c.motor.back_emf, c.motor.resistance, c.motor.overlap});
   text += block(c.motor.impulse, {c.motor.inertia}) +
-          block(c.motor.losses, {c.motor.loss_ohm, c.motor.loss_V, c.motor.drag});
+          block(c.motor.losses, c.motor.losses.coefficients);
   text += block(c.still.thrust, c.still.a) + block(c.still.torque, c.still.q) +
           block(c.rotor.zero, {c.rotor.c3}) +
-          block(c.rotor.power, {c.rotor.c0, c.rotor.d0, c.rotor.d1}) +
+          block(c.rotor.power, {c.rotor.c0, c.rotor.d0, c.rotor.d1, c.rotor.speed_effect}) +
           block(c.rotor.line, {c.rotor.c1, c.rotor.c2}) +
           format("  %-14s %13.5g  computed\n", "c4", c.rotor.c4);
   if (c.still.updraft_share > 0.0) {

@@ -58,8 +58,8 @@ std::vector<Chart> charts(const Calibration& c) {
   add_fit(all, "Motor", c.motor.torque, {c.motor.torque_constant, c.motor.no_load_current},
           "torque by the load cell / (N m)",
           column(working, [](const auto& p) { return p.torque_Nm; }));
-  add_fit(all, "Motor", c.motor.losses, {c.motor.loss_ohm, c.motor.loss_V, c.motor.drag},
-          "speed / rpm", column(working, rpm));
+  add_fit(all, "Motor", c.motor.losses, c.motor.losses.coefficients, "speed / rpm",
+          column(working, rpm));
   std::vector<double> x = column(c.data.sinusoid, rpm);
   for (const SteadyPoint& p : c.data.still) x.push_back(rpm(p));
   add_fit(all, "Motor", c.motor.voltage, {c.motor.back_emf, c.motor.resistance, c.motor.overlap},
@@ -68,8 +68,9 @@ std::vector<Chart> charts(const Calibration& c) {
   add_fit(all, "Propeller in still air", c.still.thrust, c.still.a, "speed / rpm", still);
   add_fit(all, "Propeller in still air", c.still.torque, c.still.q, "speed / rpm", still);
   const auto lambda = column(c.rotor.points, [](const auto& p) { return p.li + p.ls; });
-  add_fit(all, "Propeller in wind", c.rotor.power, {c.rotor.c0, c.rotor.d0, c.rotor.d1},
-          "inflow ratio lambda", lambda);
+  add_fit(all, "Propeller in wind", c.rotor.power,
+          {c.rotor.c0, c.rotor.d0, c.rotor.d1, c.rotor.speed_effect}, "inflow ratio lambda",
+          lambda);
   add_fit(all, "Propeller in wind", c.rotor.line, {c.rotor.c1, c.rotor.c2}, "inflow ratio lambda",
           lambda);
   const auto ct = column(c.rotor.points, [](const auto& p) { return p.CT; });

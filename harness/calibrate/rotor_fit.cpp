@@ -10,11 +10,14 @@ Error refuse(const std::string& what, const std::string& cure) {
   return {ErrorKind::bad_input, "fit of the rotor", what, cure};
 }
 
+constexpr double kMargin = 0.95;  // the maps hold a little beyond their points
+
 class Scale {  // to the middle speed, by the maps of still air
  public:
   Scale(const StillAirFit& still, double middle_radps) : still_(still), middle_(middle_radps) {}
   double CT(double CT, double w) const { return CT * still_.CT(middle_) / still_.CT(w); }
   double CP(double CP, double w) const { return CP * still_.CP(middle_) / still_.CP(w); }
+  double off_middle(double w) const { return w / middle_ - 1.0; }
 
  private:
   const StillAirFit& still_;
@@ -30,6 +33,7 @@ RotorPoint point_of(const SteadyPoint& x, double power_W, double radius_m, const
   p.CT = scale.CT(x.thrust_N / square, w);
   p.CP = scale.CP(power_W / (square * w), w);
   p.ls = x.wind_mps / (w * radius_m);
+  p.off_middle = scale.off_middle(w);
   return p;
 }
 
@@ -56,12 +60,6 @@ std::vector<RotorPoint> zero_points(const StandData& data, const Scale& scale) {
     points.back().CP = x.torque_Nm / (x.speed_radps * x.speed_radps);
   }
   return points;
-}
-
-double mean_speed(const std::vector<SteadyPoint>& points) {
-  double sum = 0.0;
-  for (const SteadyPoint& x : points) sum += x.speed_radps;
-  return points.empty() ? 0.0 : sum / static_cast<double>(points.size());
 }
 
 // CP where CT is zero: a line through points about it.
@@ -109,13 +107,14 @@ Result<Fit> fit_power(const RotorFit& fit) {
             "CP - c3",
             "W s3",
             {},
-            {{"c0", "m", {}}, {"c0 d0", "m", {}}, {"c0 d1", "m/CT", {}}}};
+            {{"c0", "m", {}}, {"c0 d0", "m", {}}, {"c0 d1", "m/CT", {}}, {"speed_effect", "", {}}}};
   for (const RotorPoint& x : fit.points) {
     const Inflow at = on_the_line(x.CT, fit);
     p.y.push_back(x.CP - fit.c3.value);
     p.columns[0].x.push_back(x.CT * at.ls);
     p.columns[1].x.push_back(x.CT * at.li);
     p.columns[2].x.push_back(x.CT * x.CT * at.li);
+    p.columns[3].x.push_back((fit.still_CP - x.CP) * x.off_middle);
     p.weights.push_back(x.wind_mps > 0.0 ? 1.0 : kStill_weight);
   }
   return solve(p);
@@ -130,7 +129,9 @@ double induced_inflow(double CT, double ls, double c4) {
 Result<RotorFit> fit_rotor(const StandData& data, const MotorFit& motor, const StillAirFit& still) {
   RotorFit fit;
   const double R = data.radius_m;
-  fit.middle_radps = mean_speed(data.blown);
+  const Range working = working_radps(data);
+  fit.range_radps = {kMargin * working.low, working.high / kMargin};
+  fit.middle_radps = 0.5 * (fit.range_radps.low + fit.range_radps.high);
   if (!(fit.middle_radps > 0.0)) return refuse("there are no points in wind", "see `winds`");
   const Scale scale(still, fit.middle_radps);
   fit.still_CT = still.CT(fit.middle_radps);
@@ -162,7 +163,9 @@ Result<RotorFit> fit_rotor(const StandData& data, const MotorFit& motor, const S
   fit.c0 = fit.power["c0"];
   fit.d0 = quotient(fit.power, "c0 d0", "c0", "d0", "");
   fit.d1 = quotient(fit.power, "c0 d1", "c0", "d1", "1/CT");
+  fit.speed_effect = fit.power["speed_effect"];
   for (RotorPoint& x : fit.points) {
+    x.CP -= fit.speed_effect.value * (fit.still_CP - x.CP) * x.off_middle;
     const Inflow at = on_the_line(x.CT, fit);
     x.kappa = ((x.CP - fit.c3.value) / (fit.c0.value * x.CT) - at.ls) / at.li;
   }

@@ -26,12 +26,16 @@ struct MotorConstants {
   float max_braking_A = 15.0f;  // of the winding, regenerated
 };
 
-// What of the electrical power does not reach the air at constant speed: (loss_ohm i + loss_V) i + drag
-// w, with i the bus current over the duty. Resistance, diodes and commutation are all in it, as one
-// bridge with one PWM pattern has them.
+// What of the electrical power does not reach the air at constant speed: (loss_ohm i + loss_V + share va
+// + back_emf_Vs w) i + drag w, with i the bus current over the duty and va the bus voltage times the
+// duty. Resistance, diodes and commutation are all in it, as one bridge with one PWM pattern has them.
+// share and back_emf_Vs (negative) weigh the second witness of power, Kt i w: voltage that the speed
+// does not explain is mostly lost. With share 1 it is the only one.
 struct LossMap {
   float loss_ohm = 0.12f;
   float loss_V = 0.25f;
+  float share = 0.0f;
+  float back_emf_Vs = 0.0f;
   float drag_Nm = 0.01005f;
 };
 
@@ -49,6 +53,19 @@ struct StaticMap {
   float CP(float w) const { return (q4 * w + q3) * w + q2; }
 };
 
+// Where the losses and the rotor's model were identified, and how they change with speed in there.
+struct PowerRange {
+  float from_radps = 0.0f;  // outside, power is not asked
+  float to_radps = 2000.0f;
+  // The share of power that inflow takes, at the same inflow ratio: times 1 + effect (w / middle - 1).
+  // The model has one blade; a soft one twists with its load, and Reynolds number moves its polars.
+  float speed_effect = 0.0f;
+
+  bool holds(float w) const { return w >= from_radps && w <= to_radps; }
+  float middle_radps() const { return 0.5f * (from_radps + to_radps); }
+  float effect_at(float w) const { return 1.0f + speed_effect * (w / middle_radps() - 1.0f); }
+};
+
 struct CurrentSense {
   float gain = 1.0f;
   float offset_A = 0.0f;  // taken off before the gain
@@ -57,6 +74,7 @@ struct CurrentSense {
 struct Calibration {
   MotorConstants motor;
   LossMap losses;
+  PowerRange power;
   StaticMap free_air;
   CurrentSense sense;
   // From this share of still air's power on, an updraft may give the same power as a downdraft: nothing

@@ -10,8 +10,11 @@ constexpr Innovation kSpeedGains{.kp = 120.0f, .ki = 3600.0f};  // two poles at 
 constexpr float kSmoothing_s = 0.05f;                           // of CP, at constant speed
 constexpr float kMinSpeed_radps = 150.0f;  // below, w^3 makes noise of everything
 
-constexpr float kPower_error = 0.004f;  // the shunt wanders by 10 mA
+constexpr float kShunt_A = 0.008f;  // one sigma: it wanders since its zero was found
 constexpr float kUsual_change = 0.05f;
+// Air from above of up to 0.8 m/s takes 0.2 % of power, which no shunt shows, and 3.4 % of thrust.
+constexpr float kUnseen_loss = 0.034f;
+constexpr float kOne_sided = 1.1f;  // a shared_power beyond says that the air comes from above
 
 }  // namespace
 
@@ -49,6 +52,7 @@ void ThrustEstimator::update(float bus_V, float duty, float bus_A, float speed_r
   duty_.update(duty);
   current_A_ = bus_A_.update(bus_A) / duty_.value();
   bus_V_ = bus_V;
+  speed_radps_ = w;
   const float shaft_Nm =
       aerodynamic_power_W(calibration_.losses, bus_V * duty_.value(), current_A_, w) / w;
   speed_.update(shaft_Nm, w);
@@ -60,13 +64,16 @@ void ThrustEstimator::update(float bus_V, float duty, float bus_A, float speed_r
   const float share = acceleration_Nm / torque_Nm;
   const float trust = 1.0f / (1.0f + 25.0f * share * share);
   const float blend = period_s_ / (kSmoothing_s + period_s_);
-  power_ratio_ += blend * trust * (ratio - power_ratio_);
+  power_ratio_ += calibration_.power.holds(w) ? blend * trust * (ratio - power_ratio_)
+                                              : blend * (1.0f - power_ratio_);
   CP_ = power_ratio_ * calibration_.free_air.CP(w);
 
   const bool gaps = has_gaps(calibration_.motor, bus_V_, duty_.value(), current_A_);
   gapless_s_ = gaps ? 0.0f : gapless_s_ + period_s_;
   last_ = conclude();
-  const float found = observable() ? 1.0f + confidence() * (last_.CT / still_.CT - 1.0f) : 1.0f;
+  const float expected = expected_ratio();
+  const float found =
+      observable() ? expected + confidence() * (last_.CT / still_.CT - expected) : expected;
   thrust_ratio_ += blend * (found - thrust_ratio_);
   CT_ = thrust_ratio_ * calibration_.free_air.CT(w);
   thrust_N_ = CT_ * w * w;
@@ -76,24 +83,42 @@ ThrustEstimate ThrustEstimator::conclude() {
   ThrustEstimate nothing;
   if (!calibration_.identified || !still_.real) return nothing;
   nothing.status = Estimate::not_observable;
-  if (power_ratio_ >= calibration_.shared_power - 2.0f * kPower_error) return nothing;
+  const float most = calibration_.shared_power < 1.0f ? calibration_.shared_power : 1.0f;
+  if (power_ratio_ >= most - 2.0f * power_error()) return nothing;
   if (gapless_s_ < kSmoothing_s) return nothing;  // the ratio still holds what gaps made of it
-  return solver_.solve(power_ratio_ * still_.CP);
+  if (!calibration_.power.holds(speed_radps_)) return nothing;
+  const float taken = (1.0f - power_ratio_) * calibration_.power.effect_at(speed_radps_);
+  return solver_.solve((1.0f - taken) * still_.CP);
 }
 
-// Between still air and what power says, as their variances weigh: power errs by kPower_error, which
-// the leverage makes an error of thrust; inflow moves thrust by kUsual_change.
+// Of thrust, before power is asked.
+float ThrustEstimator::expected_ratio() const {
+  const bool one_sided = calibration_.identified && calibration_.shared_power > kOne_sided;
+  return one_sided ? 1.0f - 0.5f * kUnseen_loss : 1.0f;
+}
+
+// One sigma, as a share. Pre: it turns.
+float ThrustEstimator::power_error() const {
+  const float w = speed_radps_;
+  return kShunt_A * watts_per_ampere() / (calibration_.free_air.CP(w) * w * w * w);
+}
+
+float ThrustEstimator::watts_per_ampere() const {
+  const float duty = duty_.value();
+  return power_per_bus_ampere_W(calibration_.losses, bus_V_ * duty, current_A_, speed_radps_, duty);
+}
+
+// Between what is expected and what power says, as their variances weigh: power errs with the shunt,
+// which the leverage makes an error of thrust; inflow moves thrust by kUsual_change.
 float ThrustEstimator::confidence() const {
   if (!observable()) return 0.0f;
-  const float noise = last_.leverage * kPower_error / kUsual_change;
+  const float noise = last_.leverage * power_error() / kUsual_change;
   return 1.0f / (1.0f + noise * noise);
 }
 
 float ThrustEstimator::thrust_per_ampere() const {
   if (!observable() || !(power_W_ > 0.0f)) return 0.0f;
-  const float duty = duty_.value();
-  const float watts = power_per_bus_ampere_W(calibration_.losses, bus_V_ * duty, current_A_, duty);
-  return thrust_N_ * confidence() * last_.leverage * watts / power_W_;
+  return thrust_N_ * confidence() * last_.leverage * watts_per_ampere() / power_W_;
 }
 
 }  // namespace fw::esc

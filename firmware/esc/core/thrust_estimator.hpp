@@ -5,8 +5,9 @@
 //           speed; inflow and CT by ThrustSolver; T = CT w^2
 //   Scale   the model gives the shape over inflow, the static map thrust and power in still air: so
 //           both follow the Reynolds number, and in still air both controllers agree
-//   Where power decides nothing about inflow, CT of free air is used and observable() says so; where
-//           it decides little, the estimate lies between the two, as their errors weigh
+//   Where power decides nothing about inflow, observable() says so and CT of free air is used, or, if
+//           air is known to come from above only, the CT in the middle of what cannot be told from
+//           free air; where it decides little, the estimate lies between the two, as their errors weigh
 //   Source  [Bangura 2017, eq. 5.4 and Algorithm 1]
 #pragma once
 #include "firmware/esc/core/calibration.hpp"
@@ -39,6 +40,9 @@ class ThrustEstimator {
  private:
   ThrustEstimate conclude();
   float confidence() const;
+  float expected_ratio() const;
+  float power_error() const;
+  float watts_per_ampere() const;
 
   Calibration calibration_;
   float period_s_;
@@ -49,6 +53,7 @@ class ThrustEstimator {
   ThrustEstimate last_{};
   float bus_V_ = 0.0f;
   float current_A_ = 0.0f;
+  float speed_radps_ = 0.0f;
   float power_W_ = 0.0f;
   float CP_ = 0.0f;
   float CT_ = 0.0f;

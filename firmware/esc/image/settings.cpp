@@ -16,7 +16,7 @@ struct Stored {
   std::uint32_t crc;
 };
 static_assert(sizeof(Stored) % 4 == 0 && sizeof(Stored) <= 1024);
-constexpr std::uint32_t kMagic = 0x5E77'0001;
+constexpr std::uint32_t kMagic = 0x5E77'0002;
 
 std::uint32_t crc32(const void* data, std::uint32_t size) {
   const auto* bytes = static_cast<const std::uint8_t*>(data);

@@ -34,13 +34,14 @@ Calibration calibrated(Mode mode) {
   c.rotor = kRotor;
   c.free_air = {.a2 = at_inflow(kRotor, 0.0f).CT, .a1 = 0.0f, .q2 = at_inflow(kRotor, 0.0f).CP};
   c.identified = true;
-  c.shared_power = 2.0f;  // this rotor's power rises in an updraft
+  c.shared_power = 1.0f;  // this rotor's power rises in an updraft
   return c;
 }
 
 class Bench {
  public:
   explicit Bench(Mode mode) : core(calibrated(mode)) {}
+  explicit Bench(const Calibration& calibration) : core(calibration) {}
 
   // Set-points as the bus sends them: one every 20 ms.
   void hold(double value, int ms) {
@@ -128,6 +129,55 @@ TEST(ThrustByPower, AnUpdraftLeavesItWithTheStaticMapAndItSaysSo) {
   EXPECT_FALSE(by_power.core.estimator().observable());
   EXPECT_TRUE(
       near(by_power.mean_thrust_N(500), by_rpm.mean_thrust_N(500), stated(0.01, "same map")));
+}
+
+// Told that air comes from above only, it expects half of what power cannot show: 1.7 % of thrust.
+TEST(ThrustByPower, WithAirFromAboveOnlyItErrsLittleWherePowerTellsNothing) {
+  Calibration one_sided = calibrated(Mode::thrust_by_power);
+  one_sided.shared_power = 2.0f;
+  one_sided.free_air.q2 *= 0.98f;  // so that still air reads as more power than there is
+  Bench bench(one_sided);
+  bench.start(3.2);
+  EXPECT_FALSE(bench.core.estimator().observable());
+  EXPECT_TRUE(near(bench.mean_thrust_N(500), 3.2 * 1.017, stated(0.01, "set-point step")));
+}
+
+TEST(ThrustByPower, BeyondItsCalibratedSpeedsItIsTheStaticMap) {
+  const auto lost_N = [](const PowerRange& range, bool& observable) {
+    Calibration c = calibrated(Mode::thrust_by_power);
+    c.power = range;
+    Bench bench(c);
+    bench.start(3.2);
+    bench.down_mps = 4.2;
+    bench.hold(3.2, 1500);
+    observable = bench.core.estimator().observable();
+    return 3.2 - bench.mean_thrust_N(500);
+  };
+  bool observable = false;
+  EXPECT_LT(lost_N({.from_radps = 300.0f, .to_radps = 700.0f}, observable), 0.02);
+  EXPECT_TRUE(observable);
+  for (const PowerRange& elsewhere : {PowerRange{.from_radps = 600.0f, .to_radps = 900.0f},
+                                      PowerRange{.from_radps = 200.0f, .to_radps = 400.0f}}) {
+    EXPECT_GT(lost_N(elsewhere, observable), 0.4);
+    EXPECT_FALSE(observable);
+  }
+}
+
+// A blade on which inflow takes a fifth less power per 20 % of speed over the middle.
+TEST(ThrustByPower, FollowsTheSpeedsEffectOnWhatInflowTakes) {
+  const PowerRange range{.from_radps = 300.0f, .to_radps = 500.0f, .speed_effect = -1.0f};
+  EXPECT_FLOAT_EQ(range.effect_at(400.0f), 1.0f);
+  EXPECT_FLOAT_EQ(range.effect_at(480.0f), 0.8f);
+  Calibration told = calibrated(Mode::thrust_by_power);
+  told.power = {.from_radps = 300.0f, .to_radps = 500.0f, .speed_effect = -1.0f};
+  Bench with(told), without(calibrated(Mode::thrust_by_power));
+  for (Bench* bench : {&with, &without}) {
+    bench->start(3.2);
+    bench->down_mps = 4.2;
+    bench->hold(3.2, 1500);
+  }
+  ASSERT_GT(with.speed, 440.0);  // over the middle: it thinks less of the same loss of power
+  EXPECT_LT(with.mean_thrust_N(500), without.mean_thrust_N(500) - 0.03);
 }
 
 TEST(ThrustByPower, WithoutACalibrationItIsTheStaticMap) {
@@ -221,6 +271,13 @@ TEST(Power, HoldsTheAerodynamicPowerInMovingAir) {
     bench.hold(18.0, 2000);
     EXPECT_TRUE(near(bench.power_W(), 18.0, stated(0.1, "set-point step of 0.03 W, filters")));
   }
+}
+
+TEST(PowerBalance, IsTorqueTimesSpeedWhereTheBackEmfIsTheOnlyWitness) {
+  const LossMap map{
+      .loss_ohm = 0.0f, .loss_V = 0.0f, .share = 1.0f, .back_emf_Vs = -0.01f, .drag_Nm = 0.01f};
+  EXPECT_FLOAT_EQ(aerodynamic_power_W(map, 6.0f, 5.0f, 400.0f), 0.01f * (5.0f - 1.0f) * 400.0f);
+  EXPECT_FLOAT_EQ(power_per_bus_ampere_W(map, 6.0f, 5.0f, 400.0f, 0.5f), 0.01f * 400.0f / 0.5f);
 }
 
 TEST(PowerBalance, KnowsWhereTheCurrentHasGaps) {
