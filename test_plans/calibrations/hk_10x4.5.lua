@@ -5,5 +5,6 @@ return {
   image = "esc", board = "esc32v2",
   stand = { prop = "hk_10x4.5", supply = "16.4 V" },
   diameter = "10 in",
-  warm_up = "100 s", -- the current sense's offset settles
+  updraft = "3.5 m/s", -- as that of the gust crossing
+  warm_up = "100 s",   -- the current sense's offset settles
 }
