@@ -7,6 +7,7 @@
 #include "harness/calibrate/procedure.hpp"
 #include "harness/calibrate/report.hpp"
 #include "harness/cli/console.hpp"
+#include "harness/cli/find_file.hpp"
 #include "harness/cli/find_plans.hpp"
 #include "results/folder.hpp"
 
@@ -15,16 +16,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using calibrate::Calibration;
-
-int complain(const Error& error) {
-  std::fprintf(stderr, "whirl: %s\n", error.message().c_str());
-  return error.kind == ErrorKind::bad_input ? 2 : error.kind == ErrorKind::host ? 3 : 4;
-}
-
-std::string named(const std::string& written, const std::string& folder,
-                  const std::string& extension) {
-  return written.find('/') != std::string::npos ? written : folder + "/" + written + extension;
-}
 
 struct Parts {
   plan::Plan plan;
@@ -35,20 +26,21 @@ struct Parts {
 
 Result<Done> compose(const calibrate::Setup& setup, const Composition& composition, Parts& parts) {
   const std::string& root = composition.root;
-  auto board = read_board(named(setup.board, root + "/test_plans/boards", ".lua"));
+  const Asker who{setup.file, setup.file};
+  const auto board_path = find_file(setup.board, who, {root + "/test_plans/boards"}, ".lua");
+  if (!board_path) return board_path.error();
+  auto board = read_board(shown_path(board_path.value()));
   if (!board) return board.error();
   parts.board = board.value();
   parts.board.watch.clear();
   parts.plan.name = "calibration";
   parts.plan.file = parts.plan.place = setup.file;
   parts.plan.stand = setup.stand;
-  const std::string image = named(setup.image, root + "/build/firmware", ".elf");
-  if (!fs::is_regular_file(image)) {
-    return Error{ErrorKind::bad_input, setup.file, "no image at " + image, "./whirl builds it"};
-  }
+  const auto image = find_file(setup.image, who, {root + "/build/firmware"}, ".elf");
+  if (!image) return image.error();
   const Setup all{parts.plan, parts.board,
-                  root,       image,
-                  "",         board_json(parts.board, {.image = image, .seed = setup.seed}),
+                  root,       image.value(),
+                  "",         board_json(parts.board, {.image = image.value(), .seed = setup.seed}),
                   setup.seed, 0};
   auto world = composition.world(all);
   if (!world) return world.error();

@@ -42,6 +42,19 @@ std::string word(results::Verdict verdict) {
 
 }  // namespace
 
+int complain(const Error& error) {
+  std::fprintf(stderr, "whirl: %s\n", error.message().c_str());
+  switch (error.kind) {
+    case ErrorKind::bad_input:
+      return 2;
+    case ErrorKind::host:
+      return 3;
+    case ErrorKind::internal:
+      return 4;
+  }
+  return 4;
+}
+
 bool is_terminal() {
   return isatty(STDERR_FILENO) != 0;
 }

@@ -12,6 +12,9 @@ bool is_terminal();  // standard error is one
 ProgressSink progress_line(const std::string& plan);
 void clear_progress();
 
+// An error's message on standard error. Returns the exit code that it stands for.
+int complain(const Error& error);
+
 // One plan's outcome: a line, and the failed expectations below it.
 std::string outcome(const Finished& finished);
 std::string summary(int passed, int failed, int inconclusive, int errors);

@@ -62,8 +62,7 @@ int run_command(const RunOptions& options, const Composition& composition) {
   const FoundPlans found = find_plans(options, composition.root);
   int code = 0;
   for (const Error& error : found.errors) {
-    std::fprintf(stderr, "whirl: %s\n", error.message().c_str());
-    code = results::worse_exit_code(code, error.kind == ErrorKind::bad_input ? 2 : 4);
+    code = results::worse_exit_code(code, complain(error));
   }
   if (options.gdb && found.plans.size() > 1) {
     std::fprintf(stderr, "whirl: --gdb wants one plan, not %zu (name it, or use --only)\n",

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "harness/cli/find_file.hpp"
 #include "harness/cli/versions.hpp"
 #include "results/folder.hpp"
 
@@ -10,23 +11,6 @@ namespace whirl::cli {
 namespace {
 
 namespace fs = std::filesystem;
-
-// "flight" -> build/firmware/flight.elf; a path is taken as it is, or beside the plan.
-Result<std::string> find_file(const std::string& written, const plan::Plan& plan,
-                              const std::vector<std::string>& places,
-                              const std::string& extension) {
-  std::vector<std::string> tried;
-  if (written.find('/') != std::string::npos || fs::path(written).has_extension()) {
-    tried = {(fs::path(plan.file).parent_path() / written).string(), written};
-  } else {
-    for (const std::string& place : places) tried.push_back(place + "/" + written + extension);
-  }
-  for (const std::string& path : tried) {
-    if (fs::is_regular_file(path)) return fs::weakly_canonical(path).string();
-  }
-  return Error{ErrorKind::bad_input, plan.place, "'" + written + "' is not there",
-               "looked for " + fs::path(tried.front()).lexically_normal().string()};
-}
 
 void announce_gdb(const Setup& setup) {
   std::fprintf(
@@ -48,14 +32,15 @@ Result<RunRecord> run_record(const PlanChoice& choice, const RunOptions& options
   WHIRL_CHECK(plan != nullptr, choice.name);
 
   const std::string& root = composition.root;
-  const auto board_path = find_file(plan->board, *plan, {root + "/test_plans/boards"}, ".lua");
+  const Asker who{plan->file, plan->place};
+  const auto board_path = find_file(plan->board, who, {root + "/test_plans/boards"}, ".lua");
   if (!board_path) return board_path.error();
   auto board = read_board(shown_path(board_path.value()));
   if (!board) return board.error();
   for (const std::string& function : plan->watch) {
     if (board.value().watch_number(function) < 0) board.value().watch.push_back(function);
   }
-  const auto image = find_file(plan->image, *plan,
+  const auto image = find_file(plan->image, who,
                                {root + "/build/firmware", root + "/build/firmware/images"}, ".elf");
   if (!image) return image.error();
 
@@ -68,7 +53,7 @@ Result<RunRecord> run_record(const PlanChoice& choice, const RunOptions& options
               options.seed.value_or(plan->seed),
               options.gdb ? options.gdb_port : 0};
   if (!plan->vehicle.empty()) {
-    const auto vehicle = find_file(plan->vehicle, *plan, {root + "/test_plans/vehicles"}, ".lua");
+    const auto vehicle = find_file(plan->vehicle, who, {root + "/test_plans/vehicles"}, ".lua");
     if (!vehicle) return vehicle.error();
     setup.vehicle_file = shown_path(vehicle.value());
   }

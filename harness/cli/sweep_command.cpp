@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "harness/cli/console.hpp"
 #include "harness/cli/find_plans.hpp"
 #include "harness/cli/page_command.hpp"
 #include "harness/flight/propeller_file.hpp"
@@ -95,11 +96,6 @@ Result<Done> write_csv(const std::string& path, const std::vector<results::Chart
   }
   if (!out.flush()) return Error{ErrorKind::host, path, "cannot be written", ""};
   return Done{};
-}
-
-int complain(const Error& error) {
-  std::fprintf(stderr, "whirl: %s\n", error.message().c_str());
-  return error.kind == ErrorKind::bad_input ? 2 : 4;
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "harness/cli/console.hpp"
 #include "harness/cli/find_plans.hpp"
 #include "harness/cli/page_command.hpp"
 #include "harness/flight/propeller_file.hpp"
@@ -29,11 +30,6 @@ results::Chart chart_of(const std::string& group, const plant::Proof& proof) {
 void add(std::vector<results::Chart>& charts, const std::string& group,
          const std::vector<plant::Proof>& proofs) {
   for (const plant::Proof& proof : proofs) charts.push_back(chart_of(group, proof));
-}
-
-int complain(const Error& error) {
-  std::fprintf(stderr, "whirl: %s\n", error.message().c_str());
-  return error.kind == ErrorKind::bad_input ? 2 : 4;
 }
 
 }  // namespace
