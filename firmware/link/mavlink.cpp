@@ -5,7 +5,6 @@ namespace {
 
 constexpr std::uint8_t kStart = 0xFD;
 constexpr std::uint8_t kSigned = 0x01;
-constexpr std::uint16_t kCrcStart = 0xFFFF;
 
 }  // namespace
 
@@ -33,12 +32,6 @@ int crc_extra(std::uint32_t id) {
       return 83;
   }
   return -1;
-}
-
-std::uint16_t crc_add(std::uint16_t crc, std::uint8_t byte) {
-  auto x = static_cast<std::uint8_t>(byte ^ (crc & 0xFF));
-  x = static_cast<std::uint8_t>(x ^ (x << 4));
-  return static_cast<std::uint16_t>((crc >> 8) ^ (x << 8) ^ (x << 3) ^ (x >> 4));
 }
 
 bool Parser::push(std::uint8_t byte) {

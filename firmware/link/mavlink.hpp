@@ -9,6 +9,8 @@
 #include <cstring>
 #include <span>
 
+#include "firmware/link/crc16.hpp"
+
 namespace fw::mavlink {
 
 inline constexpr std::size_t kMaxPayload = 255, kOverhead = 12;
@@ -29,8 +31,6 @@ enum MessageId : std::uint32_t {
 
 // CRC_EXTRA, or -1 for a message we do not know.
 int crc_extra(std::uint32_t id);
-
-std::uint16_t crc_add(std::uint16_t crc, std::uint8_t byte);
 
 struct Frame {
   std::uint32_t id = 0;

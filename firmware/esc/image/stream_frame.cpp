@@ -2,22 +2,12 @@
 
 #include <bit>
 
+#include "firmware/link/crc16.hpp"
+
 namespace fw::esc {
 namespace {
 
 constexpr std::size_t kSync = 2;
-
-// CRC-16/MCRF4XX, four bits at a time.
-constexpr std::array<std::uint16_t, 16> make_nibbles() {
-  std::array<std::uint16_t, 16> table{};
-  for (unsigned n = 0; n < 16; ++n) {
-    unsigned crc = n;
-    for (int bit = 0; bit < 4; ++bit) crc = (crc & 1) != 0 ? (crc >> 1) ^ 0x8408u : crc >> 1;
-    table[n] = static_cast<std::uint16_t>(crc);
-  }
-  return table;
-}
-constexpr auto kNibbles = make_nibbles();
 
 class Writer {
  public:
@@ -28,11 +18,9 @@ class Writer {
   }
   void number(float value) { word(std::bit_cast<std::uint32_t>(value)); }
   void crc() {
-    std::uint32_t crc = 0xFFFF;
+    std::uint16_t crc = kCrcStart;
     for (std::size_t i = kSync; i < n_; ++i) {
-      crc ^= static_cast<std::uint8_t>(frame_[i]);
-      crc = (crc >> 4) ^ kNibbles[crc & 15];
-      crc = (crc >> 4) ^ kNibbles[crc & 15];
+      crc = crc_add(crc, static_cast<std::uint8_t>(frame_[i]));
     }
     byte(crc);
     byte(crc >> 8);
