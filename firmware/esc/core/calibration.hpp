@@ -57,8 +57,8 @@ struct StaticMap {
 struct PowerRange {
   float from_radps = 0.0f;  // outside, power is not asked
   float to_radps = 2000.0f;
-  // The share of power that inflow takes, at the same inflow ratio: times 1 + effect (w / middle - 1).
-  // The model has one blade; a soft one twists with its load, and Reynolds number moves its polars.
+  // The share of power that inflow takes is the model's after it is multiplied by 1 + effect (w / middle
+  // - 1): the model has one blade, but a soft one twists, and Reynolds number moves the polars.
   float speed_effect = 0.0f;
 
   bool holds(float w) const { return w >= from_radps && w <= to_radps; }
