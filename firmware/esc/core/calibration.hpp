@@ -68,7 +68,8 @@ struct PowerRange {
 
 struct CurrentSense {
   float gain = 1.0f;
-  float offset_A = 0.0f;  // taken off before the gain
+  float offset_A = 0.0f;   // taken off before the gain
+  float warm_up_A = 0.4f;  // what the zero drifts by after power-up, one sigma
 };
 
 struct Calibration {

@@ -186,7 +186,9 @@ Drive Core::tick(const Sensed& sensed) {
   bus_current_A_ += kPeriod_s / (kStatusFilter_s + kPeriod_s) * (bus_A - bus_current_A_);
   guard(sensed);
 
+  offset_error_.tick(!drive_.energised);
   if (drive_.energised && drive_.duty > 0.01f) {
+    estimator_.expect_offset(offset_error_.amperes(sense.warm_up_A));
     estimator_.update(sensed.bus_voltage_V, drive_.duty, bus_A, sensed.speed_radps);
   }
   saturated_ = false;

@@ -10,6 +10,7 @@
 
 #include "firmware/esc/core/calibration.hpp"
 #include "firmware/esc/core/protocol.hpp"
+#include "firmware/esc/core/sensing.hpp"
 #include "firmware/esc/core/speed_controller.hpp"
 #include "firmware/esc/core/supervisor.hpp"
 #include "firmware/esc/core/thrust_estimator.hpp"
@@ -73,6 +74,7 @@ class Core {
 
   Calibration calibration_;
   Supervisor supervisor_;
+  OffsetError offset_error_{kPeriod_s};
   ThrustEstimator estimator_;
   SpeedController speed_control_;
   Sensed sensed_{};

@@ -34,6 +34,7 @@ inline constexpr Parameter kParameters[] = {
     {"q2", [](Calibration& c) -> float& { return c.free_air.q2; }},
     {"gain", [](Calibration& c) -> float& { return c.sense.gain; }},
     {"offset", [](Calibration& c) -> float& { return c.sense.offset_A; }},
+    {"warm_up", [](Calibration& c) -> float& { return c.sense.warm_up_A; }},
     {"power_from", [](Calibration& c) -> float& { return c.power.from_radps; }},
     {"power_to", [](Calibration& c) -> float& { return c.power.to_radps; }},
     {"speed_effect", [](Calibration& c) -> float& { return c.power.speed_effect; }},

@@ -37,6 +37,26 @@ class ZeroCurrent {
   bool known_ = false, known_before_ = false;
 };
 
+// How far the offset may have gone since it was found, one sigma: it wanders by a little for ever, and
+// by much more in the first 100 s after power-up.
+class OffsetError {
+ public:
+  explicit OffsetError(float period_s) : share_(period_s / kTime_s) {}
+  void tick(bool rests) {
+    cold_ = cold_ > 1e-3f ? cold_ - share_ * cold_ : 0.0f;
+    gone_ = rests ? 0.0f : gone_ + share_ * (1.0f - gone_);
+  }
+  // warm_up_A: of the drift after power-up, one sigma.
+  float amperes(float warm_up_A) const { return kWander_A + warm_up_A * cold_ * gone_; }
+
+ private:
+  static constexpr float kWander_A = 0.008f;
+  static constexpr float kTime_s = 30.0f;  // of the drift
+  float share_;
+  float cold_ = 1.0f;  // of the drift, still to come
+  float gone_ = 0.0f;  // of that, since the last rest
+};
+
 // The shunt's amplifier (1 kHz) makes pulses of the PWM (20 kHz) nearly their mean; sampled at their
 // end it stands at (1 - e^-dx) / (d (1 - e^-x)) of it, x = 0.314: 13 % above at a duty of 0.2. Here to
 // 0.2 % of the mean.

@@ -3,8 +3,9 @@
 //
 //   Law     T = r CT(w) w^2, P = p CP(w) w^3; r and p are the rotor's thrust and power
 //           over those in still air (ThrustEstimator), both 1 where nothing is known
-//   Why not an integrator over thrust: r and p move with inflow only, not with speed, so a step of the
-//           set-point needs no correction at all and rises as under the RPM controller
+//   Why not an integrator over thrust: r and p move with the inflow ratio only, and the estimator
+//           carries them along as the rotor's own speed changes that, so a step of the set-point
+//           rises as under the RPM controller
 #pragma once
 #include <cmath>
 

@@ -21,6 +21,7 @@ class ThrustEstimator {
 
   // What was measured over the last period, and the duty (above 0) that was applied in it.
   void update(float bus_V, float duty, float bus_A, float speed_radps);
+  void expect_offset(float bus_A) { offset_A_ = bus_A; }  // error of the current's zero, one sigma
   void restart(float speed_radps);
 
   float power_W() const { return power_W_; }  // aerodynamic, at this moment
@@ -38,6 +39,7 @@ class ThrustEstimator {
   float thrust_per_ampere() const;
 
  private:
+  void carry_to(float speed_radps);
   ThrustEstimate conclude();
   float confidence() const;
   float expected_ratio() const;
@@ -54,9 +56,11 @@ class ThrustEstimator {
   float bus_V_ = 0.0f;
   float current_A_ = 0.0f;
   float speed_radps_ = 0.0f;
+  float offset_A_ = 0.0f;
   float power_W_ = 0.0f;
   float CP_ = 0.0f;
   float CT_ = 0.0f;
+  float unrest_ = 0.0f;     // share of the rotor's own inertia in the torque, squared, lately
   float gapless_s_ = 0.0f;  // how long the winding current has had none
   float power_ratio_ = 1.0f;
   float thrust_ratio_ = 1.0f;

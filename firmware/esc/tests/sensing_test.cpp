@@ -34,6 +34,25 @@ TEST(ZeroCurrent, DoesNotTakeTheCurrentThatDiesAwayForAnOffset) {
   EXPECT_TRUE(near(zero.offset_A(), 4.3, stated(1e-5, "float")));
 }
 
+// Drift of 0.4 A with 30 s, known at every rest: in closed form.
+TEST(OffsetError, GrowsSinceTheLastRestAndLessWhenWarm) {
+  OffsetError error(1e-3f);
+  const auto run = [&](bool rests, int ms) {
+    for (int i = 0; i < ms; ++i) error.tick(rests);
+    return error.amperes(0.4f);
+  };
+  const auto drift_A = [](double at_s, double since_s) {
+    return 0.008 + 0.4 * std::exp(-at_s / 30.0) * (1.0 - std::exp(-since_s / 30.0));
+  };
+  EXPECT_TRUE(near(run(true, 2000), 0.008, stated(1e-6, "float")));
+  EXPECT_TRUE(near(run(false, 3000), drift_A(5.0, 3.0), stated(1e-4, "steps of 1 ms")));
+  EXPECT_TRUE(near(run(false, 15'000), drift_A(20.0, 18.0), stated(1e-3, "float increments")));
+  EXPECT_TRUE(near(run(true, 1), 0.008, stated(1e-6, "known anew")));
+  EXPECT_TRUE(near(run(true, 250'000), 0.008, stated(1e-6, "float")));
+  EXPECT_TRUE(near(run(false, 60'000), 0.008, stated(1e-6, "settled")));
+  EXPECT_TRUE(near(error.amperes(0.0f), 0.008, stated(1e-6, "told that it is warm")));
+}
+
 // Amplifier in closed form: pulses of 10 A for a share d of 50 us behind a pole of 1 kHz, in the steady
 // state, at their end.
 TEST(Sensing, RippleOfTheAmplifierIsTakenOut) {

@@ -29,11 +29,13 @@ constexpr float kRadius_m = 0.127f;
 Calibration calibrated(Mode mode) {
   Calibration c;
   c.mode = mode;
+  c.motor.inductance_H = 1e-4f;
   c.motor.overlap_ohm_s = 0.0f;  // the bench has no commutation
   c.losses = {.loss_ohm = 0.16f, .loss_V = 0.0f, .drag_Nm = 0.01005f};
   c.rotor = kRotor;
   c.free_air = {.a2 = at_inflow(kRotor, 0.0f).CT, .a1 = 0.0f, .q2 = at_inflow(kRotor, 0.0f).CP};
   c.identified = true;
+  c.sense.warm_up_A = 0.0f;
   c.shared_power = 1.0f;  // this rotor's power rises in an updraft
   return c;
 }
@@ -163,6 +165,22 @@ TEST(ThrustByPower, BeyondItsCalibratedSpeedsItIsTheStaticMap) {
   }
 }
 
+// Seconds after power-up the shunt's zero drifts by more than inflow takes; after two minutes it does
+// not.
+TEST(ThrustByPower, WaitsForTheShuntToSettle) {
+  Calibration cold = calibrated(Mode::thrust_by_power);
+  cold.sense.warm_up_A = 0.4f;
+  for (const bool settled : {false, true}) {
+    Bench bench(cold);
+    bench.hold(0.0, settled ? 120'000 : 600);
+    bench.start(3.2);
+    bench.down_mps = 1.2;
+    bench.hold(3.2, 1500);
+    EXPECT_EQ(bench.core.estimator().observable(), settled);
+    EXPECT_EQ(3.2 - bench.mean_thrust_N(500) < 0.05, settled);
+  }
+}
+
 // A blade on which inflow takes a fifth less power per 20 % of speed over the middle.
 TEST(ThrustByPower, FollowsTheSpeedsEffectOnWhatInflowTakes) {
   const PowerRange range{.from_radps = 300.0f, .to_radps = 500.0f, .speed_effect = -1.0f};
@@ -208,6 +226,24 @@ TEST(ThrustByPower, ConcludesNothingFromPowerThatAnUpdraftMayShare) {
   }
 }
 
+TEST(ThrustByPower, DoesNotWaverWhereItJustBeginsToTell) {
+  Calibration cautious = calibrated(Mode::thrust_by_power);
+  cautious.shared_power = 0.96f;
+  Bench bench(cautious);
+  bench.start(3.2);
+  const auto turns = [&](bool wanted, double step_mps) {
+    for (int i = 0; i < 200 && bench.core.estimator().observable() != wanted; ++i) {
+      bench.down_mps += step_mps;
+      bench.hold(3.2, 300);
+    }
+    return bench.down_mps;
+  };
+  const double on_mps = turns(true, 0.05), off_mps = turns(false, -0.05);
+  EXPECT_GT(on_mps, 1.0);
+  EXPECT_GT(off_mps, 1.0);
+  EXPECT_LT(off_mps, on_mps - 0.1);
+}
+
 TEST(ThrustByPower, RisesAsTheRpmControllerDoesOnAnySupply) {
   for (double volts : {14.0, 15.7, 16.8}) {
     Bench bench(Mode::thrust_by_power);
@@ -230,6 +266,23 @@ TEST(ThrustByPower, RisesAsTheRpmControllerDoesOnAnySupply) {
       ASSERT_TRUE(near(bench.thrust_log[i], 3.2, stated(0.064, "2 % after 150 ms"))) << i - start;
     }
     EXPECT_LT(bench.peak_A, 21.0);
+  }
+}
+
+// The wind stays while the rotor gains a fifth in speed: what it takes changes at once, not with the
+// smoothing of power.
+TEST(ThrustByPower, RisesInADowndraftAsInStillAir) {
+  Bench bench(Mode::thrust_by_power);
+  bench.down_mps = 3.5;
+  bench.start(2.0);
+  ASSERT_TRUE(bench.core.estimator().observable());
+  const std::size_t start = bench.thrust_log.size();
+  bench.hold(3.2, 600);
+  EXPECT_LT(*std::max_element(bench.thrust_log.begin() + static_cast<long>(start),
+                              bench.thrust_log.end()),
+            3.2 + 0.05 * 1.2);
+  for (std::size_t i = start + 60; i < bench.thrust_log.size(); ++i) {
+    ASSERT_TRUE(near(bench.thrust_log[i], 3.2, stated(0.032, "1 % after 60 ms"))) << i - start;
   }
 }
 
