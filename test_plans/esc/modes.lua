@@ -18,6 +18,7 @@ local function mode_plan(mode, number, wishes, judge, limit_A)
     run = function(t)
       t:wait "200 ms"
       calibrate(t)
+      t:ask("set warm_up 0", "^ok$")
       if limit_A then t:ask("set max_current " .. limit_A, "^ok$") end
       t:ask("mode 3", "^refused$")
       t:ask("mode " .. number, "^ok$")

@@ -6,12 +6,17 @@ include "include/calibration.lua"
 local function rise(name, tags, options)
   plan("rise_by_power_" .. name) {
     image = "esc", board = "esc32v2",
-    stand = { prop = "hk_10x4.5", supply = "16.8 V", mode = "thrust_by_power", motor = options.motor },
+    -- As after the 100 s that the current sense needs to warm up.
+    stand = {
+      prop = "hk_10x4.5", supply = "16.8 V", mode = "thrust_by_power", motor = options.motor, shunt = { warm_up = "0 A" },
+    },
     tags = tags,
     timeout = "30 s",
     run = function(t)
       t:wait "200 ms"
       calibrate(t)
+      t:ask("set warm_up 0", "^ok$")
+      if options.down then t:ask("set shared 2", "^ok$") end -- the flow generator blows down only
       t:ask("mode 5", "^ok$")
       t:ask("stream 500", "^ok$")
       start(t, "2 N")

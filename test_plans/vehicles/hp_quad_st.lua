@@ -6,6 +6,6 @@ quad.name = "HP quad, thrust by power"
 quad.esc.mode = "thrust_by_power"
 -- The constants belong to the stand's switched bridge: on a vehicle's averaged motors they read about a
 -- percent less power, so an updraft counts as a percent stronger (`shared`, 0.967 on the stand).
-quad.esc.calibration = { file = "../esc/include/hk_10x4.5_calibration.lua", gain = 1, offset = 0, shared = 0.955 }
+quad.esc.calibration = { file = "../esc/include/hk_10x4.5_calibration.lua", gain = 1, offset = 0, warm_up = 0, shared = 0.955 }
 quad.esc.shunt = { gain_tolerance = "0 %", warm_up = "0 A" }
 return quad
