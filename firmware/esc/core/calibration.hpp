@@ -62,8 +62,6 @@ struct PowerRange {
   float speed_effect = 0.0f;
 
   bool holds(float w) const { return w >= from_radps && w <= to_radps; }
-  float middle_radps() const { return 0.5f * (from_radps + to_radps); }
-  float effect_at(float w) const { return 1.0f + speed_effect * (w / middle_radps() - 1.0f); }
 };
 
 struct CurrentSense {

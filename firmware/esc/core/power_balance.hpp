@@ -31,12 +31,12 @@ inline bool has_gaps(const MotorConstants& motor, float bus_V, float duty, float
   return current_A < kMargin * 0.5f * ripple_A;
 }
 
-// What one ampere of the bus more would add to it: how far an offset of the shunt goes.
-inline float power_per_bus_ampere_W(const LossMap& map, float voltage_V, float current_A, float w,
-                                    float duty) {
+// What one ampere more would add to it; over the duty, one of the bus: how far an offset of the shunt
+// goes.
+inline float power_per_ampere_W(const LossMap& map, float voltage_V, float current_A, float w) {
   const float lost_V =
       2.0f * map.loss_ohm * current_A + map.loss_V + map.share * voltage_V + map.back_emf_Vs * w;
-  return (voltage_V - lost_V) / duty;
+  return voltage_V - lost_V;
 }
 
 }  // namespace fw::esc

@@ -42,21 +42,24 @@ class ThrustEstimator {
   void carry_to(float speed_radps);
   ThrustEstimate conclude();
   float confidence() const;
-  float expected_ratio() const;
-  float power_error() const;
-  float watts_per_ampere() const;
+  float effect_at(float speed_radps) const;  // PowerRange::speed_effect
 
   Calibration calibration_;
   float period_s_;
+  float blend_, calming_, per_middle_;
+  float expected_ratio_;  // of thrust, where power tells nothing
   LowPass bus_A_, duty_;
   SpeedFilter speed_;
   ThrustSolver solver_;
   RotorPoint still_;  // the model's own still air
+  float per_still_CT_, per_still_CP_;
   ThrustEstimate last_{};
-  float bus_V_ = 0.0f;
   float current_A_ = 0.0f;
   float speed_radps_ = 0.0f;
   float offset_A_ = 0.0f;
+  float watts_per_ampere_ = 0.0f;  // of the bus
+  float power_error_ = 0.0f;       // one sigma, as a share
+  float confidence_ = 0.0f;
   float power_W_ = 0.0f;
   float CP_ = 0.0f;
   float CT_ = 0.0f;

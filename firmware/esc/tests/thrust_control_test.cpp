@@ -183,9 +183,6 @@ TEST(ThrustByPower, WaitsForTheShuntToSettle) {
 
 // A blade on which inflow takes a fifth less power per 20 % of speed over the middle.
 TEST(ThrustByPower, FollowsTheSpeedsEffectOnWhatInflowTakes) {
-  const PowerRange range{.from_radps = 300.0f, .to_radps = 500.0f, .speed_effect = -1.0f};
-  EXPECT_FLOAT_EQ(range.effect_at(400.0f), 1.0f);
-  EXPECT_FLOAT_EQ(range.effect_at(480.0f), 0.8f);
   Calibration told = calibrated(Mode::thrust_by_power);
   told.power = {.from_radps = 300.0f, .to_radps = 500.0f, .speed_effect = -1.0f};
   Bench with(told), without(calibrated(Mode::thrust_by_power));
@@ -330,7 +327,7 @@ TEST(PowerBalance, IsTorqueTimesSpeedWhereTheBackEmfIsTheOnlyWitness) {
   const LossMap map{
       .loss_ohm = 0.0f, .loss_V = 0.0f, .share = 1.0f, .back_emf_Vs = -0.01f, .drag_Nm = 0.01f};
   EXPECT_FLOAT_EQ(aerodynamic_power_W(map, 6.0f, 5.0f, 400.0f), 0.01f * (5.0f - 1.0f) * 400.0f);
-  EXPECT_FLOAT_EQ(power_per_bus_ampere_W(map, 6.0f, 5.0f, 400.0f, 0.5f), 0.01f * 400.0f / 0.5f);
+  EXPECT_FLOAT_EQ(power_per_ampere_W(map, 6.0f, 5.0f, 400.0f), 0.01f * 400.0f);
 }
 
 TEST(PowerBalance, KnowsWhereTheCurrentHasGaps) {
