@@ -188,8 +188,8 @@ Drive Core::tick(const Sensed& sensed) {
 
   offset_error_.tick(!drive_.energised);
   if (drive_.energised && drive_.duty > 0.01f) {
-    estimator_.expect_offset(offset_error_.amperes(sense.warm_up_A));
-    estimator_.update(sensed.bus_voltage_V, drive_.duty, bus_A, sensed.speed_radps);
+    estimator_.update(sensed.bus_voltage_V, drive_.duty, bus_A, sensed.speed_radps,
+                      offset_error_.amperes(sense.warm_up_A));
   }
   saturated_ = false;
   wanted_radps_ = 0.0f;

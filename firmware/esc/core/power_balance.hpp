@@ -15,11 +15,13 @@
 
 namespace fw::esc {
 
+inline float lost_V(const LossMap& map, float voltage_V, float current_A, float w) {
+  return map.loss_ohm * current_A + map.loss_V + map.share * voltage_V + map.back_emf_Vs * w;
+}
+
 // At constant speed.
 inline float aerodynamic_power_W(const LossMap& map, float voltage_V, float current_A, float w) {
-  const float lost_V =
-      map.loss_ohm * current_A + map.loss_V + map.share * voltage_V + map.back_emf_Vs * w;
-  return (voltage_V - lost_V) * current_A - map.drag_Nm * w;
+  return (voltage_V - lost_V(map, voltage_V, current_A, w)) * current_A - map.drag_Nm * w;
 }
 
 // Under diode freewheel the winding current falls to nothing between two pulses if it is smaller than
@@ -34,9 +36,7 @@ inline bool has_gaps(const MotorConstants& motor, float bus_V, float duty, float
 // What one ampere more would add to it; over the duty, one of the bus: how far an offset of the shunt
 // goes.
 inline float power_per_ampere_W(const LossMap& map, float voltage_V, float current_A, float w) {
-  const float lost_V =
-      2.0f * map.loss_ohm * current_A + map.loss_V + map.share * voltage_V + map.back_emf_Vs * w;
-  return voltage_V - lost_V;
+  return voltage_V - lost_V(map, voltage_V, 2.0f * current_A, w);  // the square's derivative
 }
 
 }  // namespace fw::esc

@@ -50,7 +50,8 @@ void ThrustEstimator::restart(float speed_radps) {
   power_ratio_ = thrust_ratio_ = 1.0f;
 }
 
-void ThrustEstimator::update(float bus_V, float duty, float bus_A, float speed_radps) {
+void ThrustEstimator::update(float bus_V, float duty, float bus_A, float speed_radps,
+                             float offset_A) {
   const float w = speed_radps;
   if (!(w > kMinSpeed_radps)) {
     restart(w);
@@ -73,7 +74,7 @@ void ThrustEstimator::update(float bus_V, float duty, float bus_A, float speed_r
   const float still_CP = calibration_.free_air.CP(w);
   const float per_still_W = 1.0f / (still_CP * w * w * w);
   watts_per_ampere_ = per_duty * power_per_ampere_W(calibration_.losses, voltage_V, current_A_, w);
-  power_error_ = offset_A_ * watts_per_ampere_ * per_still_W;
+  power_error_ = offset_A * watts_per_ampere_ * per_still_W;
   // While the rotor accelerates, and until the filters have calmed down after it, the inertial term
   // dominates and its error with it: trust it less.
   const float share = acceleration_Nm / torque_Nm;

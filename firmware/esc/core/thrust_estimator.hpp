@@ -20,8 +20,8 @@ class ThrustEstimator {
   ThrustEstimator(const Calibration& calibration, float period_s);
 
   // What was measured over the last period, and the duty (above 0) that was applied in it.
-  void update(float bus_V, float duty, float bus_A, float speed_radps);
-  void expect_offset(float bus_A) { offset_A_ = bus_A; }  // error of the current's zero, one sigma
+  // offset_A: how wrong the zero of bus_A may be, one sigma.
+  void update(float bus_V, float duty, float bus_A, float speed_radps, float offset_A);
   void restart(float speed_radps);
 
   float power_W() const { return power_W_; }  // aerodynamic, at this moment
@@ -56,7 +56,6 @@ class ThrustEstimator {
   ThrustEstimate last_{};
   float current_A_ = 0.0f;
   float speed_radps_ = 0.0f;
-  float offset_A_ = 0.0f;
   float watts_per_ampere_ = 0.0f;  // of the bus
   float power_error_ = 0.0f;       // one sigma, as a share
   float confidence_ = 0.0f;
