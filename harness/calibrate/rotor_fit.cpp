@@ -17,7 +17,6 @@ class Scale {  // to the middle speed, by the maps of still air
   Scale(const StillAirFit& still, double middle_radps) : still_(still), middle_(middle_radps) {}
   double CT(double CT, double w) const { return CT * still_.CT(middle_) / still_.CT(w); }
   double CP(double CP, double w) const { return CP * still_.CP(middle_) / still_.CP(w); }
-  double off_middle(double w) const { return w / middle_ - 1.0; }
 
  private:
   const StillAirFit& still_;
@@ -33,7 +32,6 @@ RotorPoint point_of(const SteadyPoint& x, double power_W, double radius_m, const
   p.CT = scale.CT(x.thrust_N / square, w);
   p.CP = scale.CP(power_W / (square * w), w);
   p.ls = x.wind_mps / (w * radius_m);
-  p.off_middle = scale.off_middle(w);
   return p;
 }
 
@@ -101,6 +99,11 @@ Inflow on_the_line(double CT, const RotorFit& fit) {
   return {lambda - li, li};
 }
 
+// What inflow takes of CP, times how far the speed is off the middle.
+double taken_off_middle(const RotorFit& fit, const RotorPoint& x) {
+  return (fit.still_CP - x.CP) * (x.speed_radps / fit.middle_radps - 1.0);
+}
+
 Result<Fit> fit_power(const RotorFit& fit) {
   constexpr double kStill_weight = 3.0;  // there thrust answers power most
   Problem p{"aerodynamic power",
@@ -114,7 +117,7 @@ Result<Fit> fit_power(const RotorFit& fit) {
     p.columns[0].x.push_back(x.CT * at.ls);
     p.columns[1].x.push_back(x.CT * at.li);
     p.columns[2].x.push_back(x.CT * x.CT * at.li);
-    p.columns[3].x.push_back((fit.still_CP - x.CP) * x.off_middle);
+    p.columns[3].x.push_back(taken_off_middle(fit, x));
     p.weights.push_back(x.wind_mps > 0.0 ? 1.0 : kStill_weight);
   }
   return solve(p);
@@ -165,7 +168,7 @@ Result<RotorFit> fit_rotor(const StandData& data, const MotorFit& motor, const S
   fit.d1 = quotient(fit.power, "c0 d1", "c0", "d1", "1/CT");
   fit.speed_effect = fit.power["speed_effect"];
   for (RotorPoint& x : fit.points) {
-    x.CP -= fit.speed_effect.value * (fit.still_CP - x.CP) * x.off_middle;
+    x.CP -= fit.speed_effect.value * taken_off_middle(fit, x);
     const Inflow at = on_the_line(x.CT, fit);
     x.kappa = ((x.CP - fit.c3.value) / (fit.c0.value * x.CT) - at.ls) / at.li;
   }

@@ -22,10 +22,9 @@ namespace whirl::calibrate {
 
 struct RotorPoint {
   double wind_mps, speed_radps, thrust_N;
-  double CT, CP;      // scaled
-  double off_middle;  // w / middle - 1
-  double ls, li;      // as blown, and induced by the measured thrust
-  double kappa;       // what this point alone says, given c0 and c3
+  double CT, CP;  // scaled
+  double ls, li;  // as blown, and induced by the measured thrust
+  double kappa;   // what this point alone says, given c0 and c3
 };
 
 struct RotorFit {
