@@ -48,14 +48,8 @@ end
 
 local function table_of(thrust_N)
   stand(string.format("downdraft_%.1fN", thrust_N), "thrust_by_power", { "esc", "nightly" }, function(t)
-    t:step "warm up"
-    t:wait "200 ms"
-    t:ask("watch 0", "^ok$")
-    t:command { silence = true }
-    calibrate(t)
+    calibrated_and_warm(t)
     t:ask("set shared 2", "^ok$") -- the flow generator blows down only
-    t:ask("stream 100", "^ok$")
-    t:wait "100 s" -- the current sense's offset settles
     for _, wind in ipairs(kWinds) do
       local at = string.format("%.1f N, %.1f m/s: ", thrust_N, wind)
       t:step(at .. "RPM controller")

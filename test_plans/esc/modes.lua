@@ -31,8 +31,7 @@ local function mode_plan(mode, number, wishes, judge, limit_A)
         t:wait(kSettle)
         local r = t:record(kSignals, kMeasured)
         judge(t, asked, r, flag(t:value("esc_flags").value, 2))
-        t:expect(r:max "winding_peak", "winding current at " .. asked):at_most "30 A"
-        t:expect(r:max "bus_peak", "bus current at " .. asked):at_most "22 A"
+        safe(t, r, asked)
         t:expect(t:value "armed", "still armed at " .. asked):equal(1)
       end
       t:ask("mode 2", "^refused$") -- it turns

@@ -23,8 +23,7 @@ local signals = { "thrust", "winding_peak", "bus_peak" }
 local function demand(t)
   t:step "more than it can give"
   local record = t:record(signals, "1500 ms", function() t:command { thrust = "8 N" } end)
-  t:expect(record:max "winding_peak", "winding current"):at_most "30 A"
-  t:expect(record:max "bus_peak", "bus current"):at_most "22 A"
+  safe(t, record)
   return record
 end
 

@@ -33,10 +33,8 @@ local function rise(name, tags, options)
       t:step "fall"
       local down = t:record(signals, "1 s", function() t:command { thrust = "2 N" } end)
       t:expect(down:fall_time "thrust", "thrust fall 3.2 to 2.0 N"):at_most "70 ms"
-      for name, r in pairs { rise = up, fall = down } do
-        t:expect(r:max "winding_peak", "winding current, " .. name):at_most "30 A"
-        t:expect(r:max "bus_peak", "bus current, " .. name):at_most "22 A"
-      end
+      safe(t, up, "rise")
+      safe(t, down, "fall")
       t:expect(t:value "armed", "still armed"):equal(1)
     end,
   }

@@ -20,8 +20,7 @@ dip_plan("supply_dip_3v", function(t)
   t:expect(dip:min "bus_voltage", "the dip arrives"):at_most "14 V"
   t:expect(dip:min "thrust", "lowest thrust"):at_least "1.6 N"
   t:expect(dip:max "thrust", "highest thrust"):at_most "2.6 N"
-  t:expect(dip:max "winding_peak", "winding current"):at_most "30 A"
-  t:expect(dip:max "bus_peak", "bus current"):at_most "22 A"
+  safe(t, dip)
   t:expect(t:value "armed", "still armed"):equal(1)
 end)
 
@@ -31,8 +30,7 @@ dip_plan("supply_dip_6v", function(t)
   local dip = t:record({ "winding_peak", "bus_peak" }, "300 ms", function()
     t:fault { kind = "supply_dip", value = "6 V", duration = "300 ms" }
   end)
-  t:expect(dip:max "winding_peak", "winding current"):at_most "30 A"
-  t:expect(dip:max "bus_peak", "bus current"):at_most "22 A"
+  safe(t, dip)
   t:step "latched"
   local off = t:record({ "winding_peak" }, "500 ms")
   t:expect(off:max "winding_peak", "winding current, latched"):at_most "0.1 A"

@@ -9,12 +9,7 @@ plan "updraft" {
   tags = { "esc", "nightly" },
   timeout = "200 s",
   run = function(t)
-    t:wait "200 ms"
-    t:ask("watch 0", "^ok$")
-    t:command { silence = true }
-    calibrate(t)
-    t:ask("stream 100", "^ok$")
-    t:wait "100 s" -- the current sense's offset settles
+    calibrated_and_warm(t)
     local function held(verb)
       t:step(verb)
       t:ask("arm", "^ok$")

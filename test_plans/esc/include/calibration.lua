@@ -7,3 +7,13 @@ function calibrate(t)
   for _, line in ipairs(stored.set) do t:ask(line, "^ok$") end
   t:ask("identified 1", "^ok$")
 end
+
+-- Told by its serial line alone, with its stream, calibrated, and after the 100 s in which its current sense settles.
+function calibrated_and_warm(t)
+  t:wait "200 ms"
+  t:ask("watch 0", "^ok$")
+  t:command { silence = true }
+  calibrate(t)
+  t:ask("stream 100", "^ok$")
+  t:wait "100 s"
+end
