@@ -65,7 +65,7 @@ local function table_of(thrust_N)
         at, power.seen < 0.5 and ", which sees no inflow" or "", rpm.error, power.sigma, power.mN_per_mA, power.slope)):at_most(limit)
       t:expect(power.iterations, at .. "iterations of Algorithm 1"):at_most(6)
       if wind >= 2.2 then
-        t:expect(power.seen, at .. "share of the time that power determines inflow"):at_least(0.8)
+        t:expect(power.seen, at .. "share of the time that power determines inflow"):at_least(0.99)
         t:expect(-rpm.error, at .. "loss of the RPM controller in %"):at_least(3.5 * wind)
       end
     end
