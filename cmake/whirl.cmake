@@ -9,11 +9,17 @@ target_compile_features(whirl_options INTERFACE cxx_std_20)
 target_include_directories(whirl_options INTERFACE ${PROJECT_SOURCE_DIR})
 # Contraction off: the same source gives the same bits whatever the compiler's mood (see design: digests).
 target_compile_options(whirl_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
-                       -Woverloaded-virtual -Werror -ffp-contract=off)
+                       -Woverloaded-virtual -Werror -ffp-contract=off
+                       # Nothing of the checkout's path is compiled in: a copy must use its own files.
+                       -ffile-prefix-map=${PROJECT_SOURCE_DIR}/=)
 if(WHIRL_SANITIZE)
   target_compile_options(whirl_options INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=all
                          -fno-omit-frame-pointer -O1)
   target_link_options(whirl_options INTERFACE -fsanitize=address,undefined)
+endif()
+
+if(WHIRL_FUZZ)
+  target_compile_options(whirl_options INTERFACE -fsanitize=fuzzer-no-link)
 endif()
 
 function(whirl_library name)

@@ -1,7 +1,10 @@
 // whirl: the virtual board and its world, a flight or a thrust stand, put together.
 #include <cstdlib>
 
+#include "harness/base/interruption.hpp"
+#include "harness/base/places.hpp"
 #include "harness/cli/composition.hpp"
+#include "harness/cli/console.hpp"
 #include "harness/flight/flight_world.hpp"
 #include "harness/flight/vehicle_file.hpp"
 #include "harness/stand/stand_world.hpp"
@@ -43,9 +46,14 @@ Result<std::unique_ptr<Target>> make_target(const cli::Setup& setup) {
 }  // namespace whirl
 
 int main(int argc, char** argv) {
+  using namespace whirl;
+  catch_interruptions();
+  base::set_check_handler(base::throw_check_failure);
+  const auto& here = places();
+  if (!here) return cli::complain(here.error());
   const char* results = std::getenv("WHIRL_RESULTS");
-  return whirl::cli::run_program(
-      argc, argv,
-      {whirl::make_world, whirl::make_target, WHIRL_ROOT,
-       results != nullptr ? std::string(results) : std::string(WHIRL_ROOT) + "/results"});
+  const bool wanted = results != nullptr && *results != '\0';
+  return cli::run_program(argc, argv,
+                          {make_world, make_target, here.value().root,
+                           wanted ? std::string(results) : here.value().results});
 }

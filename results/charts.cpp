@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "results/legal_json.hpp"
 #include "results/page_text.hpp"
 
 namespace whirl::results {
@@ -47,6 +48,7 @@ std::string charts_html(const std::string& title, const std::string& about,
   ordered_json data = {{"title", title}, {"about", about}};
   data["charts"] = ordered_json::array();
   for (const Chart& chart : charts) data["charts"].push_back(chart_json(chart));
+  make_legal(data);
   return fill_page(kChartsPage, data.dump());
 }
 
@@ -55,7 +57,7 @@ std::string figures_text(const std::vector<Chart>& charts) {
   char line[256];
   for (const Chart& chart : charts) {
     for (const ChartFigure& f : chart.figures) {
-      if (shown != chart.title) text += chart.title + "\n";
+      if (shown != chart.title) text += printable_line(chart.title) + "\n";
       shown = chart.title;
       const char* verdict = std::isinf(f.limit) ? "    " : f.ok ? "ok  " : "FAIL";
       std::snprintf(line, sizeof line, "  %s %-58s %10.4g %-8s", verdict, f.name.c_str(),

@@ -1,5 +1,6 @@
 #include "results/event_log.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
@@ -75,7 +76,7 @@ bool EventLog::add(const io::Batch& batch) {
         resets.push_back({header.t_ns, header.port});
         break;
       case io::Kind::clock_setup:
-        clocks.push_back(reader.as<io::ClockSetup>());
+        clocks.push_back({header.t_ns, reader.as<io::ClockSetup>()});
         break;
       case io::Kind::busy_time: {
         const auto piece = reader.as<io::BusyTime>();
@@ -103,13 +104,13 @@ bool EventLog::add(const io::Batch& batch) {
 }
 
 double EventLog::busy_share(std::int64_t from_ns, std::int64_t to_ns) const {
-  std::int64_t all = 0, used = 0;
+  double all = 0.0, used = 0.0;  // exact up to 2^53 ns, and no sum of any messages overflows
   for (const BusyRecord& piece : busy) {
     if (piece.from_ns < from_ns || piece.to_ns > to_ns) continue;
-    all += piece.to_ns - piece.from_ns;
-    used += piece.busy_ns;
+    all += static_cast<double>(piece.to_ns) - static_cast<double>(piece.from_ns);
+    used += static_cast<double>(piece.busy_ns);
   }
-  return all > 0 ? static_cast<double>(used) / static_cast<double>(all) : std::nan("");
+  return all > 0.0 ? used / all : std::nan("");
 }
 
 Result<Done> EventLog::write_bus_csv(const std::string& path) const {
@@ -132,19 +133,33 @@ Result<Done> EventLog::write_bus_csv(const std::string& path) const {
     line += '\n';
     out << line;
   }
-  if (!out.flush()) return Error{ErrorKind::internal, path, "cannot be written", ""};
+  if (!out.flush()) return Error{ErrorKind::host, path, "cannot be written", "is the disk full?"};
   return Done{};
 }
 
+// A radio hands over whole frames, and a frame begins with the mark of MAVLink 1 or 2.
+bool EventLog::speaks_mavlink() const {
+  return std::all_of(uart.begin(), uart.end(), [this](const UartRecord& r) {
+    return r.sent || r.length == 0 || bytes[r.first_byte] == 0xFD || bytes[r.first_byte] == 0xFE;
+  });
+}
+
+std::string EventLog::telemetry_name() const {
+  return speaks_mavlink() ? "telemetry.tlog" : "serial.txt";
+}
+
 Result<Done> EventLog::write_telemetry(const std::string& path) const {
+  const bool mavlink = speaks_mavlink();
   std::ofstream out(path, std::ios::binary);
   for (const UartRecord& r : uart) {
     if (r.sent) continue;
     const std::uint64_t t_us = static_cast<std::uint64_t>(r.t_ns) / 1000;
-    for (int shift = 56; shift >= 0; shift -= 8) out.put(static_cast<char>(t_us >> shift));
+    for (int shift = 56; mavlink && shift >= 0; shift -= 8) {
+      out.put(static_cast<char>(t_us >> shift));
+    }
     out.write(reinterpret_cast<const char*>(bytes.data() + r.first_byte), r.length);
   }
-  if (!out.flush()) return Error{ErrorKind::internal, path, "cannot be written", ""};
+  if (!out.flush()) return Error{ErrorKind::host, path, "cannot be written", "is the disk full?"};
   return Done{};
 }
 

@@ -59,6 +59,11 @@ struct ResetRecord {
   std::uint16_t cause = 0;
 };
 
+struct ClockRecord {
+  std::int64_t t_ns = 0;
+  io::ClockSetup setup;
+};
+
 class EventLog {
  public:
   // Takes a batch of either direction; false: it was cut short, which no target may do.
@@ -73,7 +78,7 @@ class EventLog {
   std::vector<CpuFaultRecord> cpu_faults;
   std::vector<ResetRecord> resets;
   std::vector<BusyRecord> busy;
-  std::vector<io::ClockSetup> clocks;
+  std::vector<ClockRecord> clocks;  // each change
   std::vector<std::uint8_t> bytes;
   std::string statistics;
 
@@ -81,11 +86,14 @@ class EventLog {
   double busy_share(std::int64_t from_ns, std::int64_t to_ns) const;
 
   Result<Done> write_bus_csv(const std::string& path) const;
-  // What the board sent on a UART, framed as it came: time in us (big-endian u64) before each chunk
-  // of one message, as ground stations keep their logs.
+  // What the board sent on a UART. MAVLink is telemetry.tlog, framed as it came: time in us
+  // (big-endian u64) before each chunk of one message, as ground stations keep their logs. Anything
+  // else is serial.txt, byte for byte.
+  std::string telemetry_name() const;
   Result<Done> write_telemetry(const std::string& path) const;
 
  private:
+  bool speaks_mavlink() const;
   std::size_t keep(std::span<const std::uint8_t> data);
   void add_bus(const io::Reader& reader, bool spi);
 };

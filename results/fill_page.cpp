@@ -14,12 +14,17 @@ void put(std::string& page, const std::string& mark, const std::string& text) {
   page.replace(at, mark.size(), text);
 }
 
-// Inside a script element only "</" could end it too soon.
-std::string safe_in_script(const std::string& text) {
+// Inside a script element "</" ends it and "<!--" begins what no "</script>" ends. In JSON a "<" stands
+// in strings only, where it may be written by its number.
+std::string safe_in_script(const std::string& json) {
   std::string out;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    out += text[i];
-    if (text[i] == '<' && i + 1 < text.size() && text[i + 1] == '/') out += '\\';
+  out.reserve(json.size());
+  for (const char c : json) {
+    if (c == '<') {
+      out += "\\u003c";
+    } else {
+      out += c;
+    }
   }
   return out;
 }

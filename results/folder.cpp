@@ -1,9 +1,17 @@
 #include "results/folder.hpp"
 
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
 #include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
 #include <ctime>
 #include <filesystem>
 #include <fstream>
+#include <utility>
 
 namespace whirl::results {
 namespace {
@@ -38,44 +46,94 @@ void point_latest(const fs::path& runs, const fs::path& folder) {
 
 }  // namespace
 
-Result<std::string> make_run_folder(const std::string& results_root, const std::string& plan) {
+RunFolder::RunFolder(std::string runs, std::string name)
+    : runs_(std::move(runs)), name_(std::move(name)) {}
+
+RunFolder::RunFolder(RunFolder&& other) noexcept
+    : runs_(std::move(other.runs_)),
+      name_(std::move(other.name_)),
+      path_(std::exchange(other.path_, "")) {}
+
+RunFolder::~RunFolder() {
+  if (!path_.empty()) rmdir(path_.c_str());
+}
+
+Result<RunFolder> RunFolder::create(const std::string& results_root, const std::string& plan) {
   const fs::path runs = fs::path(results_root) / "runs";
   std::error_code status;
   fs::create_directories(runs, status);
-  const std::string base = time_stamp() + "-" + file_name(plan);
-  for (int n = 1; n < 1000; ++n) {
-    const fs::path folder = runs / (n == 1 ? base : base + "-" + std::to_string(n));
-    if (fs::create_directory(folder, status)) return folder.string();
-    if (status) break;
+  if (status) {
+    return Error{ErrorKind::host, runs.string(), "no folder for the results: " + status.message(),
+                 "--out names another place"};
   }
-  return Error{ErrorKind::host, runs.string(),
-               "cannot make a folder for the run: " + status.message(), ""};
+  RunFolder made(runs.string(), time_stamp() + "-" + file_name(plan));
+  std::string path = (runs / (".unfinished-" + made.name_ + "-XXXXXX")).string();
+  if (mkdtemp(path.data()) == nullptr) {
+    return Error{ErrorKind::host, runs.string(),
+                 std::string("no folder for the results: ") + std::strerror(errno),
+                 "--out names another place"};
+  }
+  chmod(path.c_str(), 0755);
+  made.path_ = path;
+  return made;
+}
+
+Result<std::string> RunFolder::publish(const std::string& mark) {
+  const std::string name = name_ + (mark.empty() ? "" : "-" + mark);
+  for (int n = 1; n < 1000; ++n) {
+    const fs::path to = fs::path(runs_) / (n == 1 ? name : name + "-" + std::to_string(n));
+    // Not over another run's: it is never empty.
+    if (std::rename(path_.c_str(), to.c_str()) == 0) {
+      path_.clear();
+      point_latest(runs_, to);
+      return to.string();
+    }
+    if (errno != ENOTEMPTY && errno != EEXIST) break;
+  }
+  return Error{ErrorKind::host, runs_,
+               std::string("the results cannot be given their name: ") + std::strerror(errno),
+               "they are in " + path_};
 }
 
 Result<Done> write_text(const std::string& path, const std::string& text) {
   std::ofstream out(path, std::ios::binary);
   out << text;
-  if (!out.flush()) return Error{ErrorKind::host, path, "cannot be written", "is the disk full?"};
-  return Done{};
+  out.close();
+  if (out) return Done{};
+  const std::string why = std::strerror(errno);
+  std::error_code ignored;
+  fs::remove(path, ignored);
+  return Error{ErrorKind::host, path, "cannot be written: " + why, "is the disk full?"};
 }
 
-Result<Done> write_run(const std::string& folder, Report& report, const TruthLog& truth,
-                       const EventLog& events) {
+bool write_run(const RunFolder& folder, Report& report, const TruthLog& truth,
+               const EventLog& events) {
   const auto begin = std::chrono::steady_clock::now();
-  const fs::path at(folder);
-  for (const auto& written :
-       {truth.write_csv(at / "truth.csv"), events.write_bus_csv(at / "bus.csv"),
-        events.write_telemetry(at / "telemetry.tlog"),
-        write_text(at / "junit.xml", junit_xml({&report})),
-        write_text(at / "index.html", page_html(report, truth))}) {
-    if (!written) return written.error();
-  }
+  bool whole = true;
+  const auto keep = [&](const std::string& name, auto write) {
+    const Result<Done> written = write(folder.file(name));
+    if (written) return;
+    whole = false;
+    std::error_code ignored;
+    fs::remove(folder.file(name), ignored);  // half of it would only take room
+    report.reasons.push_back({Blame::host, "results lost: " + written.error().message()});
+  };
+  keep("truth.csv", [&](const std::string& path) { return truth.write_csv(path); });
+  keep("bus.csv", [&](const std::string& path) { return events.write_bus_csv(path); });
+  keep(events.telemetry_name(),
+       [&](const std::string& path) { return events.write_telemetry(path); });
+  conclude(report);  // what was lost is in what follows
+  keep("junit.xml",
+       [&](const std::string& path) { return write_text(path, junit_xml({&report})); });
+  keep("index.html",
+       [&](const std::string& path) { return write_text(path, page_html(report, truth)); });
   report.host.results_s =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   report.host.total_s += report.host.results_s;  // a run is not over before it is filed
-  auto written = write_text(at / "run.json", run_json(report));
-  if (written) point_latest(at.parent_path(), at);
-  return written;
+  conclude(report);
+  keep("run.json", [&](const std::string& path) { return write_text(path, run_json(report)); });
+  conclude(report);
+  return whole;
 }
 
 }  // namespace whirl::results

@@ -1,7 +1,12 @@
-// The folder of one run: results/runs/<time>-<plan>/ and the link `latest` beside it.
+// The folder of one run: RESULTS/runs/<time>-<plan>/ and the link `latest` beside it.
 //
-//   Files   run.json, junit.xml, index.html, truth.csv, bus.csv, telemetry.tlog
-//   Name    from the host's clock; a second run within one second gets a number
+//   Files     run.json, junit.xml, index.html, truth.csv, bus.csv,
+//             telemetry.tlog (serial.txt where it is no MAVLink)
+//   Name      from the host's clock; a second run within one second gets a number
+//   Whole     it is written as .unfinished-..., and gets its name by one rename when all is in it. A
+//             run that was interrupted ends in "-interrupted", one that lost a file in "-incomplete".
+//   Lost      a file that cannot be written is removed (it would be half), the others are still
+//             written, and the loss is a reason in the report (see verdict.hpp)
 #pragma once
 #include <string>
 #include <vector>
@@ -13,17 +18,35 @@
 
 namespace whirl::results {
 
-Result<std::string> make_run_folder(const std::string& results_root, const std::string& plan);
+class RunFolder {
+ public:
+  static Result<RunFolder> create(const std::string& results_root, const std::string& plan);
+  ~RunFolder();  // an empty one is removed; any other stays, unfinished, for who looks
+  RunFolder(RunFolder&& other) noexcept;
+  RunFolder(const RunFolder&) = delete;
+  RunFolder& operator=(const RunFolder&) = delete;
 
-// All files but those that need the whole history. Fills Report::host.results_s before run.json.
-Result<Done> write_run(const std::string& folder, Report& report, const TruthLog& truth,
-                       const EventLog& events);
+  std::string file(const std::string& name) const { return path_ + "/" + name; }
+  // Gives it its name and points `latest` at it. Returns the path.
+  Result<std::string> publish(const std::string& mark);
+
+ private:
+  RunFolder(std::string runs, std::string name);
+
+  std::string runs_, name_, path_;
+};
+
+// All files but those that need the whole history. What is lost becomes a reason of the report, which
+// is concluded anew; false then. Fills Report::host.results_s before run.json.
+bool write_run(const RunFolder& folder, Report& report, const TruthLog& truth,
+               const EventLog& events);
 
 // The parts, for tests and for --json.
 std::string run_json(const Report& report);
 std::string junit_xml(const std::vector<const Report*>& reports);
 std::string page_html(const Report& report, const TruthLog& truth);
 
+// Nothing is left of a file that could not be written whole.
 Result<Done> write_text(const std::string& path, const std::string& text);
 
 }  // namespace whirl::results

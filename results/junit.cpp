@@ -7,20 +7,11 @@
 #include <pugixml.hpp>
 #include <sstream>
 
+#include "harness/base/text.hpp"
 #include "results/folder.hpp"
 
 namespace whirl::results {
 namespace {
-
-// XML 1.0 has no control characters but these three.
-std::string legal(const std::string& text) {
-  std::string out;
-  for (char c : text) {
-    const auto u = static_cast<unsigned char>(c);
-    out += u >= 0x20 || c == '\t' || c == '\n' || c == '\r' ? c : '?';
-  }
-  return out;
-}
 
 std::string decimal(double x) {
   char text[40];
@@ -43,8 +34,8 @@ std::string sentence(const Expectation& e) {
 
 pugi::xml_node add_case(pugi::xml_node suite, const std::string& plan, const std::string& name) {
   auto node = suite.append_child("testcase");
-  node.append_attribute("classname") = legal(plan).c_str();
-  node.append_attribute("name") = legal(name).c_str();
+  node.append_attribute("classname") = legal_text(plan).c_str();
+  node.append_attribute("name") = legal_text(name).c_str();
   node.append_attribute("time") = "0";
   return node;
 }
@@ -52,9 +43,9 @@ pugi::xml_node add_case(pugi::xml_node suite, const std::string& plan, const std
 void add_complaint(pugi::xml_node node, const char* kind, const std::string& type,
                    const std::string& message) {
   auto child = node.append_child(kind);
-  child.append_attribute("message") = legal(message).c_str();
-  child.append_attribute("type") = type.c_str();
-  child.text() = legal(message).c_str();
+  child.append_attribute("message") = legal_text(message).c_str();
+  child.append_attribute("type") = legal_text(type).c_str();
+  child.text() = legal_text(message).c_str();
 }
 
 void add_suite(pugi::xml_node root, const Report& r) {
@@ -62,9 +53,9 @@ void add_suite(pugi::xml_node root, const Report& r) {
   std::size_t failures = 0;
   for (const Expectation& e : r.expectations) {
     auto node = add_case(suite, r.plan, e.name);
-    if (!e.place.empty()) node.append_attribute("file") = e.place.c_str();
+    if (!e.place.empty()) node.append_attribute("file") = legal_text(e.place).c_str();
     if (e.verdict == Verdict::pass) {
-      node.append_child("system-out").text() = legal(sentence(e)).c_str();
+      node.append_child("system-out").text() = legal_text(sentence(e)).c_str();
     } else {
       ++failures;
       add_complaint(node, "failure", e.how.empty() ? "expectation" : e.how, sentence(e));
@@ -81,8 +72,8 @@ void add_suite(pugi::xml_node root, const Report& r) {
     ++errors;
     add_complaint(whole, "error", name(r.verdict), r.reason);
   }
-  whole.append_child("system-out").text() = legal(out).c_str();
-  suite.append_attribute("name") = legal(r.plan).c_str();
+  whole.append_child("system-out").text() = legal_text(out).c_str();
+  suite.append_attribute("name") = legal_text(r.plan).c_str();
   suite.append_attribute("tests") = static_cast<unsigned>(r.expectations.size() + 1);
   suite.append_attribute("failures") = static_cast<unsigned>(failures);
   suite.append_attribute("errors") = static_cast<unsigned>(errors);

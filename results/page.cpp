@@ -49,10 +49,20 @@ ordered_json curve(const TruthLog& truth, std::size_t column) {
   return out;
 }
 
+// Deepest use of each stack, from the board's own words: main first, then those of an RTOS's tasks.
+ordered_json stacks_of(const ordered_json& board) {
+  ordered_json stacks = ordered_json::array();
+  if (!board.is_object() || !board.contains("stack_used_bytes")) return stacks;
+  stacks.push_back({{"stack", "main"}, {"used_bytes", board["stack_used_bytes"]}});
+  for (const auto& task : board.value("task_stacks", ordered_json::array())) stacks.push_back(task);
+  return stacks;
+}
+
 }  // namespace
 
 std::string page_html(const Report& report, const TruthLog& truth) {
   auto data = ordered_json::parse(run_json(report));
+  data["stacks"] = stacks_of(data["board"]);
   data.erase("board");
   data["step_s"] = static_cast<double>(truth.step_ns()) * 1e-9;
   data["signals"] = ordered_json::array();

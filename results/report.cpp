@@ -1,6 +1,6 @@
 #include "results/report.hpp"
 
-#include <array>
+#include <cmath>
 #include <cstdio>
 
 namespace whirl::results {
@@ -14,20 +14,6 @@ std::string number(double x) {
 
 }  // namespace
 
-const char* name(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::pass:
-      return "pass";
-    case Verdict::fail:
-      return "fail";
-    case Verdict::inconclusive:
-      return "inconclusive";
-    case Verdict::error:
-      return "error";
-  }
-  return "?";
-}
-
 std::string Expectation::limit_text() const {
   const std::string tail = unit.empty() ? "" : " " + unit;
   if (low && high) return how + " " + number(*low) + " .. " + number(*high) + tail;
@@ -36,51 +22,47 @@ std::string Expectation::limit_text() const {
   return how;
 }
 
-void conclude(Report& report) {
-  if (!report.reason.empty()) return;
-  std::size_t failed = 0;
+namespace {
+
+std::string sentence(const Expectation& e) {
+  std::string text = e.name + ": ";
+  if (e.verdict == Verdict::inconclusive) return text + e.note;
+  if (std::isnan(e.measured)) return text + (e.note.empty() ? "nothing to measure" : e.note);
+  text += number(e.measured) + (e.unit.empty() ? "" : " " + e.unit);
+  return text + ", wanted " + e.limit_text();
+}
+
+// One reason for all expectations of this verdict, that names the first.
+void add_reason(std::vector<Reason>& reasons, const Report& report, Verdict verdict, Blame blame) {
   const Expectation* first = nullptr;
+  std::size_t count = 0;
   for (const Expectation& e : report.expectations) {
-    if (e.verdict == Verdict::pass) continue;
-    ++failed;
+    if (e.verdict != verdict) continue;
+    ++count;
     if (first == nullptr) first = &e;
   }
+  if (first == nullptr) return;
+  const std::string more = count == 1 ? "" : " (and " + std::to_string(count - 1) + " more)";
+  reasons.push_back({blame, sentence(*first) + more});
+}
+
+}  // namespace
+
+void conclude(Report& report) {
+  std::vector<Reason> all = report.reasons;
+  add_reason(all, report, Verdict::fail, Blame::firmware);
+  add_reason(all, report, Verdict::inconclusive, Blame::not_shown);
   if (report.expectations.empty()) {
-    report.verdict = Verdict::error;
-    report.bad_input = true;
-    report.reason = report.file + ": the plan expects nothing, so it could not fail";
-  } else if (first == nullptr) {
-    report.verdict = Verdict::pass;
-  } else {
-    report.verdict = Verdict::fail;
-    report.reason = first->name + ": " + number(first->measured) +
-                    (first->unit.empty() ? "" : " " + first->unit) + ", wanted " +
-                    first->limit_text();
-    if (failed > 1) report.reason += " (and " + std::to_string(failed - 1) + " more)";
+    all.push_back({Blame::user, report.file + ": the plan expects nothing, so it could not fail"});
   }
+  const Reason* decides = deciding(all);
+  report.verdict = decides == nullptr ? Verdict::pass : verdict_of(decides->blame);
+  report.blame = decides == nullptr ? Blame::harness : decides->blame;
+  report.reason = decides == nullptr ? "" : decides->what;
 }
 
 int exit_code(const Report& report) {
-  switch (report.verdict) {
-    case Verdict::pass:
-      return 0;
-    case Verdict::fail:
-      return 1;
-    case Verdict::inconclusive:
-      return 3;
-    case Verdict::error:
-      return report.bad_input ? 2 : 4;
-  }
-  return 4;
-}
-
-int worse_exit_code(int a, int b) {
-  constexpr std::array kRank{0, 2, 3, 1,
-                             4};  // by code: pass, failed, bad input, inconclusive, internal
-  const auto known = [](int code) { return code >= 0 && code <= 4 ? code : 4; };
-  a = known(a);
-  b = known(b);
-  return kRank[static_cast<std::size_t>(a)] >= kRank[static_cast<std::size_t>(b)] ? a : b;
+  return report.verdict == Verdict::pass ? 0 : exit_code_of(report.blame);
 }
 
 }  // namespace whirl::results

@@ -9,10 +9,9 @@
 #include <utility>
 #include <vector>
 
-namespace whirl::results {
+#include "results/verdict.hpp"
 
-enum class Verdict { pass, fail, inconclusive, error };
-const char* name(Verdict verdict);
+namespace whirl::results {
 
 struct Expectation {
   std::string name;
@@ -91,9 +90,13 @@ struct CpuFaultRow {
 struct Report {
   std::string plan, file;
   std::vector<std::string> tags;
+  // What has been seen against a pass, in order. conclude() draws the next three from it and from the
+  // expectations.
+  std::vector<Reason> reasons;
   Verdict verdict = Verdict::error;
-  bool bad_input = false;  // of an error: the user's (exit code 2), not ours (4)
-  std::string reason;      // one line; empty for a pass
+  Blame blame = Blame::harness;  // of all but a pass
+  std::string reason;            // one line; empty for a pass
+
   std::uint64_t seed = 0;
   std::string digest;
   double virtual_s = 0;
@@ -113,12 +116,9 @@ struct Report {
   double speed_factor() const { return host.total_s > 0 ? virtual_s / host.total_s : 0.0; }
 };
 
-// The verdict that follows from the expectations; an error or a fault set before stays.
+// The verdict that follows from the reasons and the expectations; again and again the same.
 void conclude(Report& report);
 
-// Exit codes: 0 pass, 1 failed, 2 bad input, 3 inconclusive, 4 internal.
-int exit_code(const Report& report);
-// Of several: internal error > bad input > failed > inconclusive > pass.
-int worse_exit_code(int a, int b);
+int exit_code(const Report& report);  // of its verdict; see verdict.hpp
 
 }  // namespace whirl::results

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "results/folder.hpp"
+#include "results/legal_json.hpp"
 
 namespace whirl::results {
 namespace {
@@ -77,6 +78,10 @@ std::string run_json(const Report& r) {
   out["tags"] = r.tags;
   out["verdict"] = name(r.verdict);
   out["reason"] = r.reason;
+  out["reasons"] = ordered_json::array();
+  for (const Reason& why : r.reasons) {
+    out["reasons"].push_back({{"blame", name(why.blame)}, {"what", why.what}});
+  }
   out["exit_code"] = exit_code(r);
   out["seed"] = r.seed;
   out["digest"] = r.digest;
@@ -86,7 +91,7 @@ std::string run_json(const Report& r) {
   out["host"] = host_times(r.host);
   out["timing_profile"] = r.timing_profile;
   out["versions"] = ordered_json::object();
-  for (const auto& [what, version] : r.versions) out["versions"][what] = version;
+  for (const auto& [what, version] : r.versions) out["versions"][legal_text(what)] = version;
   out["expectations"] = ordered_json::array();
   for (const Expectation& e : r.expectations) out["expectations"].push_back(expectation(e));
   out["tasks"] = ordered_json::array();
@@ -118,7 +123,8 @@ std::string run_json(const Report& r) {
   }
   const auto board = ordered_json::parse(r.statistics_json, nullptr, false);
   out["board"] = board.is_discarded() ? ordered_json(nullptr) : board;
-  return out.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+  make_legal(out);
+  return out.dump(2) + "\n";
 }
 
 }  // namespace whirl::results

@@ -39,8 +39,7 @@ Result<Done> TruthLog::write_csv(const std::string& path) const {
     line += '\n';
   }
   out << line;
-  if (!out.flush())
-    return Error{ErrorKind::internal, path, "cannot be written", "is the disk full?"};
+  if (!out.flush()) return Error{ErrorKind::host, path, "cannot be written", "is the disk full?"};
   return Done{};
 }
 

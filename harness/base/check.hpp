@@ -1,13 +1,25 @@
 // WHIRL_CHECK(condition, values...): our own bugs stop the program at once, in every build type.
 //
-//   What it is   an assertion that stays armed; prints the condition, its place and the values
+//   What it is   an assertion that stays armed; says the condition, its place and the values
+//   Who acts     by default it prints that and aborts. A process that can do better (end one plan and
+//                run the next, report through its link) sets a handler; one that returns ends in abort.
 //   Not for      what a user can get wrong (see result.hpp) or a firmware can do (see Finding)
 #pragma once
 #include <initializer_list>
 #include <sstream>
+#include <stdexcept>
 #include <string>
 
 namespace whirl::base {
+
+// Thrown by throw_check_failure: for a process with one catch at its top.
+class CheckFailed : public std::logic_error {
+ public:
+  using std::logic_error::logic_error;
+};
+using CheckHandler = void (*)(const std::string& message);
+void set_check_handler(CheckHandler handler);
+[[noreturn]] void throw_check_failure(const std::string& message);
 
 [[noreturn]] void check_failed(const char* condition, const char* file, int line, const char* names,
                                const std::string& values);

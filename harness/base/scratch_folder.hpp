@@ -11,7 +11,9 @@ namespace whirl {
 
 class ScratchFolder {
  public:
-  ScratchFolder() : path_((std::filesystem::temp_directory_path() / "whirl_test_XXXXXX").string()) {
+  explicit ScratchFolder(
+      const std::filesystem::path& below = std::filesystem::temp_directory_path())
+      : path_((below / "whirl_test_XXXXXX").string()) {
     WHIRL_CHECK(mkdtemp(path_.data()) != nullptr);
   }
   ~ScratchFolder() {

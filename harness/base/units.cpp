@@ -9,6 +9,7 @@ namespace whirl {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
+constexpr double kLongest_ns = 1e18;  // so that two of them still add up
 
 struct Unit {
   std::string_view symbol;
@@ -192,8 +193,10 @@ Result<Quantity> parse_quantity(std::string_view text, std::string_view place) {
   const std::string_view symbol = trimmed({end, body.data() + body.size()});
   if (symbol.empty()) return Quantity{number, Dimension::none};
   for (const Unit& unit : kUnits) {
-    if (unit.symbol == symbol)
-      return Quantity{number * unit.scale + unit.offset_SI, unit.dimension};
+    if (unit.symbol != symbol) continue;
+    const double value_SI = number * unit.scale + unit.offset_SI;
+    if (!std::isfinite(value_SI)) return bad(place, quoted(text) + " is too large");
+    return Quantity{value_SI, unit.dimension};
   }
   return bad(place, "unknown unit " + quoted(symbol) + " in " + quoted(text));
 }
@@ -214,7 +217,7 @@ Result<std::int64_t> parse_duration_ns(std::string_view text, std::string_view p
   const auto seconds = parse_quantity_as(text, Dimension::time, place);
   if (!seconds) return seconds.error();
   const double ns = seconds.value() * 1e9;
-  if (!(std::abs(ns) < 9.2e18)) return bad(place, quoted(text) + " is too long a time");
+  if (!(std::abs(ns) <= kLongest_ns)) return bad(place, quoted(text) + " is too long a time");
   return static_cast<std::int64_t>(std::llround(ns));
 }
 

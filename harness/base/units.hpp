@@ -55,7 +55,7 @@ Result<Quantity> parse_quantity(std::string_view text, std::string_view place);
 // The same, and the dimension must be the wanted one. Error says which units would do.
 Result<double> parse_quantity_as(std::string_view text, Dimension wanted, std::string_view place);
 
-// Time as integer nanoseconds; refuses what does not fit 292 years.
+// Time as integer nanoseconds; refuses what is longer than 1e9 s.
 Result<std::int64_t> parse_duration_ns(std::string_view text, std::string_view place);
 
 std::vector<std::string_view> units_of(Dimension dimension);

@@ -2,8 +2,9 @@
 
 #include <array>
 #include <cstdio>
-#include <fstream>
 #include <sstream>
+
+#include "harness/lua/sandbox.hpp"
 
 namespace whirl::calibrate {
 namespace {
@@ -87,18 +88,19 @@ std::string data_text(const StandData& data) {
 }
 
 Result<StandData> read_data(const std::string& path) {
-  std::ifstream file(path);
-  if (!file) return Error{ErrorKind::bad_input, path, "cannot be read", ""};
+  const auto whole = lua::read_whole_file(path);
+  if (!whole) return whole.error();
+  std::istringstream file(whole.value());
   StandData data;
   int number = 0;
   for (std::string text; std::getline(file, text);) {
     ++number;
     std::istringstream in(text);
-    std::string word;
+    std::string word, rest;
     if (!(in >> word) || word[0] == '#') continue;
-    if (read_line(word, in, data)) continue;
+    if (read_line(word, in, data) && !(in >> rest)) continue;
     return Error{ErrorKind::bad_input, path + ":" + std::to_string(number),
-                 "'" + word + "' is no list of a stand's data, or numbers are missing", ""};
+                 "'" + word + "' is no list of a stand's data, or has not as many numbers", ""};
   }
   return data;
 }

@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "firmware/esc/core/thrust_model.hpp"
+#include "harness/base/text.hpp"
 
 namespace whirl::calibrate {
 namespace {
@@ -104,7 +105,7 @@ std::vector<std::string> lines(const Calibration& c) {
 }
 
 std::string lua_file(const Calibration& c, const std::string& made_by) {
-  std::string text = "-- Made by: " + made_by +
+  std::string text = "-- Made by: " + printable_line(made_by) +
                      "\n-- What the ESC is told over its serial line, SI.\ncalibration = {\n";
   for (const std::string& line : lines(c)) text += "  \"" + line + "\",\n";
   return text + "}\nreturn { kind = \"esc_calibration\", set = calibration }\n";

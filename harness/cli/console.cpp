@@ -1,9 +1,16 @@
 #include "harness/cli/console.hpp"
 
+#include <fcntl.h>
 #include <unistd.h>
 
+#include <array>
 #include <cmath>
 #include <cstdio>
+#include <sstream>
+#include <tuple>
+
+#include "harness/base/text.hpp"
+#include "harness/cli/tally.hpp"
 
 namespace whirl::cli {
 namespace {
@@ -19,11 +26,38 @@ std::string with_unit(double x, const std::string& unit) {
 }
 
 std::string expectation_line(const results::Expectation& e) {
-  std::string line =
-      "       " + e.name + ": " + with_unit(e.measured, e.unit) + ", wanted " + e.limit_text();
+  const std::string word = e.verdict == results::Verdict::inconclusive ? " (not shown)" : "";
+  std::string line = "       " + e.name + word;
+  if (e.how != "holds") line += ": " + with_unit(e.measured, e.unit) + ", wanted " + e.limit_text();
   if (!e.note.empty()) line += "  [" + e.note + "]";
   if (!e.place.empty()) line += "  " + e.place;
-  return line + "\n";
+  return printable_line(line) + "\n";
+}
+
+// Each line of it on a line of its own, set in: none can pass for a line of ours.
+std::string set_in(const std::string& text) {
+  std::string out;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    out += "       " + printable_line(line) + "\n";
+  }
+  return out;
+}
+
+// The reason that decides, then the others. Failed expectations have lines of their own.
+std::string reason_lines(const results::Report& r) {
+  std::string text;
+  bool decided = false;
+  for (const results::Reason& reason : r.reasons) {
+    const bool decides = !decided && reason.what == r.reason;
+    decided = decided || decides;
+    if (decides) text = set_in(reason.what) + text;
+    if (!decides) text += set_in("also: " + reason.what);
+  }
+  const bool of_expectation = r.verdict == results::Verdict::fail ||
+                              (r.blame == results::Blame::not_shown && !r.expectations.empty());
+  if (!decided && !of_expectation) text = set_in(r.reason) + text;
+  return text;
 }
 
 std::string word(results::Verdict verdict) {
@@ -43,16 +77,8 @@ std::string word(results::Verdict verdict) {
 }  // namespace
 
 int complain(const Error& error) {
-  std::fprintf(stderr, "whirl: %s\n", error.message().c_str());
-  switch (error.kind) {
-    case ErrorKind::bad_input:
-      return 2;
-    case ErrorKind::host:
-      return 3;
-    case ErrorKind::internal:
-      return 4;
-  }
-  return 4;
+  std::fprintf(stderr, "whirl: %s\n", printable_line(error.message()).c_str());
+  return results::exit_code_of(results::blame_of(error));
 }
 
 bool is_terminal() {
@@ -64,7 +90,8 @@ ProgressSink progress_line(const std::string& plan) {
   return [plan](const Progress& p) {
     const double factor = p.host_s > 0.0 ? p.t_s / p.host_s : 0.0;
     std::fprintf(stderr, "\r\033[K%s  %.1f s  %.1fx  %s%s%s", plan.c_str(), p.t_s, factor,
-                 p.world.status().c_str(), p.step.empty() ? "" : "  ", p.step.c_str());
+                 p.world.status().c_str(), p.step.empty() ? "" : "  ",
+                 printable_line(p.step).c_str());
     std::fflush(stderr);
   };
 }
@@ -84,13 +111,8 @@ std::string outcome(const Finished& finished) {
             "x, seed " + std::to_string(r.seed) + ", digest " + r.digest;
   }
   text += "\n";
-  const bool told = r.verdict == results::Verdict::fail && r.cpu_faults.empty();
-  if (!r.reason.empty() && !told) text += "       " + r.reason + "\n";
-  for (const results::CpuFaultRow& f : r.cpu_faults) {
-    std::string indented = "       ";
-    for (char c : f.backtrace) indented += c == '\n' ? std::string("\n       ") : std::string(1, c);
-    text += indented.substr(0, indented.find_last_not_of(" \n") + 1) + "\n";
-  }
+  text += reason_lines(r);
+  for (const results::CpuFaultRow& f : r.cpu_faults) text += set_in(f.backtrace);
   for (const auto& e : r.expectations) {
     if (e.verdict != results::Verdict::pass) text += expectation_line(e);
   }
@@ -100,12 +122,36 @@ std::string outcome(const Finished& finished) {
   return text;
 }
 
-std::string summary(int passed, int failed, int inconclusive, int errors) {
-  std::string text = std::to_string(passed) + " passed";
-  if (failed > 0) text += ", " + std::to_string(failed) + " failed";
-  if (inconclusive > 0) text += ", " + std::to_string(inconclusive) + " inconclusive";
-  if (errors > 0) text += ", " + std::to_string(errors) + " with errors";
+std::string Tally::summary() const {
+  static constexpr std::array kWords{"passed", "failed", "bad input", "inconclusive",
+                                     "internal errors"};
+  std::string text = std::to_string(counts_[0]) + " passed";
+  for (const std::size_t code : {1, 2, 3, 4}) {
+    if (counts_[code] == 0) continue;
+    text += ", " + std::to_string(counts_[code]) + " " + kWords[code];
+  }
+  if (not_run_ > 0) text += ", " + std::to_string(not_run_) + " not run";
   return text + "\n";
+}
+
+namespace {
+
+bool output_was_closed = false;
+
+}  // namespace
+
+void hold_standard_streams() {
+  output_was_closed = fcntl(STDOUT_FILENO, F_GETFD) < 0;
+  for (int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (fcntl(stream, F_GETFD) < 0) std::ignore = open("/dev/null", O_RDWR);  // takes its number
+  }
+}
+
+int code_with_output(int code) {
+  const bool arrived = std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && !output_was_closed;
+  if (arrived) return code;
+  std::fprintf(stderr, "whirl: standard output cannot be written; what was printed is lost\n");
+  return results::worse_exit_code(code, 3);
 }
 
 }  // namespace whirl::cli

@@ -17,6 +17,11 @@ int complain(const Error& error);
 
 // One plan's outcome: a line, and the failed expectations below it.
 std::string outcome(const Finished& finished);
-std::string summary(int passed, int failed, int inconclusive, int errors);
+
+// Opens /dev/null where a standard stream is closed, so that no file of ours gets its number. To be
+// called first.
+void hold_standard_streams();
+// At the end: everything printed has arrived. Otherwise says so, and the exit code is at least 3.
+int code_with_output(int code);
 
 }  // namespace whirl::cli

@@ -16,7 +16,10 @@ Result<std::string> find_file(const std::string& written, const Asker& who,
     for (const std::string& folder : folders) tried.push_back(folder + "/" + written + extension);
   }
   for (const std::string& path : tried) {
-    if (fs::is_regular_file(path)) return fs::weakly_canonical(path).string();
+    std::error_code status;  // a name too long, a link to itself: it is not there
+    if (!fs::is_regular_file(path, status)) continue;
+    const fs::path whole = fs::weakly_canonical(path, status);
+    return status ? path : whole.string();
   }
   return Error{ErrorKind::bad_input, who.place, "'" + written + "' is not there",
                "looked for " + fs::path(tried.front()).lexically_normal().string()};

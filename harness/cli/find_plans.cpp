@@ -1,7 +1,12 @@
 #include "harness/cli/find_plans.hpp"
 
+#include <sys/stat.h>
+
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
+#include <set>
 
 #include "harness/plan/plan_file.hpp"
 
@@ -16,41 +21,76 @@ bool is_data_folder(const fs::path& path) {
          name == "calibrations";
 }
 
-void collect(const fs::path& folder, std::vector<std::string>& files) {
-  std::error_code status;
-  for (const auto& entry : fs::directory_iterator(folder, status)) {
-    if (entry.is_directory()) {
-      if (!is_data_folder(entry.path())) collect(entry.path(), files);
-    } else if (entry.path().extension() == ".lua") {
-      files.push_back(entry.path().string());
+// The plan files below a folder; each folder once, however many links lead to it.
+class Collection {
+ public:
+  void add_folder(const fs::path& folder) {
+    struct stat status {};
+    if (stat(folder.c_str(), &status) != 0) return refuse(folder, std::strerror(errno));
+    if (!seen_.insert({status.st_dev, status.st_ino}).second) return;
+    std::error_code failed;
+    fs::directory_iterator entries(folder, failed);
+    for (; !failed && entries != fs::directory_iterator(); entries.increment(failed)) {
+      add_entry(entries->path());
     }
+    if (failed) refuse(folder, failed.message());
+  }
+  void add_file(const fs::path& path) { files.push_back(path.string()); }
+  void refuse(const fs::path& path, const std::string& why) {
+    errors.push_back(
+        {ErrorKind::bad_input, shown_path(path.string()), "cannot be read: " + why, ""});
+  }
+
+  std::vector<std::string> files;
+  std::vector<Error> errors;
+
+ private:
+  void add_entry(const fs::path& path) {
+    std::error_code failed;
+    const fs::file_status status = fs::status(path, failed);
+    if (fs::is_directory(status)) {
+      if (!is_data_folder(path)) add_folder(path);
+    } else if (path.extension() == ".lua") {
+      if (fs::is_regular_file(status)) return add_file(path);
+      refuse(path, failed ? failed.message() : "it is no regular file");
+    }
+  }
+
+  std::set<std::pair<dev_t, ino_t>> seen_;
+};
+
+void add_path(Collection& found, const std::string& path, const std::string& root) {
+  // As given, or below the project's root, so that `whirl run test_plans/...` works anywhere.
+  std::error_code failed;
+  const std::string at = fs::exists(path, failed) ? path : root + "/" + path;
+  const fs::file_status status = fs::status(at, failed);
+  const std::size_t before = found.files.size() + found.errors.size();
+  if (fs::is_directory(status)) {
+    found.add_folder(at);
+    if (found.files.size() + found.errors.size() == before) {
+      found.errors.push_back({ErrorKind::bad_input, path, "holds no plan (*.lua)", ""});
+    }
+  } else if (fs::is_regular_file(status)) {
+    found.add_file(at);
+  } else if (status.type() == fs::file_type::not_found || status.type() == fs::file_type::none) {
+    found.errors.push_back(
+        {ErrorKind::bad_input, path, "no such plan or folder", "see: whirl list"});
+  } else {
+    found.refuse(path, "it is no regular file");
   }
 }
 
 std::vector<std::string> plan_files(const RunOptions& options, const std::string& root,
                                     std::vector<Error>& errors) {
-  std::vector<std::string> files;
+  Collection found;
   std::vector<std::string> paths = options.paths;
   if (paths.empty()) paths.push_back(root + "/test_plans");
-  for (const std::string& path : paths) {
-    // As given, or below the project's root, so that `whirl run test_plans/...` works anywhere.
-    const std::string at = fs::exists(path) ? path : root + "/" + path;
-    if (fs::is_directory(at)) {
-      const std::size_t before = files.size();
-      collect(at, files);
-      if (files.size() == before) {
-        errors.push_back({ErrorKind::bad_input, path, "holds no plan (*.lua)", ""});
-      }
-    } else if (fs::exists(at)) {
-      files.push_back(at);
-    } else {
-      errors.push_back({ErrorKind::bad_input, path, "no such plan or folder", "see: whirl list"});
-    }
-  }
-  for (std::string& file : files) file = shown_path(file);
-  std::sort(files.begin(), files.end());
-  files.erase(std::unique(files.begin(), files.end()), files.end());
-  return files;
+  for (const std::string& path : paths) add_path(found, path, root);
+  for (std::string& file : found.files) file = shown_path(file);
+  std::sort(found.files.begin(), found.files.end());
+  found.files.erase(std::unique(found.files.begin(), found.files.end()), found.files.end());
+  errors = std::move(found.errors);
+  return std::move(found.files);
 }
 
 }  // namespace

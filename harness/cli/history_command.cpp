@@ -2,6 +2,8 @@
 
 #include <cstdio>
 
+#include "harness/base/text.hpp"
+#include "harness/cli/console.hpp"
 #include "results/history.hpp"
 
 namespace whirl::cli {
@@ -9,17 +11,15 @@ namespace whirl::cli {
 int history_command(const HistoryOptions& options, const std::string& results) {
   const auto rows =
       results::recall(results + "/history.sqlite", options.plan, options.expectation, options.last);
-  if (!rows) {
-    std::fprintf(stderr, "whirl: %s\n", rows.error().message().c_str());
-    return 2;
-  }
+  if (!rows) return complain(rows.error());
   std::string shown;
   for (const results::PastExpectation& row : rows.value()) {
-    const std::string head = row.plan + ": " + row.name;
+    const std::string head = printable_line(row.plan + ": " + row.name);
     if (head != shown) std::printf("%s%s\n", shown.empty() ? "" : "\n", head.c_str());
     shown = head;
     std::printf("  %s  %-12s measured %-10.4g margin %-10.4g %-6s seed %s\n", row.when.c_str(),
-                row.verdict.c_str(), row.measured, row.margin, row.unit.c_str(), row.seed.c_str());
+                row.verdict.c_str(), row.measured, row.margin, printable_line(row.unit).c_str(),
+                row.seed.c_str());
   }
   return 0;
 }

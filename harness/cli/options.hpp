@@ -16,6 +16,7 @@ struct RunOptions {
   bool keep = false;  // a passing run keeps its large logs too
   bool twice = false;
   bool json = false;
+  std::string out;  // where results go; empty: results/ of the house
   std::string tag;
   std::string only;  // the plan of this name
 };

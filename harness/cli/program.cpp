@@ -1,9 +1,15 @@
 // The command line. CLI11 stays in this file: its header is a heavy one.
 #include <CLI/CLI.hpp>
+#include <charconv>
+#include <filesystem>
+#include <tuple>
 
+#include "harness/base/mishap.hpp"
 #include "harness/cli/calibrate_command.hpp"
 #include "harness/cli/composition.hpp"
+#include "harness/cli/console.hpp"
 #include "harness/cli/doctor.hpp"
+#include "harness/cli/fuzz_command.hpp"
 #include "harness/cli/history_command.hpp"
 #include "harness/cli/page_command.hpp"
 #include "harness/cli/run_command.hpp"
@@ -27,11 +33,14 @@ constexpr const char* kExamples = R"(Examples:
   whirl calibrate esc test_plans/calibrations/hk_10x4.5.lua
                                                constants of an ESC, its motor and its propeller
   whirl history hover                          how the margins went, run by run
+  whirl fuzz --smoke                           random registers, images and files, for bugs of whirl
   whirl doctor                                 what is missing on this machine
 
-Exit codes: 0 pass, 1 a plan failed, 2 bad input or usage, 3 inconclusive, 4 internal error;
-of several plans the worst counts: 4, then 2, 1, 3, 0.
-Results: results/runs/latest/index.html, run.json, junit.xml, truth.csv, bus.csv, telemetry.tlog)";
+Exit codes: 0 pass, 1 a plan failed, 2 bad input or usage, 3 inconclusive (the host was at fault, the
+run was interrupted, or what the plan asks was not shown), 4 internal error; of several plans the
+worst counts: 4, then 2, 1, 3, 0.
+Results: results/runs/latest/index.html, run.json, junit.xml, truth.csv, bus.csv, telemetry.tlog
+(serial.txt on a stand))";
 
 void add_plan_options(CLI::App& command, RunOptions& options) {
   command.add_option("plans", options.paths, "plan files or folders (default: test_plans)");
@@ -39,19 +48,26 @@ void add_plan_options(CLI::App& command, RunOptions& options) {
   command.add_option("--only", options.only, "only the plan of this name");
 }
 
-}  // namespace
+// A whole number from 0 to 2^64 - 1; CLI11 would make something of "-1" and of nothing.
+std::string seed_complaint(const std::string& text) {
+  std::uint64_t seed = 0;
+  const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), seed);
+  const bool good = status == std::errc() && end == text.data() + text.size() && !text.empty();
+  return good ? "" : "'" + text + "' is no seed (0 to 18446744073709551615)";
+}
 
-int run_program(int argc, char** argv, const Composition& composition) {
+int run_chosen(int argc, char** argv, Composition composition) {
   CLI::App app{"Whirlstand: a test stand for rotorcraft firmware", "whirl"};
   app.footer(kExamples);
   app.set_version_flag("--version", std::string("whirl ") + WHIRL_VERSION);
   app.require_subcommand(1);
 
   RunOptions options;
-  std::uint64_t seed = 0;
+  std::string seed;
   auto* run = app.add_subcommand("run", "run plans; exit code 0 only if all pass");
   add_plan_options(*run, options);
-  auto* seed_option = run->add_option("--seed", seed, "instead of the plans' own seeds");
+  auto* seed_option =
+      run->add_option("--seed", seed, "instead of the plans' own seeds")->check(seed_complaint);
   run->add_option("--jobs,-j", options.jobs, "so many plans at once")->check(CLI::Range(1, 256));
   run->add_flag("--gdb", options.gdb, "open a gdb port and hold the world's time while gdb holds");
   run->add_option("--gdb-port", options.gdb_port, "instead of 1234")
@@ -59,6 +75,7 @@ int run_program(int argc, char** argv, const Composition& composition) {
   run->add_flag("--keep", options.keep, "keep what went into the board's process as well");
   run->add_flag("--twice", options.twice, "run twice and expect the same digest");
   run->add_flag("--json", options.json, "run.json on standard output");
+  run->add_option("--out", options.out, "where runs and the history go (default: results)");
 
   auto* list = app.add_subcommand("list", "list plans");
   add_plan_options(*list, options);
@@ -90,6 +107,14 @@ int run_program(int argc, char** argv, const Composition& composition) {
 
   esc->add_option("--data", calibration.data, "fit this data.txt of an earlier run again");
 
+  FuzzOptions fuzzing;
+  auto* fuzz =
+      app.add_subcommand("fuzz", "random inputs by seed; whatever breaks is a bug of whirl");
+  fuzz->add_option("fuzzers", fuzzing.names, "registers, images, parsers (default: all)");
+  fuzz->add_flag("--smoke", fuzzing.smoke, "a few seconds of each");
+  fuzz->add_option("--seeds", fuzzing.seeds, "so many of each");
+  fuzz->add_option("--first", fuzzing.first, "the first seed (default 0)");
+
   auto* doctor = app.add_subcommand("doctor", "check tools and versions");
 
   try {
@@ -97,7 +122,8 @@ int run_program(int argc, char** argv, const Composition& composition) {
   } catch (const CLI::ParseError& e) {
     return app.exit(e) == 0 ? 0 : 2;
   }
-  if (seed_option->count() > 0) options.seed = seed;
+  if (seed_option->count() > 0) options.seed = std::stoull(seed);
+  if (!options.out.empty()) composition.results = options.out;
   if (*list) return list_command(options, composition);
   if (*past) return history_command(history, composition.results);
   if (*sweeps) return sweep_command(sweep, composition);
@@ -108,8 +134,26 @@ int run_program(int argc, char** argv, const Composition& composition) {
                           (calibration.data.empty() ? "" : " --data " + calibration.data);
     return calibrate_esc_command(calibration, composition);
   }
+  if (*fuzz) return fuzz_command(fuzzing);
   if (*doctor) return doctor_command(composition.root);
   return run_command(options, composition);
+}
+
+}  // namespace
+
+int run_program(int argc, char** argv, const Composition& composition) {
+  hold_standard_streams();
+  int code = 4;
+  try {
+    std::error_code gone;
+    std::ignore = std::filesystem::current_path(gone);
+    code = gone ? complain({ErrorKind::bad_input, "", "the current folder is not there any more",
+                            "go to one that is"})
+                : run_chosen(argc, argv, composition);
+  } catch (...) {
+    code = complain(error_of_current_exception());
+  }
+  return code_with_output(code);
 }
 
 }  // namespace whirl::cli

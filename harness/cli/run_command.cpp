@@ -2,82 +2,63 @@
 
 #include <cstdio>
 
+#include "harness/base/interruption.hpp"
 #include "harness/cli/console.hpp"
 #include "harness/cli/find_plans.hpp"
 #include "harness/cli/jobs.hpp"
+#include "harness/cli/tally.hpp"
 #include "results/folder.hpp"
 #include "results/history.hpp"
 
 namespace whirl::cli {
 namespace {
 
-struct Tally {
-  int code = 0;
-  int passed = 0, failed = 0, inconclusive = 0, errors = 0;
-
-  void add(const results::Report& report) {
-    code = results::worse_exit_code(code, results::exit_code(report));
-    switch (report.verdict) {
-      case results::Verdict::pass:
-        ++passed;
-        break;
-      case results::Verdict::fail:
-        ++failed;
-        break;
-      case results::Verdict::inconclusive:
-        ++inconclusive;
-        break;
-      case results::Verdict::error:
-        ++errors;
-        break;
-    }
-  }
-};
+// True: it is in the history.
+bool remember(const results::Report& report, const Composition& composition) {
+  const auto kept = results::remember(composition.results + "/history.sqlite", report);
+  if (!kept) std::fprintf(stderr, "whirl: %s\n", kept.error().message().c_str());
+  return kept.ok();
+}
 
 // In this process, one after the other.
-Tally run_here(const std::vector<PlanChoice>& plans, const RunOptions& options,
-               const Composition& composition) {
-  Tally tally;
-  for (const PlanChoice& choice : plans) {
-    const Finished finished = run_one(choice, options, composition, progress_line(choice.name));
+void run_here(const std::vector<PlanChoice>& plans, const RunOptions& options,
+              const Composition& composition, Tally& tally) {
+  for (std::size_t i = 0; i < plans.size(); ++i) {
+    if (interrupted_by() != 0) return tally.add_not_run(plans.size() - i);
+    const Finished finished = run_one(plans[i], options, composition, progress_line(plans[i].name));
     clear_progress();
-    tally.add(finished.report);
-    if (!finished.folder.empty()) {
-      const auto kept = results::remember(composition.results + "/history.sqlite", finished.report);
-      if (!kept) std::fprintf(stderr, "whirl: %s\n", kept.error().message().c_str());
+    int code = results::exit_code(finished.report);
+    // The line in the history is a result: without it a pass is not one.
+    if (!finished.folder.empty() && !remember(finished.report, composition)) {
+      code = code == 0 ? 3 : code;
     }
-    if (options.json) {
-      std::fputs(results::run_json(finished.report).c_str(), stdout);
-    } else {
-      std::fputs(outcome(finished).c_str(), stdout);
-    }
+    tally.add(code);
+    const std::string text = options.json ? results::run_json(finished.report) : outcome(finished);
+    std::fwrite(text.data(), 1, text.size(), stdout);
     std::fflush(stdout);
   }
-  return tally;
 }
 
 }  // namespace
 
 int run_command(const RunOptions& options, const Composition& composition) {
   const FoundPlans found = find_plans(options, composition.root);
-  int code = 0;
-  for (const Error& error : found.errors) {
-    code = results::worse_exit_code(code, complain(error));
-  }
+  Tally tally;
+  for (const Error& error : found.errors) tally.add(complain(error));
   if (options.gdb && found.plans.size() > 1) {
     std::fprintf(stderr, "whirl: --gdb wants one plan, not %zu (name it, or use --only)\n",
                  found.plans.size());
     return 2;
   }
   if (options.jobs > 1 && found.plans.size() > 1) {
-    return results::worse_exit_code(code, run_in_processes(found.plans, options));
+    run_in_processes(found.plans, options, tally);
+  } else {
+    run_here(found.plans, options, composition, tally);
   }
-  const Tally tally = run_here(found.plans, options, composition);
-  if (!options.json && found.plans.size() > 1) {
-    std::fputs(summary(tally.passed, tally.failed, tally.inconclusive, tally.errors).c_str(),
-               stdout);
+  if (!options.json && found.plans.size() + found.errors.size() > 1) {
+    std::fputs(tally.summary().c_str(), stdout);
   }
-  return results::worse_exit_code(code, tally.code);
+  return tally.code();
 }
 
 int list_command(const RunOptions& options, const Composition& composition) {

@@ -1,8 +1,12 @@
 #include "harness/cli/run_one.hpp"
 
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 
+#include "harness/base/interruption.hpp"
+#include "harness/base/mishap.hpp"
+#include "harness/base/places.hpp"
 #include "harness/cli/find_file.hpp"
 #include "harness/cli/versions.hpp"
 #include "results/folder.hpp"
@@ -10,7 +14,7 @@
 namespace whirl::cli {
 namespace {
 
-namespace fs = std::filesystem;
+using results::RunFolder;
 
 void announce_gdb(const Setup& setup) {
   std::fprintf(
@@ -40,8 +44,7 @@ Result<RunRecord> run_record(const PlanChoice& choice, const RunOptions& options
   for (const std::string& function : plan->watch) {
     if (board.value().watch_number(function) < 0) board.value().watch.push_back(function);
   }
-  const auto image = find_file(plan->image, who,
-                               {root + "/build/firmware", root + "/build/firmware/images"}, ".elf");
+  const auto image = find_file(plan->image, who, image_folders(root), ".elf");
   if (!image) return image.error();
 
   Setup setup{*plan,
@@ -76,18 +79,24 @@ Result<RunRecord> run_record(const PlanChoice& choice, const RunOptions& options
   return record;
 }
 
-// --twice: the second run must cross the boundary with the very same bytes.
-void compare_digests(const RunRecord& first, results::Report& report) {
+// --twice: the second run must cross the boundary with the very same bytes. Its own verdict counts
+// as the first one's does; a run that was cut off shows nothing of the digest.
+void add_second_run(const results::Report& second, results::Report& report) {
   results::Expectation e;
   e.name = "two runs give the same digest";
   e.how = "holds";
-  e.verdict =
-      first.report.digest == report.digest ? results::Verdict::pass : results::Verdict::fail;
-  e.note = first.report.digest + " and " + report.digest;
+  e.note = report.digest + " and " + second.digest;
+  e.measured = e.margin = std::nan("");
+  const auto cut_off = [](const results::Report& r) {
+    return r.verdict != results::Verdict::pass && r.blame != results::Blame::firmware &&
+           r.blame != results::Blame::not_shown;
+  };
+  e.verdict = report.digest == second.digest       ? results::Verdict::pass
+              : cut_off(report) || cut_off(second) ? results::Verdict::inconclusive
+                                                   : results::Verdict::fail;
   report.expectations.push_back(e);
-  if (e.verdict == results::Verdict::fail && report.verdict == results::Verdict::pass) {
-    report.verdict = results::Verdict::fail;
-    report.reason = "two runs differ: digests " + e.note;
+  if (second.verdict != results::Verdict::pass && second.reason != report.reason) {
+    report.reasons.push_back({second.blame, "in the second run: " + second.reason});
   }
 }
 
@@ -97,36 +106,63 @@ results::Report refused(const PlanChoice& choice, const RunOptions& options, con
   report.file = choice.file;
   report.tags = choice.tags;
   report.seed = options.seed.value_or(0);
-  report.verdict =
-      error.kind == ErrorKind::host ? results::Verdict::inconclusive : results::Verdict::error;
-  report.bad_input = error.kind == ErrorKind::bad_input;
-  report.reason = error.message();
+  report.reasons.push_back(results::reason_of(error));
+  results::conclude(report);
   return report;
+}
+
+void run_again(const PlanChoice& choice, const RunOptions& options, const Composition& composition,
+               const ProgressSink& progress, results::Report& report) {
+  const auto again = run_record(choice, options, composition, progress);
+  if (again) return add_second_run(again.value().report, report);
+  report.reasons.push_back(results::reason_of(again.error(), "in the second run: "));
+}
+
+// Files the run. Whatever goes wrong here is a reason beside those of the run.
+Finished file(RunFolder& folder, RunRecord record, const RunOptions& options) {
+  results::Report& report = record.report;
+  std::string path;
+  try {
+    bool whole = results::write_run(folder, report, record.truth, record.events);
+    if (options.keep) {
+      const auto kept = results::write_text(folder.file("board.json"), record.board_text);
+      whole = whole && kept.ok();
+      if (!kept) report.reasons.push_back(results::reason_of(kept.error()));
+    }
+    const auto published = folder.publish(interrupted_by() != 0 ? "interrupted"
+                                          : whole               ? ""
+                                                                : "incomplete");
+    if (published) path = published.value();
+    if (!published) report.reasons.push_back(results::reason_of(published.error()));
+  } catch (...) {
+    report.reasons.push_back(results::reason_of(error_of_current_exception(), "results lost: "));
+  }
+  results::conclude(report);
+  return {std::move(report), path};
 }
 
 }  // namespace
 
 Finished run_one(const PlanChoice& choice, const RunOptions& options,
                  const Composition& composition, const ProgressSink& progress) {
-  auto record = run_record(choice, options, composition, progress);
-  if (!record) return {refused(choice, options, record.error()), ""};
-  results::Report& report = record.value().report;
-  if (options.twice) {
-    auto again = run_record(choice, options, composition, progress);
-    if (!again) return {refused(choice, options, again.error()), ""};
-    compare_digests(again.value(), report);
+  try {
+    auto folder = RunFolder::create(composition.results, choice.name);
+    if (!folder) return {refused(choice, options, folder.error()), ""};
+    auto record = run_record(choice, options, composition, progress);
+    if (!record) return {refused(choice, options, record.error()), ""};
+    results::Report& report = record.value().report;
+    if (options.twice && interrupted_by() == 0) {
+      try {
+        run_again(choice, options, composition, progress, report);
+      } catch (...) {
+        report.reasons.push_back(results::reason_of(error_of_current_exception()));
+      }
+    }
+    results::conclude(report);
+    return file(folder.value(), std::move(record.value()), options);
+  } catch (...) {
+    return {refused(choice, options, error_of_current_exception()), ""};
   }
-  const auto folder = results::make_run_folder(composition.results, choice.name);
-  if (!folder) return {refused(choice, options, folder.error()), ""};
-  const auto written =
-      results::write_run(folder.value(), report, record.value().truth, record.value().events);
-  if (!written) return {refused(choice, options, written.error()), ""};
-  if (options.keep) {
-    const auto kept =
-        results::write_text(folder.value() + "/board.json", record.value().board_text);
-    if (!kept) return {refused(choice, options, kept.error()), ""};
-  }
-  return {std::move(report), folder.value()};
 }
 
 }  // namespace whirl::cli

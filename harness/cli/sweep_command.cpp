@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "harness/base/text.hpp"
 #include "harness/cli/console.hpp"
 #include "harness/cli/find_plans.hpp"
 #include "harness/cli/page_command.hpp"
@@ -15,25 +16,37 @@ namespace {
 
 namespace fs = std::filesystem;
 
+struct Option {
+  const char* name;
+  const std::string& text;
+  Dimension dimension;
+  const char *low, *high;  // beyond them the models have nothing to say, and do not settle
+  double& into;
+};
+
+Result<Done> read_option(const Option& option) {
+  if (option.text.empty()) return Done{};
+  const auto value = parse_quantity_as(option.text, option.dimension, option.name);
+  if (!value) return value.error();
+  const lua::Range range{parse_quantity_as(option.low, option.dimension, "").value(),
+                         parse_quantity_as(option.high, option.dimension, "").value()};
+  if (!range.holds(value.value())) {
+    return Error{ErrorKind::bad_input, option.name,
+                 "'" + option.text + "' is outside " + option.low + " to " + option.high, ""};
+  }
+  option.into = value.value();
+  return Done{};
+}
+
 Result<sweep::Options> read_options(const SweepOptions& given) {
   sweep::Options options;
-  const auto read = [](const std::string& text, Dimension dimension, const char* place,
-                       double& into) {
-    if (text.empty()) return Result<Done>(Done{});
-    const auto value = parse_quantity_as(text, dimension, place);
-    if (!value) return Result<Done>(value.error());
-    if (!(value.value() > 0.0)) {
-      return Result<Done>(
-          Error{ErrorKind::bad_input, place, "'" + text + "' must be positive", ""});
-    }
-    into = value.value();
-    return Result<Done>(Done{});
-  };
-  for (const auto& done :
-       {read(given.speed, Dimension::angular_rate, "--speed", options.speed_radps),
-        read(given.top_speed, Dimension::angular_rate, "--top-speed", options.top_speed_radps),
-        read(given.voltage, Dimension::voltage, "--voltage", options.bus_V)}) {
-    if (!done) return done.error();
+  for (const Option& option :
+       {Option{"--speed", given.speed, Dimension::angular_rate, "10 rpm", "100000 rpm",
+               options.speed_radps},
+        Option{"--top-speed", given.top_speed, Dimension::angular_rate, "10 rpm", "100000 rpm",
+               options.top_speed_radps},
+        Option{"--voltage", given.voltage, Dimension::voltage, "0.5 V", "1000 V", options.bus_V}}) {
+    if (const auto done = read_option(option); !done) return done.error();
   }
   return options;
 }
@@ -80,6 +93,14 @@ void print_curves(const std::vector<results::Chart>& charts) {
   }
 }
 
+// A name may hold what separates fields and lines: RFC 4180 puts such a field into quotes.
+std::string csv_field(const std::string& text) {
+  if (text.find_first_of(";\"\r\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + "\"";
+}
+
 Result<Done> write_csv(const std::string& path, const std::vector<results::Chart>& charts) {
   std::ofstream out(path, std::ios::binary);
   out << "group;chart;curve;x_label;x;y_label;y\n";
@@ -89,8 +110,10 @@ Result<Done> write_csv(const std::string& path, const std::vector<results::Chart
       for (std::size_t i = 0; i < curve.x.size(); ++i) {
         std::snprintf(numbers[0], sizeof numbers[0], "%.9g", curve.x[i]);
         std::snprintf(numbers[1], sizeof numbers[1], "%.9g", curve.y[i]);
-        out << chart.group << ';' << chart.title << ';' << curve.name << ';' << chart.x_label << ';'
-            << numbers[0] << ';' << chart.y_label << ';' << numbers[1] << '\n';
+        for (const std::string& text : {chart.group, chart.title, curve.name, chart.x_label}) {
+          out << csv_field(text) << ';';
+        }
+        out << numbers[0] << ';' << csv_field(chart.y_label) << ';' << numbers[1] << '\n';
       }
     }
   }
@@ -116,7 +139,7 @@ int sweep_command(const SweepOptions& given, const Composition& composition) {
         write_csv((folder / "curves.csv").string(), swept.value().charts)}) {
     if (!written) return complain(written.error());
   }
-  std::printf("%s\n%s", swept.value().name.c_str(),
+  std::printf("%s\n%s", printable_line(swept.value().name).c_str(),
               results::figures_text(swept.value().charts).c_str());
   print_curves(swept.value().charts);
   std::printf("\n%s\n", shown_path((folder / "index.html").string()).c_str());

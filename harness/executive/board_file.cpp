@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "harness/lua/table.hpp"
@@ -10,6 +11,8 @@ namespace whirl {
 namespace {
 
 using nlohmann::json;
+
+constexpr lua::Range kBaud{.low = 50.0, .high = 12e6};
 
 // Any value of a table as JSON: quantities in SI, other texts as they are.
 json passed_through(const lua::Table& table) {
@@ -38,6 +41,16 @@ json passed_through(const lua::Table& table) {
   return out;
 }
 
+// What goes to the board's process goes as JSON, which is UTF-8.
+std::string dumped(const lua::Table& t, const char* key, const json& value) {
+  try {
+    return value.dump();
+  } catch (const json::exception&) {
+    t.refuse(key, "is not UTF-8 text");
+    return "null";
+  }
+}
+
 BoardDevice read_device(const lua::Table& t) {
   BoardDevice device;
   json entry = json::object();
@@ -50,10 +63,35 @@ BoardDevice read_device(const lua::Table& t) {
   if (t.has("motor")) entry["motor"] = device.motor = static_cast<int>(t.integer("motor", 1, 4));
   if (t.has("cs")) entry["cs"] = t.text("cs");
   if (t.has("int")) entry["int"] = t.text("int");
-  if (t.has("baud")) entry["baud"] = t.quantity("baud", Dimension::baud, lua::above(0.0));
+  if (t.has("baud")) entry["baud"] = t.quantity("baud", Dimension::baud, kBaud);
   entry["params"] = t.has("params") ? passed_through(t.table("params")) : json::object();
-  device.json = entry.dump();
+  device.cs = entry.value("cs", "");
+  device.interrupt = entry.value("int", "");
+  device.json = dumped(t, "name", entry);
   return device;
+}
+
+// Is the pin this device's own? A jumper only listens at its `cs`.
+bool drives(const BoardDevice& device, const std::string& pin) {
+  if (pin.empty()) return false;
+  const bool on_pin = device.type == "pulse_source" || device.type == "volts";
+  return (on_pin && device.bus == pin) || device.interrupt == pin ||
+         (device.type != "jumper" && device.cs == pin);
+}
+
+json read_pins(const lua::Table& file) {
+  json pins = json::array();
+  for (const lua::Table& entry : file.tables("pins")) {
+    json pin = {{"name", entry.text("name")}, {"pin", entry.text("pin")}};
+    if (entry.has("pull")) pin["pull"] = entry.choice("pull", {"up", "down"});
+    if (entry.has("bus")) pin["bus"] = entry.text("bus");
+    for (const json& other : pins) {
+      if (other["name"] == pin["name"]) entry.refuse("name", "two pins are called so");
+      if (other["pin"] == pin["pin"]) entry.refuse("pin", "is listed twice");
+    }
+    pins.push_back(pin);
+  }
+  return pins;
 }
 
 void refuse_doubles(const lua::Table& file, const Board& board) {
@@ -61,6 +99,11 @@ void refuse_doubles(const lua::Table& file, const Board& board) {
     for (std::size_t k = 0; k < i; ++k) {
       const BoardDevice &a = board.devices[k], &b = board.devices[i];
       if (a.name == b.name) file.refuse("devices", "two devices are called '" + a.name + "'");
+      for (const std::string* pin : {&a.cs, &a.interrupt, &a.bus}) {
+        if (drives(b, *pin) && drives(a, *pin)) {
+          file.refuse("devices", a.name + " and " + b.name + " are on one pin, " + *pin);
+        }
+      }
       if (a.address >= 0 && a.bus == b.bus && a.address == b.address) {
         file.refuse("devices", a.name + " and " + b.name + " share one address on " + a.bus);
       }
@@ -86,6 +129,13 @@ int Board::watch_number(const std::string& function) const {
   return it == watch.end() ? -1 : static_cast<int>(it - watch.begin());
 }
 
+std::string Board::timing_profile() const {
+  char text[80];
+  std::snprintf(text, sizeof text, "%d ns per instruction, crystal ready after %g ms",
+                ns_per_instruction, hse_start_s * 1e3);
+  return text;
+}
+
 Result<Board> read_board(const std::string& path) {
   const auto file = lua::read_file(path);
   if (!file) return file.error();
@@ -96,16 +146,19 @@ Result<Board> read_board(const std::string& path) {
   board.mcu = t.text("mcu");
   board.hse_Hz = t.quantity("hse", Dimension::frequency, lua::above(0.0));
   board.lse_Hz = t.quantity_or("lse", Dimension::frequency, 0.0, lua::at_least(0.0));
+  board.hse_start_s =
+      t.quantity_or("hse_start", Dimension::time, board.hse_start_s, lua::between(1e-6, 1.0));
+  if (t.has("boot_image")) board.boot_image = t.sibling(t.text("boot_image"));
+  board.start = static_cast<std::uint32_t>(t.integer_or("start", 0, 0, 0xFFFFFFFF));
   const double instruction_s =
       t.quantity_or("instruction", Dimension::time, 8e-9, lua::between(1e-9, 1e-6));
   board.ns_per_instruction = static_cast<int>(std::lround(instruction_s * 1e9));
   for (const lua::Table& entry : t.tables("devices")) board.devices.push_back(read_device(entry));
-  json pins = json::array();
-  for (const lua::Table& entry : t.tables("pins")) {
-    pins.push_back({{"name", entry.text("name")}, {"pin", entry.text("pin")}});
-  }
-  board.pins_json = pins.dump();
+  board.pins_json = dumped(t, "pins", read_pins(t));
   board.watch = t.texts("watch");
+  dumped(t, "watch", json(board.watch));
+  dumped(t, "board", json(board.name));
+  dumped(t, "mcu", json(board.mcu));
   refuse_doubles(t, board);
   if (auto good = t.finish(); !good) return good.error();
   return board;
@@ -117,6 +170,9 @@ std::string board_json(const Board& board, const BoardRun& run) {
   out["mcu"] = board.mcu;
   out["hse_Hz"] = board.hse_Hz;
   out["lse_Hz"] = board.lse_Hz;
+  out["hse_start_ns"] = std::llround(board.hse_start_s * 1e9);
+  out["boot_image"] = board.boot_image;
+  out["start"] = board.start;
   out["image"] = run.image;
   out["ns_per_instruction"] = board.ns_per_instruction;
   out["seed"] = run.seed;
@@ -128,7 +184,8 @@ std::string board_json(const Board& board, const BoardRun& run) {
   out["watch"] = board.watch;
   out["gdb"] = run.gdb;
   out["gdb_port"] = run.gdb_port;
-  return out.dump(1);
+  // A path may hold any bytes: what is no UTF-8 becomes a name that is not found, and is shown.
+  return out.dump(1, ' ', false, json::error_handler_t::replace);
 }
 
 }  // namespace whirl

@@ -2,6 +2,7 @@
 //
 //   Gives   the description with SI numbers as JSON for the board's process, and what the harness
 //           itself must know: devices by name, watched functions by number
+//   Pins    named pins: a resistor (pull), the line of an I2C bus that is soldered to it (bus)
 //   Params  a device's own parameters pass through: texts that are quantities become SI numbers
 #pragma once
 #include <cstdint>
@@ -18,17 +19,23 @@ struct BoardDevice {
   std::string bus;   // "spi1", "i2c3", "usart2"
   int address = -1;  // I2C
   int motor = 0;     // of an ESC; 0: none
+  std::string cs, interrupt;
   std::string json;  // the whole entry
 };
 
 struct Board {
   std::string file, name, mcu;
   double hse_Hz = 0, lse_Hz = 0;
+  double hse_start_s =
+      0.2e-3;               // of the crystal, with the timing profile of full speed at all clocks
+  std::string boot_image;   // of a boot loader that is flashed beside the image; empty: none
+  std::uint32_t start = 0;  // of the vector table at reset; 0: the start of flash
   int ns_per_instruction = 8;
   std::vector<BoardDevice> devices;
   std::vector<std::string> watch;
   std::string pins_json;
 
+  std::string timing_profile() const;  // what the report says of time on this board
   const BoardDevice* find(const std::string& device) const;
   int number(const std::string& device) const;  // place in the list; -1: not there
   int watch_number(const std::string& function) const;

@@ -17,6 +17,8 @@ const char* exception_name(std::uint32_t exception) {
       return "BusFault";
     case 6:
       return "UsageFault";
+    case 254:
+      return "stack or vectors where registers or flash are";
     case 255:
       return "lock-up";
     default:

@@ -5,6 +5,9 @@
 #include <optional>
 
 #include "harness/base/digest.hpp"
+#include "harness/base/interruption.hpp"
+#include "harness/base/mishap.hpp"
+#include "harness/executive/clock_log.hpp"
 #include "harness/executive/cpu_fault.hpp"
 #include "harness/executive/task_table.hpp"
 #include "harness/plan/script.hpp"
@@ -46,6 +49,15 @@ const char* bitten(const std::vector<results::ResetRecord>& resets) {
   return nullptr;
 }
 
+// What only an image that runs brings about: bytes on a bus, a watched function, a set-point, or the
+// end of an interrupt's latency. A core that spins on a flag for ever does none of these.
+bool is_act_of_firmware(io::Kind kind) {
+  return kind == io::Kind::i2c_transaction || kind == io::Kind::spi_transaction ||
+         kind == io::Kind::uart_received || kind == io::Kind::function_call ||
+         kind == io::Kind::esc_setpoint || kind == io::Kind::interrupt_latency ||
+         kind == io::Kind::i2c_reply;
+}
+
 class Run {
  public:
   explicit Run(const RunParts& parts)
@@ -60,14 +72,16 @@ class Run {
     r.file = parts.plan.file;
     r.tags = parts.plan.tags;
     r.seed = parts.seed;
-    r.timing_profile = std::to_string(parts.board.ns_per_instruction) + " ns per instruction";
+    r.timing_profile = parts.board.timing_profile();
   }
 
   RunRecord go(const ProgressSink& progress) {
     {
       Stopwatch total(record_.report.host.total_s);
-      if (start()) loop(progress);
-      end();
+      guarded([&] {
+        if (start()) loop(progress);
+      });
+      guarded([&] { end(); });
     }
     record_.report.virtual_s = static_cast<double>(stage_.now_ns) * 1e-9;
     record_.report.digest = digest_.hex();
@@ -76,9 +90,19 @@ class Run {
   }
 
  private:
+  // What has been seen so far is kept whatever is thrown.
+  template <typename Part>
+  void guarded(Part part) {
+    try {
+      part();
+    } catch (...) {
+      end_for(error_of_current_exception());
+    }
+  }
+
   bool start() {
     Stopwatch watch(record_.report.host.start_s);
-    if (auto started = parts_.target.start(); !started) return fail(started.error());
+    if (auto started = parts_.target.start(); !started) return ended_by(started.error());
     record_.report.versions = parts_.target.versions();
     parts_.world.step(0, happened_, sensed_);
     log_truth();
@@ -104,8 +128,9 @@ class Run {
     Stopwatch watch(record_.report.host.script_s);
     if (stage_.now_ns >= parts_.plan.timeout_ns) return time_out();
     const auto state = script_.advance();
-    if (!state) return fail(state.error());
-    return state.value() == plan::Script::State::waiting;
+    if (!state) return end_for(state.error());
+    completed_ = state.value() == plan::Script::State::done;
+    return !completed_;
   }
 
   bool step() {
@@ -126,52 +151,87 @@ class Run {
       Stopwatch watch(record_.report.host.target_wait_s);
       arrived = parts_.target.arrive(happened_);
     }
-    stage_.now_ns = next_ns;
     Stopwatch watch(record_.report.host.logging_s);
+    if (!*arrived) return ended_by(arrived->error());
+    stage_.now_ns = next_ns;
     log_truth();
-    if (!*arrived) return fail(arrived->error());
-    file_batch(happened_);
-    if (!record_.events.cpu_faults.empty()) return core_fault();
-    const char* watchdog = parts_.plan.may_reset ? nullptr : bitten(record_.events.resets);
-    if (watchdog != nullptr) return watchdog_reset(watchdog);
+    if (!file_batch(happened_) || !firmware_is_well()) return false;
+    if (interrupted_by() != 0) return interrupted();
     if (arrived->value() == TargetState::running) return true;
     return stopped_early(arrived->value());
+  }
+
+  // The target gave up. What it still told counts; its time stays where it last was, since nothing is
+  // known of what came behind.
+  bool ended_by(const Error& error) {
+    file_batch(happened_);
+    firmware_is_well();
+    return interrupted_by() != 0 ? interrupted() : end_for(error);
+  }
+
+  bool firmware_failed() const {
+    const results::Reason* reason = results::deciding(record_.report.reasons);
+    return reason != nullptr && reason->blame == results::Blame::firmware;
+  }
+
+  // Says what is wrong with it.
+  bool firmware_is_well() {
+    if (!record_.events.cpu_faults.empty()) return core_fault();
+    const char* watchdog = parts_.plan.may_reset ? nullptr : bitten(record_.events.resets);
+    return watchdog == nullptr || watchdog_reset(watchdog);
   }
 
   void end() {
     io::Batch rest;
     parts_.target.stop(rest);
     file_batch(rest);
+    if (!firmware_failed()) firmware_is_well();  // its last words may be a fault
     results::Report& report = record_.report;
     report.statistics_json = record_.events.statistics;
+    log_clocks(record_.events, report);
     report.tasks = task_table(parts_.board.watch, record_.events);
     // Guards and windows are judged also when the run has failed: their figures help to see why.
-    if (auto judged = script_.finish(); !judged) fail(judged.error());
-    for (const results::FaultRow& fault : report.faults) {
-      if (fault.applied_s >= 0.0) continue;
-      fail({ErrorKind::bad_input, parts_.plan.file,
-            "fault " + fault.kind + " on " + fault.target + " was applied by nobody",
-            "is it timed within the run, and does its place see any traffic?"});
-    }
+    for (const Error& error : script_.finish(completed_)) end_for(error);
+    if (completed_) judge_faults();
+    if (completed_) judge_evidence();
     for (const results::TextRecord& f : record_.events.findings) {
       report.findings.push_back({static_cast<double>(f.t_ns) * 1e-9, f.where, f.what});
     }
   }
 
-  // The first reason stays. Always false, for `return fail(...)`.
-  bool fail(const Error& error) {
-    results::Report& r = record_.report;
-    if (!r.reason.empty() && r.verdict == results::Verdict::error) return false;
-    r.verdict =
-        error.kind == ErrorKind::host ? results::Verdict::inconclusive : results::Verdict::error;
-    r.bad_input = error.kind == ErrorKind::bad_input;
-    r.reason = error.message();
+  // Only a run that came to its end shows that a fault found nobody to act on.
+  void judge_faults() {
+    for (const results::FaultRow& fault : record_.report.faults) {
+      if (fault.applied_s >= 0.0) continue;
+      end_for({ErrorKind::bad_input, parts_.plan.file,
+               "fault " + fault.kind + " on " + fault.target + " was applied by nobody",
+               "is it timed within the run, and does its place see any traffic?"});
+    }
+  }
+
+  // A pass says something of firmware that runs.
+  void judge_evidence() {
+    if (!firmware_acted_) {
+      end_with(results::Blame::not_shown,
+               "the image was never seen to run: no byte on a bus, no call of a watched function, "
+               "no interrupt served");
+    }
+    if (!script_.has_looked()) {
+      end_with(
+          results::Blame::not_shown,
+          "the plan asserts nothing about the running image: it reads no signal, no answer and "
+          "no window");
+    }
+  }
+
+  // Always false, for `return end_with(...)`.
+  bool end_with(results::Blame blame, const std::string& what) {
+    record_.report.reasons.push_back({blame, what});
     return false;
   }
 
-  bool fail_plan(const std::string& reason) {
-    record_.report.verdict = results::Verdict::fail;
-    if (record_.report.reason.empty()) record_.report.reason = reason;
+  bool end_for(const Error& error) {
+    record_.report.reasons.push_back(results::reason_of(error));
     return false;
   }
 
@@ -182,7 +242,14 @@ class Run {
     e.place = parts_.plan.place;
     e.t_s = static_cast<double>(stage_.now_ns) * 1e-9;
     e.note = note;
+    e.measured = std::numeric_limits<double>::quiet_NaN();
+    e.margin = e.measured;
     script_.add(std::move(e));
+  }
+
+  bool interrupted() {
+    return end_with(results::Blame::host,
+                    std::string("interrupted by signal ") + signal_word(interrupted_by()));
   }
 
   bool time_out() {
@@ -190,28 +257,29 @@ class Run {
     const std::string where =
         script_.step_name().empty() ? "" : " in step '" + script_.step_name() + "'";
     must_hold("plan ends before its timeout", "still waiting" + where);
-    return fail_plan("still waiting" + where + " at the plan's timeout of " + limit +
-                     " virtual time");
+    return end_with(
+        results::Blame::firmware,
+        "still waiting" + where + " at the plan's timeout of " + limit + " virtual time");
   }
 
   bool core_fault() {
     const results::CpuFaultRow row = describe(record_.events.cpu_faults.front());
     record_.report.cpu_faults.push_back(row);
     must_hold("the firmware runs without a fault", row.name + " in " + row.where);
-    return fail_plan("firmware fault: " + row.name + " in " + row.where);
+    return end_with(results::Blame::firmware, "firmware fault: " + row.name + " in " + row.where);
   }
 
   bool watchdog_reset(const char* watchdog) {
     const std::string what = std::string("reset by the ") + watchdog + " watchdog";
     must_hold("the firmware keeps its watchdogs fed", what);
-    return fail_plan("firmware fault: " + what);
+    return end_with(results::Blame::firmware, "firmware fault: " + what);
   }
 
   bool stopped_early(TargetState state) {
     const char* what =
         state == TargetState::cpu_locked ? "the core locked up" : "the board switched itself off";
     must_hold("the firmware runs to the end of the plan", what);
-    return fail_plan(what);
+    return end_with(results::Blame::firmware, what);
   }
 
   void log_truth() {
@@ -219,11 +287,13 @@ class Run {
     record_.truth.append(row_);
   }
 
-  void file_batch(const io::Batch& batch) {
+  bool file_batch(const io::Batch& batch) {
     digest_.add_bytes(batch.bytes().data(), batch.bytes().size());
-    if (!record_.events.add(batch)) {
-      fail({ErrorKind::internal, "", "a batch of messages was cut short", ""});
+    for (io::Reader r(batch.bytes()); !firmware_acted_ && r.next();) {
+      firmware_acted_ = is_act_of_firmware(r.header().kind);
     }
+    if (record_.events.add(batch)) return true;
+    return end_for({ErrorKind::internal, "", "a batch of messages was cut short", ""});
   }
 
   Result<Done> inject(const FaultSpec& spec) {
@@ -251,6 +321,8 @@ class Run {
   std::vector<double> row_;
   io::Batch sensed_, happened_;
   Digest digest_;
+  bool completed_ = false;  // the script has returned
+  bool firmware_acted_ = false;
 };
 
 }  // namespace

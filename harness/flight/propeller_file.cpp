@@ -4,6 +4,7 @@
 #include <map>
 #include <numbers>
 
+#include "harness/base/places.hpp"
 #include "harness/lua/sandbox.hpp"
 #include "harness/lua/table.hpp"
 #include "plant/rotor/polar.hpp"
@@ -17,7 +18,7 @@ Result<std::shared_ptr<const plant::PolarFamily>> load_polar(const lua::Table& f
                                                              const std::string& place,
                                                              const std::string& name) {
   std::string path = file.sibling(name);
-  if (!std::filesystem::exists(path)) path = std::string(WHIRL_POLARS) + "/" + name;
+  if (!std::filesystem::exists(path)) path = polar_folder() + "/" + name;
   if (!std::filesystem::exists(path)) {
     return Error{ErrorKind::bad_input, place, "polar '" + name + "' is nowhere to be found",
                  "put it beside this file, or name one of plant/data/polars"};

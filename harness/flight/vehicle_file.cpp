@@ -1,5 +1,6 @@
 #include "harness/flight/vehicle_file.hpp"
 
+#include <cmath>
 #include <map>
 #include <numbers>
 #include <sstream>
@@ -97,7 +98,7 @@ bool take_set_line(const std::string& line, fw::esc::Calibration& c) {
   for (const fw::esc::Parameter& parameter : fw::esc::kParameters) {
     if (parameter.name != name) continue;
     parameter.in(c) = static_cast<float>(value);
-    return true;
+    return std::isfinite(parameter.in(c));
   }
   return false;
 }
@@ -156,7 +157,7 @@ void read_esc(const Table& t, EscParams& e) {
 }
 
 void read_capture(const Table& t, CaptureParams& c) {
-  c.rate_Hz = t.quantity_or("rate", Dimension::frequency, c.rate_Hz, above(0.0));
+  c.rate_Hz = t.quantity_or("rate", Dimension::frequency, c.rate_Hz, between(0.1, 1000.0));
   c.latency_ns = t.duration_ns_or("latency", c.latency_ns);
   plant::MotionCaptureParams& cameras = c.cameras;
   cameras.period_s =

@@ -1,76 +1,27 @@
 #include "harness/lua/sandbox.hpp"
 
-#include <cstdio>
+#include <algorithm>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <lua.hpp>
 #include <utility>
 
+#include "harness/base/mishap.hpp"
+#include "harness/lua/library.hpp"
+
 namespace whirl::lua {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kHookStep = 10'000;
-
-// Replaces what prints addresses or walks in hash order. Runs before the globals are pruned.
-constexpr const char* kPrelude = R"lua(
-local type, getmetatable, raw_tostring, raw_format = type, getmetatable, tostring, string.format
-local next, sort, error, select, gsub = next, table.sort, error, select, string.gsub
-
-local function shown(v)
-  local t = type(v)
-  if t == "table" or t == "userdata" then
-    local meta = getmetatable(v)
-    if not (type(meta) == "table" and meta.__tostring) then return t end
-  elseif t == "function" or t == "thread" then
-    return t
-  end
-  return raw_tostring(v)
-end
-tostring = shown
-
-string.format = function(form, ...)
-  if type(form) == "string" and form:find("%%[-+ #0]*%d*%.?%d*p") then
-    error("%p prints an address, which differs from run to run", 2)
-  end
-  local n, given = select("#", ...), {...}
-  for i = 1, n do
-    local t = type(given[i])
-    if t ~= "number" and t ~= "string" and t ~= "boolean" and t ~= "nil" then given[i] = shown(given[i]) end
-  end
-  return raw_format(form, table.unpack(given, 1, n))
-end
-
-local rank = { number = 1, string = 2, boolean = 3 }
-local function before(a, b)
-  local ra, rb = rank[type(a)], rank[type(b)]
-  if ra ~= rb then return ra < rb end
-  if ra == 3 then return not a and b end
-  return a < b
-end
-pairs = function(t)
-  if type(t) ~= "table" then error("pairs wants a table, not a " .. type(t), 2) end
-  local keys = {}
-  for k in next, t do
-    if not rank[type(k)] then error("pairs: a " .. type(k) .. " as key has no order", 2) end
-    keys[#keys + 1] = k
-  end
-  sort(keys, before)
-  local i = 0
-  return function()
-    local k
-    repeat i = i + 1; k = keys[i] until k == nil or t[k] ~= nil
-    if k ~= nil then return k, t[k] end
-  end
-end
-for _, name in ipairs { "next", "load", "loadfile", "dofile", "collectgarbage", "print", "warn",
-                        "rawget", "rawset", "rawequal", "rawlen", "getmetatable", "setmetatable",
-                        "xpcall", "_VERSION" } do _G[name] = nil end
-math.random, math.randomseed, string.dump = nil, nil, nil
-)lua";
+constexpr int kHookStep = 1'000;
+constexpr std::size_t kLarge_block_B = 64u << 10;
+constexpr std::size_t kBytes_per_instruction = 64;  // moved, compared or searched
+constexpr std::size_t kLongest_source_B = 1u << 20;
+constexpr std::uintmax_t kLargest_file_B = 64u << 20;
 
 std::string chunk_name(const std::string& name) {
   return "@" + fs::path(name).filename().string();
@@ -80,10 +31,13 @@ std::string chunk_name(const std::string& name) {
 
 struct Sandbox::Inner {
   lua_State* L = nullptr;
+  lua_State* running = nullptr;  // whose budget it is
   Limits limits;
   std::int64_t left = 0;
   std::size_t used_B = 0;
+  std::size_t longest_text_B = 0;
   void* owner = nullptr;
+  Error thrown{ErrorKind::internal, "", "an exception passed through a plan", ""};
   fs::path root;  // include stays below it
 
   static void* allocate(void* ud, void* block, std::size_t old_size, std::size_t size) {
@@ -94,38 +48,85 @@ struct Sandbox::Inner {
       self->used_B -= was;
       return nullptr;
     }
-    if (size > was && self->used_B + (size - was) > self->limits.memory_B) return nullptr;
+    self->charge_for(block == nullptr && old_size == LUA_TSTRING, size);
+    if (size > was && self->refuses(block == nullptr && old_size == LUA_TSTRING, size - was)) {
+      self->charge(self->used_B);  // Lua now collects all its garbage and asks again
+      return nullptr;
+    }
     void* moved = std::realloc(block, size);
     if (moved != nullptr) self->used_B += size - was;
     return moved;
   }
 
+  bool refuses(bool text, std::size_t more) const {
+    return (text && more > kLongest_text_B + 64) || used_B + more > limits.memory_B;
+  }
+
+  // Long texts, and large tables where they grow. Not small tables: the seed of Lua's hashes is the
+  // clock's, so that the number of their rehashes may differ by one or two from run to run.
+  void charge_for(bool text, std::size_t size) {
+    if (text) longest_text_B = std::max(longest_text_B, size);
+    if (size >= (text ? 4 * kBytes_per_instruction : kLarge_block_B)) charge(size);
+  }
+
+  void charge(std::size_t bytes) {
+    left -= static_cast<std::int64_t>(bytes / kBytes_per_instruction);
+    if (left <= 0 && running != nullptr) lua_sethook(running, count, LUA_MASKCOUNT, 1);
+  }
+
   static Inner& of(lua_State* L) { return **static_cast<Inner**>(lua_getextraspace(L)); }
 
-  static void count(lua_State* L, lua_Debug*) {
+  static void count(lua_State* L, lua_Debug* frame) {
     Inner& self = of(L);
-    self.left -= kHookStep;
-    if (self.left > 0) return;
-    // From here on every instruction fails, so that no pcall can go on.
+    // One instruction may compare or convert a text as long as any that has been made.
+    const auto weight = static_cast<std::int64_t>(1 + self.longest_text_B / 1024);
+    if (self.left > 0) self.left -= kHookStep * weight;
+    if (self.left <= 0) Inner::stop(L);
+    if (lua_getlocal(L, frame, -(kMost_values + 1)) != nullptr) {
+      lua_pushfstring(L, "%sa call with more than %d arguments", where(L), kMost_values);
+      lua_error(L);
+    }
+  }
+
+  // Raises. From here on every instruction does, so that no pcall can go on.
+  static void stop(lua_State* L) {
     lua_sethook(L, count, LUA_MASKCOUNT, 1);
-    luaL_where(L, 0);  // in a hook, level 0 is the function that runs
-    lua_pushfstring(L, "endless loop? stopped after %d million instructions without waiting",
-                    static_cast<int>(self.limits.instructions / 1'000'000));
-    lua_concat(L, 2);
+    lua_pushfstring(L, "%sendless loop? stopped after %d million instructions without waiting",
+                    where(L), static_cast<int>(of(L).limits.instructions / 1'000'000));
     lua_error(L);
   }
 
+  // "hover.lua:3: ", of the plan's innermost line. It stays on the stack.
+  static const char* where(lua_State* L) {
+    lua_Debug frame;
+    for (int level = 0; lua_getstack(L, level, &frame) != 0; ++level) {
+      lua_getinfo(L, "Sl", &frame);
+      if (frame.currentline > 0 && std::string_view(frame.short_src) != "prelude") {
+        return lua_pushfstring(L, "%s:%d: ", frame.short_src, frame.currentline);
+      }
+    }
+    return lua_pushliteral(L, "");
+  }
+
   static int include(lua_State* L) {
-    const fs::path wanted = luaL_checkstring(L, 1);
+    std::size_t size = 0;
+    const char* name = luaL_checklstring(L, 1, &size);
+    const fs::path wanted = std::string(name, size);
     Inner& self = of(L);
-    const fs::path path = fs::weakly_canonical(self.root / wanted);
-    const fs::path inside = path.lexically_relative(fs::weakly_canonical(self.root));
-    if (wanted.is_absolute() || inside.empty() || *inside.begin() == "..") {
-      return luaL_error(L, "include \"%s\": only files below the plan's folder",
-                        wanted.string().c_str());
+    std::error_code status;
+    const fs::path root = fs::weakly_canonical(self.root, status);
+    const fs::path path = status ? fs::path() : fs::weakly_canonical(self.root / wanted, status);
+    const fs::path inside = status ? fs::path() : path.lexically_relative(root);
+    if (wanted.is_absolute() || inside.empty() || *inside.begin() == ".." ||
+        std::strlen(name) != size) {
+      return luaL_error(L, "include \"%s\": only files below the plan's folder", name);
     }
     const auto text = read_whole_file(path.string());
-    if (!text) return luaL_error(L, "include \"%s\": cannot be read", wanted.string().c_str());
+    if (!text) return luaL_error(L, "include \"%s\": cannot be read", name);
+    spend(L, static_cast<double>(text.value().size()));
+    if (text.value().size() > kLongest_source_B) {
+      return luaL_error(L, "include \"%s\": longer than 1 MiB", name);
+    }
     if (luaL_loadbufferx(L, text.value().data(), text.value().size(),
                          chunk_name(path.string()).c_str(), "t") != LUA_OK) {
       return lua_error(L);
@@ -133,25 +134,34 @@ struct Sandbox::Inner {
     lua_call(L, 0, 1);
     return 1;
   }
+
+  static void open(lua_State* L) {
+    for (const luaL_Reg& lib :
+         {luaL_Reg{LUA_GNAME, luaopen_base}, luaL_Reg{LUA_MATHLIBNAME, luaopen_math},
+          luaL_Reg{LUA_STRLIBNAME, luaopen_string}, luaL_Reg{LUA_TABLIBNAME, luaopen_table}}) {
+      luaL_requiref(L, lib.name, lib.func, 1);
+      lua_pop(L, 1);
+    }
+    open_charged_calls(L);
+    open_pattern_calls(L);
+    if (luaL_loadbufferx(L, kPrelude, std::strlen(kPrelude), "=prelude", "t") != LUA_OK) {
+      lua_error(L);
+    }
+    lua_call(L, 0, 0);
+    // The string metatable's __index is the string table itself, so s:format is pruned with it.
+    lua_register(L, "include", include);
+  }
 };
 
 Sandbox::Sandbox(Limits limits) : inner_(std::make_unique<Inner>()) {
   inner_->limits = limits;
+  inner_->left = limits.instructions;
   lua_State* L = lua_newstate(Inner::allocate, inner_.get());
   WHIRL_CHECK(L != nullptr);
   inner_->L = L;
   *static_cast<Inner**>(lua_getextraspace(L)) = inner_.get();
-  for (const luaL_Reg& lib :
-       {luaL_Reg{LUA_GNAME, luaopen_base}, luaL_Reg{LUA_MATHLIBNAME, luaopen_math},
-        luaL_Reg{LUA_STRLIBNAME, luaopen_string}, luaL_Reg{LUA_TABLIBNAME, luaopen_table}}) {
-    luaL_requiref(L, lib.name, lib.func, 1);
-    lua_pop(L, 1);
-  }
-  const int status = luaL_dostring(L, kPrelude);
-  WHIRL_CHECK(status == LUA_OK, lua_tostring(L, -1));
-  // The string metatable's __index is the string table itself, so s:format is pruned with it.
-  lua_register(L, "include", Inner::include);
-  lua_settop(L, 0);
+  const auto opened = protect(0, Inner::open);
+  WHIRL_CHECK(opened.ok(), opened.ok() ? "" : opened.error().message());
   refill();
 }
 
@@ -166,7 +176,19 @@ lua_State* Sandbox::state() const {
 
 void Sandbox::refill(lua_State* thread) {
   inner_->left = inner_->limits.instructions;
-  lua_sethook(thread == nullptr ? inner_->L : thread, Inner::count, LUA_MASKCOUNT, kHookStep);
+  inner_->running = thread == nullptr ? inner_->L : thread;
+  lua_sethook(inner_->running, Inner::count, LUA_MASKCOUNT, kHookStep);
+}
+
+void Sandbox::spend(lua_State* L, double instructions) {
+  Inner& self = Inner::of(L);
+  // Written so that a NaN stops, too.
+  if (instructions < static_cast<double>(self.left)) {
+    self.left -= static_cast<std::int64_t>(instructions);
+    return;
+  }
+  self.left = 0;
+  Inner::stop(L);
 }
 
 void Sandbox::set_owner(void* owner) {
@@ -178,23 +200,70 @@ void* Sandbox::owner(lua_State* L) {
 }
 
 Result<Done> Sandbox::run_file(const std::string& path) {
-  inner_->root = fs::absolute(path).parent_path();
+  std::error_code status;
+  inner_->root = fs::absolute(path, status).parent_path();
   const auto text = read_whole_file(path);
   if (!text) return text.error();
   return run_text(text.value(), path);
 }
 
 Result<Done> Sandbox::run_text(const std::string& text, const std::string& name) {
+  if (text.size() > kLongest_source_B) {
+    return Error{ErrorKind::bad_input, name, "is longer than 1 MiB", ""};
+  }
   lua_State* L = inner_->L;
   refill();
-  if (luaL_loadbufferx(L, text.data(), text.size(), chunk_name(name).c_str(), "t") != LUA_OK ||
-      lua_pcall(L, 0, 1, 0) != LUA_OK) {
-    const char* message = lua_tostring(L, -1);
-    Error error = to_error(message != nullptr ? message : "error without a text");
-    lua_pop(L, 1);
-    return error;
+  const std::string chunk = chunk_name(name);
+  int status = luaL_loadbufferx(L, text.data(), text.size(), chunk.c_str(), "t");
+  if (status == LUA_OK) status = lua_pcall(L, 0, 1, 0);
+  if (status == LUA_OK) return Done{};
+  Error error = raised(L, status);
+  if (error.place.empty()) error.place = chunk.substr(1);
+  lua_pop(L, 1);
+  return error;
+}
+
+Result<Done> Sandbox::protect(int arguments, const std::function<void(lua_State*)>& work) {
+  lua_State* L = inner_->L;
+  if (lua_checkstack(L, 2) == 0) return raised(L, LUA_ERRMEM);
+  lua_pushcfunction(L, [](lua_State* l) {
+    const auto* mine = static_cast<const std::function<void(lua_State*)>*>(lua_touserdata(l, -1));
+    lua_pop(l, 1);
+    try {
+      (*mine)(l);
+    } catch (const std::exception&) {  // Lua's own are none of these
+      Inner::of(l).thrown = error_of_current_exception();
+      throw;
+    }
+    return 0;
+  });
+  lua_insert(L, -1 - arguments);
+  lua_pushlightuserdata(L, const_cast<std::function<void(lua_State*)>*>(&work));
+  const int status = lua_pcall(L, arguments + 1, 0, 0);
+  if (status == LUA_OK) return Done{};
+  Error error = raised(L, status);
+  lua_pop(L, 1);
+  return error;
+}
+
+Error Sandbox::raised(lua_State* L, int status) {
+  if (status == LUA_ERRMEM) {
+    const std::size_t memory_B = Inner::of(L).limits.memory_B;
+    return {ErrorKind::bad_input, "",
+            "not enough memory: a plan has " + std::to_string(memory_B >> 20) +
+                " MiB, and a text 1 MiB",
+            ""};
   }
-  return Done{};
+  // Lua caught an exception that was none of its own, and dropped it.
+  if (status < 0) return Inner::of(L).thrown;
+  if (lua_type(L, -1) == LUA_TSTRING) {
+    std::size_t size = 0;
+    const char* text = lua_tolstring(L, -1, &size);
+    return to_error({text, size});
+  }
+  return {ErrorKind::bad_input, "",
+          std::string("error was called with a ") + luaL_typename(L, -1) + ", not with a text",
+          "write it as: error \"what is wrong\""};
 }
 
 Error Sandbox::to_error(const std::string& message) {
@@ -212,11 +281,17 @@ Error Sandbox::to_error(const std::string& message) {
 
 Result<std::string> read_whole_file(const std::string& path) {
   std::error_code status;
-  if (fs::is_directory(path, status)) {
-    return Error{ErrorKind::bad_input, path, "is a folder, not a file", ""};
+  const fs::file_status file = fs::status(path, status);
+  const auto refused = [&](const char* what) {
+    return Error{ErrorKind::bad_input, path, what, ""};
+  };
+  if (fs::is_directory(file)) return refused("is a folder, not a file");
+  if (fs::exists(file) && !fs::is_regular_file(file)) return refused("is no plain file");
+  if (fs::exists(file) && fs::file_size(path, status) > kLargest_file_B) {
+    return refused("is larger than 64 MiB");
   }
   std::ifstream in(path, std::ios::binary);
-  if (!in) return Error{ErrorKind::bad_input, path, "no such file, or not readable", ""};
+  if (!in) return refused("no such file, or not readable");
   return std::string(std::istreambuf_iterator<char>(in), {});
 }
 

@@ -7,9 +7,13 @@
 //            keys are an error. next() is not there: its order is the hash's.
 //   Shown    tables and functions print as "table" and "function", never as an address
 //   Limits   an instruction budget per run (an endless loop is one error with file and line), and
-//            memory
+//            memory. What works long within one instruction (patterns, long texts, table.move, data
+//            read from tables) is taken off the same budget, so that no call of the host's clock is
+//            needed to stop anything. A text has 1 MiB at most, a call 1000 arguments and results.
+//   Errors   every entry is protected: what Lua raises, lack of memory included, is a Result
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -24,6 +28,8 @@ struct Limits {
   std::size_t memory_B = 256u << 20;
 };
 
+inline constexpr std::size_t kLongest_text_B = 1u << 20;
+
 class Sandbox {
  public:
   explicit Sandbox(Limits limits = {});
@@ -33,6 +39,8 @@ class Sandbox {
   lua_State* state() const;
   // A new instruction budget for this thread of the state (null: the main one).
   void refill(lua_State* thread = nullptr);
+  // Takes so many instructions off the budget that runs; raises where it is used up.
+  static void spend(lua_State* L, double instructions);
   // What C functions called from the chunk find by owner(L).
   void set_owner(void* owner);
   static void* owner(lua_State* L);
@@ -41,14 +49,20 @@ class Sandbox {
   Result<Done> run_file(const std::string& path);
   Result<Done> run_text(const std::string& text, const std::string& name);
 
+  // Runs this with so many values of the main stack's top as its own. Whatever it raises is an Error.
+  Result<Done> protect(int arguments, const std::function<void(lua_State*)>& work);
+
   // Lua's own message "hover.lua:3: what" as an Error with a place.
   static Error to_error(const std::string& message);
+  // Of a call that ended with this status: what lies on top of the stack.
+  static Error raised(lua_State* L, int status);
 
  private:
   struct Inner;
   std::unique_ptr<Inner> inner_;
 };
 
+// Of plain files up to 64 MiB: a pipe or a device might never end.
 Result<std::string> read_whole_file(const std::string& path);
 
 }  // namespace whirl::lua

@@ -178,7 +178,7 @@ std::vector<double> Table::quantities(std::string_view key, Dimension dimension,
 }
 
 std::int64_t Table::duration_ns(std::string_view key) const {
-  const double seconds = quantity(key, Dimension::time, between(0.0, 9.2e9));
+  const double seconds = quantity(key, Dimension::time, between(0.0, 1e9));
   return static_cast<std::int64_t>(std::llround(seconds * 1e9));
 }
 

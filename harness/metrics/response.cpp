@@ -31,10 +31,14 @@ struct Change {
   bool exists() const { return std::abs(size()) > 1e-9 * std::max(std::abs(from), std::abs(to)); }
 };
 
+bool has_nan(std::span<const double> values) {
+  return std::any_of(values.begin(), values.end(), [](double v) { return std::isnan(v); });
+}
+
 Change change_of(const Record& record) {
   const auto window = static_cast<std::size_t>(kReference_ns / record.step_ns);
   const auto tail = after(record);
-  if (record.command < window || tail.size() < window || window == 0) return {};
+  if (record.command < window || tail.size() < window || window == 0 || has_nan(tail)) return {};
   return {mean_of(record.values.subspan(record.command - window, window)),
           mean_of(tail.last(window))};
 }
@@ -58,10 +62,6 @@ double transition_s(const Record& record, double sign) {
   const Change change = change_of(record);
   if (!change.exists() || !(sign * change.size() > 0.0)) return kNaN;
   return crossing_s(record, change, 0.9) - crossing_s(record, change, 0.1);
-}
-
-bool has_nan(std::span<const double> values) {
-  return std::any_of(values.begin(), values.end(), [](double v) { return std::isnan(v); });
 }
 
 double extreme(std::span<const double> values, bool largest) {
@@ -93,14 +93,20 @@ double overshoot_ratio(const Record& record) {
   return std::isnan(beyond) ? kNaN : std::max(0.0, beyond / std::abs(change.size()));
 }
 
+double change(const Record& record) {
+  const Change found = change_of(record);
+  return found.exists() ? found.size() : kNaN;
+}
+
 double settled_s(const Record& record, double target, double band) {
   const auto tail = after(record);
+  if (tail.empty() || has_nan(tail) || std::isnan(target) || std::isnan(band)) return kNaN;
   const double step_s = static_cast<double>(record.step_ns) * 1e-9;
   for (std::size_t i = tail.size(); i-- > 0;) {
     if (std::abs(tail[i] - target) <= band) continue;
     return i + 1 == tail.size() ? kNaN : step_s * static_cast<double>(i + 1);
   }
-  return tail.empty() || std::isnan(target) || std::isnan(band) ? kNaN : 0.0;
+  return 0.0;
 }
 
 double final_mean(const Record& record) {

@@ -3,8 +3,8 @@
 //   Record   samples at a fixed step, from before the command (the reference) to the record's end
 //   Change   from the mean of the 200 ms before the command to the mean of the record's last 200 ms
 //   Times    in seconds after the command; crossings are interpolated between samples
-//   Nothing  to measure (no samples before the command, no change, a NaN inside) gives NaN, and a NaN
-//            never meets a limit
+//   Nothing  to measure (less than 200 ms before the command or after it, no change, a NaN among the
+//            samples after the command) gives NaN, and a NaN never meets a limit
 #pragma once
 #include <cstdint>
 #include <span>
@@ -20,6 +20,7 @@ struct Record {
 double rise_time_s(const Record& record);  // 10 to 90 % of a change upward; NaN for one downward
 double fall_time_s(const Record& record);
 double response_time_s(const Record& record);  // command to 90 % of the change, either way
+double change(const Record& record);           // signed, of the means
 double overshoot_ratio(const Record& record);  // beyond the final mean, 1 = 100 % of the change
 // Last entry into target +- band: 0 if never outside, NaN if outside at the end.
 double settled_s(const Record& record, double target, double band);

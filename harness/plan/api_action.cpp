@@ -1,4 +1,5 @@
 // t:command, t:gust, t:fault: what a plan does to the world and to the board.
+#include "harness/plan/bus_name.hpp"
 #include "harness/plan/raise.hpp"
 #include "harness/plan/values.hpp"
 
@@ -23,14 +24,10 @@ int gust(lua_State* L) {
   return 0;
 }
 
-// "i2c3" -> 3
-int bus_number(const lua::Table& wish, const std::string& key, const std::string& bus) {
-  const auto digit = bus.find_last_not_of("0123456789");
-  if (digit == std::string::npos || digit + 1 == bus.size()) {
-    wish.refuse(key, "'" + bus + "' is no bus", "write it as \"i2c3\", \"spi1\" or \"usart2\"");
-    return -1;
-  }
-  return std::stoi(bus.substr(digit + 1));
+int named_bus(const lua::Table& wish, const std::string& key, const std::string& bus) {
+  if (const auto number = bus_number(bus)) return *number;
+  wish.refuse(key, "'" + bus + "' is no bus", "write it as \"i2c3\", \"spi1\" or \"usart2\"");
+  return -1;
 }
 
 void place_fault(lua_State* L, const lua::Table& wish, const Board& board, FaultSpec& fault) {
@@ -38,10 +35,10 @@ void place_fault(lua_State* L, const lua::Table& wish, const Board& board, Fault
     fault.device = wish.text("device");
     const BoardDevice* device = board.find(fault.device);
     if (device == nullptr) raise(L, "unknown device '" + fault.device + "' on " + board.name);
-    fault.bus = bus_number(wish, "device", device->bus);
+    fault.bus = named_bus(wish, "device", device->bus);
     fault.address = device->address >= 0 ? device->address : board.number(fault.device);
   }
-  if (wish.has("bus")) fault.bus = bus_number(wish, "bus", wish.text("bus"));
+  if (wish.has("bus")) fault.bus = named_bus(wish, "bus", wish.text("bus"));
   if (wish.has("address")) fault.address = static_cast<int>(wish.integer("address", 0, 0x7F));
   if (wish.has("function")) {
     const std::string function = wish.text("function");

@@ -7,6 +7,7 @@ namespace {
 
 constexpr const char* kExpectation = "expectation";
 constexpr const char* kGuard = "guard";
+constexpr std::size_t kMost_expectations = 100'000, kMost_guards = 1'000;
 
 struct Bounds {
   How how;
@@ -36,6 +37,7 @@ int expect(lua_State* L) {
   Script& self = Script::of(L);
   PendingExpectation pending{check_measurement(L, 2), place_of(L), false};
   if (!lua_isnoneornil(L, 3)) pending.measured.name = check_text(L, 3, "a name");
+  if (self.pending.size() >= kMost_expectations) raise(L, "more than 100000 expectations");
   self.pending.push_back(std::move(pending));
   push_handle(L, kExpectation, self.pending.size() - 1);
   return 1;
@@ -95,6 +97,7 @@ int always(lua_State* L) {
     guard.column = self.column(L, guard.name);
     guard.name += ", always";
   }
+  if (self.guards.size() >= kMost_guards) raise(L, "more than 1000 guards");
   self.guards.push_back(std::move(guard));
   push_handle(L, kGuard, self.guards.size() - 1);
   return 1;

@@ -31,6 +31,15 @@ metrics::Record view(const Stage& stage, const RecordInfo& info, std::size_t col
           stage.truth.step_ns(), rows.command - rows.first};
 }
 
+// The record that a method is called on. Each call walks over its rows, and pays for it.
+const RecordInfo& record_of(lua_State* L) {
+  Script& self = Script::of(L);
+  const RecordInfo& info = self.records[check_handle(L, 1, kRecord)];
+  const std::int64_t rows = (info.to_ns - info.from_ns) / self.stage().truth.step_ns();
+  lua::Sandbox::spend(L, static_cast<double>(rows) / 4.0);
+  return info;
+}
+
 // The column a call speaks of: the only one, or the one named first; then come its own arguments.
 struct Chosen {
   const RecordInfo* info;
@@ -41,7 +50,7 @@ struct Chosen {
 
 Chosen choose(lua_State* L) {
   Script& self = Script::of(L);
-  const RecordInfo& info = self.records[check_handle(L, 1, kRecord)];
+  const RecordInfo& info = record_of(L);
   const auto& columns = self.stage().truth.columns();
   if (info.columns.size() == 1) return {&info, info.columns[0], 2, columns[info.columns[0]].name};
   const std::string wanted = check_text(L, 2, "a record of several signals: the signal's name");
@@ -140,7 +149,7 @@ void add_squares(Errors& errors, const metrics::Record& record, double reference
 
 Errors errors_about(lua_State* L, int index) {
   Script& self = Script::of(L);
-  const RecordInfo& info = self.records[check_handle(L, 1, kRecord)];
+  const RecordInfo& info = record_of(L);
   Errors errors;
   if (lua_istable(L, index)) {
     const lua::Table wish = check_table(L, index);
@@ -175,7 +184,7 @@ int reference_index(lua_State* L) {
 
 int push_errors(lua_State* L, const Errors& e, double value, Dimension dimension,
                 const char* what) {
-  const RecordInfo& info = Script::of(L).records[check_handle(L, 1, kRecord)];
+  const RecordInfo& info = record_of(L);
   std::string name;
   for (const std::string& signal : e.signals) name += (name.empty() ? "" : ", ") + signal;
   push_measurement(L, {value, dimension, name + what, e.signals, info.from_ns, info.to_ns, false});
@@ -205,7 +214,7 @@ int rms(lua_State* L) {
 // record:settled("5 %"): about the final mean, in percent of the change.
 int settled(lua_State* L) {
   Script& self = Script::of(L);
-  const RecordInfo& info = self.records[check_handle(L, 1, kRecord)];
+  const RecordInfo& info = record_of(L);
   const int band = info.columns.size() == 1 || lua_istable(L, 3) ? 2 : 3;
   const std::int64_t step_ns = self.stage().truth.step_ns();
   if (!lua_isnoneornil(L, band + 1)) {
@@ -216,12 +225,10 @@ int settled(lua_State* L) {
   }
   const Chosen c = choose(L);
   const metrics::Record record = view(self.stage(), info, c.column);
-  const double to = metrics::final_mean(record);
-  double from = 0.0;
-  for (std::size_t i = 0; i < record.command; ++i) from += record.values[i];
-  from = record.command == 0 ? std::nan("") : from / static_cast<double>(record.command);
-  const double width = check_limit(L, band, Dimension::ratio).value_SI * std::abs(to - from);
-  return push(L, c, metrics::settled_s(record, to, width), Dimension::time, " settling time");
+  const double share = check_limit(L, band, Dimension::ratio).value_SI;
+  const double width = share * std::abs(metrics::change(record));
+  return push(L, c, metrics::settled_s(record, metrics::final_mean(record), width), Dimension::time,
+              " settling time");
 }
 
 std::vector<std::size_t> columns_of(lua_State* L, int index) {
@@ -240,6 +247,7 @@ std::vector<std::size_t> columns_of(lua_State* L, int index) {
 
 int recorded(lua_State* L, int, lua_KContext number) {
   Script& self = Script::of(L);
+  self.look();
   RecordInfo& info = self.records[static_cast<std::size_t>(number)];
   info.to_ns = self.stage().now_ns;
   const std::int64_t wire_ns = self.stage().world.command_on_wire_ns();

@@ -1,6 +1,7 @@
 // t:ask: a line to the firmware's terminal, and its answer.
 #include <cmath>
 
+#include "harness/lua/pattern.hpp"
 #include "harness/plan/raise.hpp"
 #include "harness/plan/values.hpp"
 
@@ -18,31 +19,28 @@ int heard_more(lua_State* L) {
 }
 
 bool matches(lua_State* L, const std::string& text) {
-  if (lua_isnil(L, kPattern)) return true;
-  lua_getglobal(L, "string");
-  lua_getfield(L, -1, "find");
-  lua_pushlstring(L, text.data(), text.size());
-  lua_pushvalue(L, kPattern);
-  lua_call(L, 2, 1);
-  const bool found = !lua_isnil(L, -1);
-  lua_pop(L, 2);
-  return found;
+  return lua_isnil(L, kPattern) ||
+         lua::pattern_found(L, text, check_text(L, kPattern, "a pattern"));
 }
 
 int answered(lua_State* L, int, lua_KContext ref) {
   luaL_unref(L, LUA_REGISTRYINDEX, static_cast<int>(ref));
   Script& self = Script::of(L);
+  self.look();
   const auto& heard = self.stage().world.heard();
   const auto before = static_cast<std::size_t>(lua_tointeger(L, kHeard));
   const bool came = heard.size() > before;
   const std::string answer = came ? heard[before] : "";
   const bool good = came && matches(L, answer);
-  const double now_s = static_cast<double>(self.stage().now_ns) * 1e-9;
-  const double took_s = good ? now_s - lua_tonumber(L, kSince) : std::nan("");
+  const std::int64_t now_ns = self.stage().now_ns;
+  const double now_s = static_cast<double>(now_ns) * 1e-9;
+  // The difference first: that of two rounded times may lie beyond a limit that was just met.
+  const double took_s =
+      good ? static_cast<double>(now_ns - lua_tointeger(L, kSince)) * 1e-9 : std::nan("");
   const std::string note = !came ? "no answer" : "it said: " + answer;
-  self.judge({took_s, Dimension::time, std::string("answer to '") + lua_tostring(L, kLine) + "'"},
-             How::at_most, std::nullopt, check_limit(L, kLimit, Dimension::time),
-             lua_tostring(L, kPlace), now_s, note);
+  const std::string line = check_text(L, kLine, "a line");
+  self.judge({took_s, Dimension::time, "answer to '" + line + "'"}, How::at_most, std::nullopt,
+             check_limit(L, kLimit, Dimension::time), lua_tostring(L, kPlace), now_s, note);
   lua_pushlstring(L, answer.data(), answer.size());
   return 1;
 }
@@ -63,7 +61,7 @@ int ask(lua_State* L) {
   if (!stage.world.say(line)) raise(L, "nobody listens to lines here", "t:ask is for stands");
   lua_pushstring(L, place_of(L).c_str());
   lua_pushinteger(L, static_cast<lua_Integer>(before));
-  lua_pushnumber(L, static_cast<double>(stage.now_ns) * 1e-9);
+  lua_pushinteger(L, stage.now_ns);
   lua_pushinteger(L, static_cast<lua_Integer>(before));
   lua_pushcclosure(L, heard_more, 1);
   const int ref = luaL_ref(L, LUA_REGISTRYINDEX);

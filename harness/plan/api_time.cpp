@@ -1,4 +1,6 @@
 // t:wait, t:wait_until, t:within, t:step, t:log, t:value, t:now: the plan and the clock of the run.
+#include <algorithm>
+
 #include "harness/plan/raise.hpp"
 #include "harness/plan/values.hpp"
 
@@ -65,15 +67,27 @@ int step(lua_State* L) {
   return 0;
 }
 
+// t:log(anything). A log is for people: what nobody would read is cut, with a word about it.
 int log(lua_State* L) {
+  constexpr std::size_t kMost_lines = 5'000, kLongest_line_B = 2'000;
   Stage& stage = Script::of(L).stage();
-  stage.report.log.push_back({seconds(stage.now_ns), "plan", luaL_tolstring(L, 2, nullptr)});
+  auto& lines = stage.report.log;
+  if (lines.size() > kMost_lines) return 0;
+  std::size_t size = 0;
+  const char* text = luaL_tolstring(L, 2, &size);
+  std::string line(text, std::min(size, kLongest_line_B));
+  if (size > line.size()) {
+    line += " ... (" + std::to_string(size - line.size()) + " bytes more)";
+  }
+  if (lines.size() == kMost_lines) line = "the log is full: what follows is left out";
+  lines.push_back({seconds(stage.now_ns), "plan", std::move(line)});
   return 0;
 }
 
 // t:value("height") -> measurement; t:value("tilt", "deg") -> a plain number in that unit.
 int value(lua_State* L) {
   Script& self = Script::of(L);
+  self.look();
   const std::string signal = check_text(L, 2, "a signal's name");
   const std::size_t column = self.column(L, signal);
   const double x = self.stage().truth.last(column);

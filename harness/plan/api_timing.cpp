@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "harness/metrics/timing.hpp"
+#include "harness/plan/bus_name.hpp"
 #include "harness/plan/raise.hpp"
 #include "harness/plan/values.hpp"
 
@@ -35,6 +36,8 @@ std::optional<Limit> optional_limit(const lua::Table& wish, const char* key, Dim
 }
 
 std::int64_t window_end(Script& self, const lua::Table& wish) {
+  constexpr std::size_t kMost_windows = 1'000;
+  if (self.windows() >= kMost_windows) wish.refuse("during", "more than 1000 budgets");
   return wish.has("during") ? self.stage().now_ns + wish.duration_ns("during") : kForever;
 }
 
@@ -59,8 +62,8 @@ struct Budget {
 void judge_spread(Script& self, std::span<const double> values, const Limit& limit,
                   const std::string& name, const std::string& place, std::int64_t to_ns) {
   const auto d = metrics::distribution(values);
-  self.judge({d.max, Dimension::time, name}, How::at_most, std::nullopt, limit, place,
-             seconds(to_ns), spread(d, limit.unit));
+  self.judge_in_window({d.max, Dimension::time, name}, Script::Figure::extreme, limit, place,
+                       seconds(to_ns), spread(d, limit.unit));
 }
 
 void judge_calls(Script& self, const Budget& b, std::int64_t from, std::int64_t to) {
@@ -70,8 +73,9 @@ void judge_calls(Script& self, const Budget& b, std::int64_t from, std::int64_t 
   const auto found = self.stage().events.calls.find(static_cast<std::uint16_t>(number));
   if (found != self.stage().events.calls.end()) {
     for (const auto& call : found->second) {
-      if (call.entry_ns < from || call.return_ns > to) continue;
-      entries.push_back(call.entry_ns);
+      if (call.entry_ns < from || call.entry_ns > to) continue;
+      entries.push_back(call.entry_ns);  // one that is still running at the window's end has come
+      if (call.return_ns > to) continue;
       execution.push_back(seconds(call.execution_ns));
       response.push_back(seconds(call.return_ns - call.entry_ns));
       // Called from no interrupt: that has no latency, and meets no limit.
@@ -94,8 +98,9 @@ void judge_calls(Script& self, const Budget& b, std::int64_t from, std::int64_t 
 }
 
 void judge_busy(Script& self, const Budget& b, std::int64_t from, std::int64_t to) {
-  self.judge({self.stage().events.busy_share(from, to), Dimension::ratio, "CPU busy share"},
-             How::at_most, std::nullopt, *b.busy, b.place, seconds(to));
+  self.judge_in_window(
+      {self.stage().events.busy_share(from, to), Dimension::ratio, "CPU busy share"},
+      Script::Figure::of_all, *b.busy, b.place, seconds(to), "");
 }
 
 // The { ... } of t:budget("name") { ... }
@@ -159,9 +164,9 @@ void judge_bus(Script& self, const BusWish& w, std::int64_t from, std::int64_t t
   }
   if (w.spi) return;  // SPI has no acknowledge
   const double count = starts.empty() ? std::nan("") : static_cast<double>(refused);
-  self.judge({count, Dimension::none, w.name + " NACKs"}, How::at_most, std::nullopt,
-             Limit{static_cast<double>(w.nacks), ""}, w.place, seconds(to),
-             std::to_string(starts.size()) + " transactions");
+  self.judge_in_window({count, Dimension::none, w.name + " NACKs"}, Script::Figure::extreme,
+                       Limit{static_cast<double>(w.nacks), ""}, w.place, seconds(to),
+                       std::to_string(starts.size()) + " transactions");
 }
 
 // t:bus { device = "esc1", direction = "write", period = "20 ms", tolerance = "0.5 ms" }
@@ -179,7 +184,9 @@ int bus(lua_State* L) {
   w.spi = device->bus.starts_with("spi");
   if (!w.spi && !device->bus.starts_with("i2c"))
     raise(L, name + " is on " + device->bus + ", not I2C or SPI");
-  w.bus = std::stoi(device->bus.substr(3));
+  const auto number = bus_number(device->bus);
+  if (!number) raise(L, name + " is on '" + device->bus + "', which is no bus");
+  w.bus = *number;
   w.address = w.spi ? board.number(name) : device->address;
   if (wish.has("direction")) {
     w.any_direction = false;
@@ -210,7 +217,7 @@ struct LatencyWish {
 std::vector<metrics::Span> writes_to(const Stage& stage, const BoardDevice& device,
                                      std::int64_t from, std::int64_t to) {
   std::vector<metrics::Span> writes;
-  const int bus = std::stoi(device.bus.substr(3));
+  const int bus = bus_number(device.bus).value_or(-1);
   for (const auto& r : stage.events.bus) {
     if (r.spi || r.read || r.bus != bus || r.address != device.address) continue;
     if (r.start_ns >= from && r.stop_ns <= to) writes.push_back({r.start_ns, r.stop_ns});
@@ -243,8 +250,8 @@ void judge_latency(Script& self, const LatencyWish& w, std::int64_t from, std::i
   std::string note = spread(d, w.limit.unit);
   if (untraced > 0)
     note += "; " + std::to_string(untraced) + " writes cannot be traced to a sample";
-  self.judge({worst, Dimension::time, w.name}, How::at_most, std::nullopt, w.limit, w.place,
-             seconds(to), note);
+  self.judge_in_window({worst, Dimension::time, w.name}, Script::Figure::extreme, w.limit, w.place,
+                       seconds(to), note);
   self.stage().report.histograms.push_back(std::move(histogram));
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <lua.hpp>
 
+#include "harness/base/text.hpp"
 #include "harness/lua/node.hpp"
 #include "harness/plan/raise.hpp"
 
@@ -35,6 +36,14 @@ Result<Plan> read_plan(const lua::Table& t, std::string name, const std::string&
   return plan;
 }
 
+// Names stand in one line of a terminal and choose plans on command lines. Null: nothing is wrong.
+const char* fault_of_name(const std::string& name) {
+  if (name.empty()) return "is empty";
+  if (name.size() > 200) return "is longer than 200 bytes";
+  if (name != printable_line(name)) return "holds control characters, or is no UTF-8";
+  return nullptr;
+}
+
 }  // namespace
 
 bool Plan::has_tag(const std::string& tag) const {
@@ -52,7 +61,10 @@ int PlanFile::declare(lua_State* L) {
 
 int PlanFile::take(lua_State* L) {
   auto* self = static_cast<PlanFile*>(lua::Sandbox::owner(L));
-  const std::string name = lua_tostring(L, lua_upvalueindex(1));
+  std::size_t size = 0;
+  const char* text = lua_tolstring(L, lua_upvalueindex(1), &size);
+  const std::string name(text, size);
+  if (const char* fault = fault_of_name(name)) return luaL_error(L, "plan: its name %s", fault);
   if (!lua_istable(L, 1))
     return luaL_error(L, "plan \"%s\": a table { ... } is wanted", name.c_str());
   if (lua_getfield(L, 1, "run") != LUA_TFUNCTION) {
@@ -74,10 +86,12 @@ int PlanFile::take(lua_State* L) {
   return 0;
 }
 
-Result<std::unique_ptr<PlanFile>> PlanFile::load(const std::string& path) {
-  std::unique_ptr<PlanFile> file(new PlanFile(path));
+Result<std::unique_ptr<PlanFile>> PlanFile::load(const std::string& path, lua::Limits limits) {
+  std::unique_ptr<PlanFile> file(new PlanFile(path, limits));
   file->sandbox_.set_owner(file.get());
-  lua_register(file->sandbox_.state(), "plan", declare);
+  const auto registered =
+      file->sandbox_.protect(0, [](lua_State* L) { lua_register(L, "plan", declare); });
+  if (!registered) return registered.error();
   if (auto ran = file->sandbox_.run_file(path); !ran) return ran.error();
   lua_settop(file->sandbox_.state(), 0);
   if (file->plans_.empty()) {

@@ -34,13 +34,13 @@ struct Plan {
 
 class PlanFile {
  public:
-  static Result<std::unique_ptr<PlanFile>> load(const std::string& path);
+  static Result<std::unique_ptr<PlanFile>> load(const std::string& path, lua::Limits limits = {});
 
   const std::vector<Plan>& plans() const { return plans_; }
   lua::Sandbox& sandbox() { return sandbox_; }
 
  private:
-  explicit PlanFile(std::string path) : path_(std::move(path)) {}
+  PlanFile(std::string path, lua::Limits limits) : path_(std::move(path)), sandbox_(limits) {}
   static int declare(lua_State* L);
   static int take(lua_State* L);
 

@@ -14,6 +14,7 @@ constexpr const char* kOwnerKey = "whirl.script";
 
 // s in function(s): the signals at this step, by column name with unit ("height_m").
 int read_signal(lua_State* L) {
+  Script::of(L).look();
   Stage& stage = Script::of(L).stage();
   const std::string wanted = check_text(L, 2, "a signal's name");
   const auto& columns = stage.truth.columns();
@@ -55,9 +56,16 @@ void push_t(lua_State* L) {
   push_handle(L, "t", 0);
 }
 
-bool meets(double x, const std::optional<Limit>& low, const std::optional<Limit>& high) {
-  // Written so that a NaN meets nothing.
-  return !std::isnan(x) && (!low || x >= low->value_SI) && (!high || x <= high->value_SI);
+// Times are whole nanoseconds, but 60'000'000 * 1e-9 is not 60 * 1e-3: less than a picosecond is none.
+double slack(Dimension dimension) {
+  return dimension == Dimension::time ? 1e-12 : 0.0;
+}
+
+// Only a finite value meets a limit.
+bool meets(const Measurement& m, const std::optional<Limit>& low,
+           const std::optional<Limit>& high) {
+  const double x = m.value_SI, e = slack(m.dimension);
+  return std::isfinite(x) && (!low || x >= low->value_SI - e) && (!high || x <= high->value_SI + e);
 }
 
 double margin_of(double x, const std::optional<Limit>& low, const std::optional<Limit>& high) {
@@ -85,6 +93,18 @@ double seconds(std::int64_t ns) {
   return static_cast<double>(ns) * 1e-9;
 }
 
+// How a time that was to be watched was not; empty: it was.
+std::string unfilled(std::int64_t from_ns, std::int64_t to_ns, std::int64_t now_ns,
+                     bool completed) {
+  if (now_ns <= from_ns || to_ns <= from_ns) return "was never watched: its time is empty";
+  if (to_ns == kForever && completed) return "";
+  if (to_ns <= now_ns) return "";
+  const std::string watched = std::to_string((now_ns - from_ns) / 1'000'000) + " ms";
+  if (to_ns == kForever) return "the run was cut off after " + watched + " of watching";
+  return "only " + watched + " of " + std::to_string((to_ns - from_ns) / 1'000'000) +
+         " ms were watched when the run ended";
+}
+
 }  // namespace
 
 Script& Script::of(lua_State* L) {
@@ -95,13 +115,19 @@ Script& Script::of(lua_State* L) {
 }
 
 Script::Script(PlanFile& file, const Plan& plan, Stage& stage) : file_(file), stage_(stage) {
-  lua_State* L = file_.sandbox().state();
+  const auto started = file_.sandbox().protect(0, [&](lua_State* L) { start(L, plan); });
+  if (!started) broken_ = started.error();
+}
+
+void Script::start(lua_State* L, const Plan& plan) {
   lua_pushlightuserdata(L, this);
   lua_setfield(L, LUA_REGISTRYINDEX, kOwnerKey);
   thread_ = lua_newthread(L);
+  lua_pushvalue(L, -1);
   luaL_ref(L, LUA_REGISTRYINDEX);  // keeps the thread alive as long as the state
-  lua_rawgeti(thread_, LUA_REGISTRYINDEX, plan.run_ref);
-  push_t(thread_);
+  lua_rawgeti(L, LUA_REGISTRYINDEX, plan.run_ref);
+  push_t(L);
+  lua_xmove(L, thread_, 2);
 }
 
 std::size_t Script::column(lua_State* L, const std::string& signal) {
@@ -135,27 +161,12 @@ void Script::wait_until(std::int64_t t_ns, int condition_ref) {
 }
 
 Result<Script::State> Script::advance() {
+  if (broken_) return *broken_;
   lua_State* L = file_.sandbox().state();
   // Conditions run outside the coroutine, under one protected call per step.
   file_.sandbox().refill();
-  lua_pushcfunction(L, [](lua_State* l) {
-    Script& self = of(l);
-    const std::int64_t now = self.stage_.now_ns;
-    if (self.wake_condition_ != -1 && !self.condition_met_) {
-      self.condition_met_ = self.condition(l, self.wake_condition_);
-    }
-    for (Guard& guard : self.guards) {
-      if (guard.condition_ref == -1 || now < guard.from_ns || now >= guard.to_ns) continue;
-      if (self.condition(l, guard.condition_ref)) continue;
-      if (guard.first_ns < 0) guard.first_ns = now;
-      guard.violated_ns += self.stage_.truth.step_ns();
-    }
-    return 0;
-  });
-  if (lua_pcall(L, 0, 0, 0) != LUA_OK) {
-    Error error = lua::Sandbox::to_error(luaL_tolstring(L, -1, nullptr));
-    return error;
-  }
+  const auto met = file_.sandbox().protect(0, [this](lua_State* l) { check_conditions(l); });
+  if (!met) return met.error();
   if (stage_.now_ns < wake_ns_ && !condition_met_) return State::waiting;
   wake_condition_ = -1;
   file_.sandbox().refill(thread_);
@@ -167,27 +178,40 @@ Result<Script::State> Script::advance() {
     return State::waiting;
   }
   if (status == LUA_OK) return State::done;
-  return lua::Sandbox::to_error(luaL_tolstring(thread_, -1, nullptr));
+  return lua::Sandbox::raised(thread_, status);
+}
+
+void Script::check_conditions(lua_State* L) {
+  const std::int64_t now = stage_.now_ns;
+  if (wake_condition_ != -1 && !condition_met_) condition_met_ = condition(L, wake_condition_);
+  for (Guard& guard : guards) {
+    if (guard.condition_ref == -1 || now < guard.from_ns || now > guard.to_ns) continue;
+    ++guard.evaluated;
+    if (condition(L, guard.condition_ref)) continue;
+    if (guard.first_ns < 0) guard.first_ns = now;
+    guard.violated_ns += stage_.truth.step_ns();
+  }
 }
 
 void Script::add(results::Expectation e) {
-  const auto taken = [&](const std::string& name) {
-    return std::any_of(stage_.report.expectations.begin(), stage_.report.expectations.end(),
-                       [&](const auto& other) { return other.name == name; });
-  };
+  // "x (2)" may also be a name that the plan wrote itself.
   const std::string base = e.name;
-  for (int n = 2; taken(e.name); ++n) e.name = base + " (" + std::to_string(n) + ")";
+  int& number = last_number_.try_emplace(base, 1).first->second;
+  while (!names_.insert(e.name).second) e.name = base + " (" + std::to_string(++number) + ")";
   stage_.report.expectations.push_back(std::move(e));
 }
 
 void Script::judge(const Measurement& m, How how, std::optional<Limit> low,
                    std::optional<Limit> high, const std::string& place, double t_s,
-                   const std::string& note) {
+                   const std::string& note, const std::string& unfilled) {
   results::Expectation e;
   e.name = m.name;
   e.how = words(how);
   e.unit = high ? high->unit : low->unit;
-  e.verdict = meets(m.value_SI, low, high) ? results::Verdict::pass : results::Verdict::fail;
+  e.verdict = meets(m, low, high) ? results::Verdict::pass : results::Verdict::fail;
+  if (!unfilled.empty() && (e.verdict == results::Verdict::pass || std::isnan(m.value_SI))) {
+    e.verdict = results::Verdict::inconclusive;
+  }
   e.measured = in_unit(m.value_SI, e.unit);
   if (low) e.low = in_unit(low->value_SI, e.unit);
   if (high) e.high = in_unit(high->value_SI, e.unit);
@@ -202,7 +226,15 @@ void Script::judge(const Measurement& m, How how, std::optional<Limit> low,
   if (low) e.limits_SI.push_back(low->value_SI);
   if (high && how != How::equal) e.limits_SI.push_back(high->value_SI);
   e.note = std::isnan(m.value_SI) && note.empty() ? "nothing to measure" : note;
+  if (!unfilled.empty()) e.note = unfilled + (note.empty() ? "" : "; " + note);
   add(std::move(e));
+}
+
+void Script::judge_in_window(const Measurement& m, Figure figure, const Limit& high,
+                             const std::string& place, double t_s, const std::string& note) {
+  Measurement known = m;
+  if (figure == Figure::of_all && !unfilled_.empty()) known.value_SI = std::nan("");
+  judge(known, How::at_most, std::nullopt, high, place, t_s, note, unfilled_);
 }
 
 void Script::set_step(const std::string& name) {
@@ -214,17 +246,20 @@ void Script::add_window(std::int64_t to_ns, Window window) {
   windows_.push_back({stage_.now_ns, to_ns, std::move(window)});
 }
 
-void Script::judge_guard(const Guard& guard) {
+void Script::judge_guard(const Guard& guard, bool completed) {
   const std::int64_t end = std::min(guard.to_ns, stage_.now_ns);
+  std::string not_whole = unfilled(guard.from_ns, guard.to_ns, stage_.now_ns, completed);
   if (guard.condition_ref != -1) {
+    if (guard.evaluated == 0) not_whole = "was never evaluated";
     const std::string note =
         guard.first_ns < 0 ? ""
                            : "first violated at " + std::to_string(seconds(guard.first_ns)) + " s";
     judge({seconds(guard.violated_ns), Dimension::time, guard.name + " (time violated)"},
           How::at_most, std::nullopt, Limit{0.0, "s"}, guard.place,
-          seconds(std::max<std::int64_t>(guard.first_ns, 0)), note);
+          seconds(std::max<std::int64_t>(guard.first_ns, 0)), note, not_whole);
     return;
   }
+  look();
   const auto& truth = stage_.truth;
   double worst = std::numeric_limits<double>::quiet_NaN();
   double worst_margin = std::numeric_limits<double>::infinity();
@@ -241,10 +276,18 @@ void Script::judge_guard(const Guard& guard) {
   const std::string signal = truth.columns()[*guard.column].name;
   judge({worst, dimension(*guard.column), guard.name, {signal}, guard.from_ns, end, true},
         *guard.how, guard.low, guard.high, guard.place,
-        seconds(static_cast<std::int64_t>(at) * truth.step_ns()));
+        seconds(static_cast<std::int64_t>(at) * truth.step_ns()), "", not_whole);
 }
 
-void Script::judge_faults() {
+void Script::judge_windows(bool completed) {
+  for (const OpenWindow& window : windows_) {
+    look();
+    unfilled_ = unfilled(window.from_ns, window.to_ns, stage_.now_ns, completed);
+    window.judge(*this, window.from_ns, std::min(window.to_ns, stage_.now_ns));
+  }
+}
+
+void Script::list_faults() {
   for (std::size_t i = 0; i < faults.size(); ++i) {
     const FaultSpec& fault = faults[i];
     results::FaultRow row{
@@ -262,25 +305,26 @@ void Script::judge_faults() {
   }
 }
 
-Result<Done> Script::finish() {
+std::vector<Error> Script::finish(bool completed) {
+  std::vector<Error> errors;
   for (const Guard& guard : guards) {
-    if (guard.condition_ref == -1 && !guard.how) {
-      return Error{ErrorKind::bad_input, guard.place,
-                   "t:always(\"" + guard.name + "\") has no limit",
-                   "add :at_most, :at_least or :within"};
+    if (guard.condition_ref != -1 || guard.how) {
+      judge_guard(guard, completed);
+      continue;
     }
-    judge_guard(guard);
+    errors.push_back({ErrorKind::bad_input, guard.place,
+                      "t:always(\"" + guard.name + "\") has no limit",
+                      "add :at_most, :at_least or :within"});
   }
-  for (const OpenWindow& window : windows_) {
-    window.judge(*this, window.from_ns, std::min(window.to_ns, stage_.now_ns));
-  }
-  judge_faults();
+  judge_windows(completed);
+  list_faults();
   for (const PendingExpectation& e : pending) {
     if (e.judged) continue;
-    return Error{ErrorKind::bad_input, e.place, "t:expect(" + e.measured.name + ") has no limit",
-                 "add :at_most, :at_least, :within or :equal"};
+    errors.push_back({ErrorKind::bad_input, e.place,
+                      "t:expect(" + e.measured.name + ") has no limit",
+                      "add :at_most, :at_least, :within or :equal"});
   }
-  return Done{};
+  return errors;
 }
 
 }  // namespace whirl::plan

@@ -2,12 +2,16 @@
 //
 //   Drive    advance() at every step; the coroutine runs when what it waits for has come
 //   Judge    expectations at once; guards (t:always) and windows (budgets, buses, latency) in finish()
+//   Shown    a limit that was broken is a fail whenever that was seen; one that was kept passes only
+//            if the whole of its time was watched, and is inconclusive otherwise
 //   Parts    api_*.cpp each bring one family of calls; they meet here
 #pragma once
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -64,7 +68,8 @@ struct Guard {  // t:always
   std::int64_t from_ns = 0, to_ns = kForever;
   std::optional<How> how;
   std::optional<Limit> low, high;
-  std::int64_t violated_ns = 0;  // of a condition: how long, and when first
+  std::int64_t evaluated = 0;    // of a condition: how often,
+  std::int64_t violated_ns = 0;  // how long it did not hold, and since when
   std::int64_t first_ns = -1;
 };
 
@@ -81,8 +86,9 @@ class Script {
   Script(PlanFile& file, const Plan& plan, Stage& stage);
 
   Result<State> advance();
-  // After the last step: judges guards and windows. Complaints about the plan are errors.
-  Result<Done> finish();
+  // After the last step: judges guards and windows, and gives what is wrong with the plan itself.
+  // `completed`: the script has returned, so that what is watched to the end has been.
+  std::vector<Error> finish(bool completed);
   const std::string& step_name() const { return step_name_; }
 
   // What the api parts use.
@@ -93,14 +99,23 @@ class Script {
   bool condition(lua_State* L, int ref);  // raises what the function raised
   void judge(const Measurement& measured, How how, std::optional<Limit> low,
              std::optional<Limit> high, const std::string& place, double t_s,
-             const std::string& note = {});
+             const std::string& note = {}, const std::string& unfilled = {});
+  // The same within a window that was not watched to its end: a limit kept until then shows nothing.
+  // `of_all`: of a mean or a count over all of it, not even a limit broken until then does.
+  enum class Figure { extreme, of_all };
+  void judge_in_window(const Measurement& measured, Figure figure, const Limit& high,
+                       const std::string& place, double t_s, const std::string& note);
   void add(results::Expectation expectation);  // makes its name unique
+  // The plan has taken in something of the run: a signal, an answer, a window.
+  void look() { looked_ = true; }
+  bool has_looked() const { return looked_; }
   void wait_until(std::int64_t t_ns, int condition_ref = -1);
   bool condition_met() const { return condition_met_; }
   void set_step(const std::string& name);
   // Judged in finish() over [from, min(to, end)].
   using Window = std::function<void(Script&, std::int64_t from_ns, std::int64_t to_ns)>;
   void add_window(std::int64_t to_ns, Window window);
+  std::size_t windows() const { return windows_.size(); }
 
   std::vector<Measurement> measurements;  // all that Lua holds a table of
   std::vector<RecordInfo> records;
@@ -114,18 +129,26 @@ class Script {
     std::int64_t from_ns, to_ns;
     Window judge;
   };
-  void judge_guard(const Guard& guard);
-  void judge_faults();
+  void start(lua_State* L, const Plan& plan);
+  void check_conditions(lua_State* L);
+  void judge_guard(const Guard& guard, bool completed);
+  void judge_windows(bool completed);
+  void list_faults();
 
   PlanFile& file_;
   Stage& stage_;
   lua_State* thread_ = nullptr;
+  std::optional<Error> broken_;  // it could not even be set up
   std::int64_t wake_ns_ = 0;
   int wake_condition_ = -1;
   bool condition_met_ = false;
   bool started_ = false;
+  bool looked_ = false;
   std::string step_name_;
   std::vector<OpenWindow> windows_;
+  std::string unfilled_;  // of the window that is being judged: how; empty: it was watched whole
+  std::set<std::string> names_;             // of the expectations
+  std::map<std::string, int> last_number_;  // that made such a name unique
 };
 
 // Registers t's methods into the table on top of the stack.

@@ -9,6 +9,14 @@ namespace whirl::plan {
 namespace {
 
 constexpr const char* kMeasurement = "measurement";
+constexpr std::size_t kMost_measurements = 1'000'000;
+constexpr std::size_t kLongest_text_B = 4096;
+
+std::string text_at(lua_State* L, int index) {
+  std::size_t size = 0;
+  const char* text = lua_tolstring(L, index, &size);
+  return {text, size};
+}
 
 int show_measurement(lua_State* L) {
   const Measurement m = check_measurement(L, 1);
@@ -29,10 +37,11 @@ void declare_measurement(lua_State* L) {
 
 void push_measurement(lua_State* L, const Measurement& m) {
   auto& all = Script::of(L).measurements;
+  if (all.size() >= kMost_measurements) raise(L, "more than a million measurements");
   lua_createtable(L, 0, 3);
   lua_pushnumber(L, m.value_SI);
   lua_setfield(L, -2, "value");
-  lua_pushstring(L, m.name.c_str());
+  lua_pushlstring(L, m.name.data(), m.name.size());
   lua_setfield(L, -2, "name");
   lua_pushinteger(L, static_cast<lua_Integer>(all.size()));
   lua_setfield(L, -2, "number");
@@ -67,7 +76,7 @@ Limit check_limit(lua_State* L, int index, Dimension wanted) {
     raise(L, std::string("a ") + name(wanted) + " as a text is wanted, not a " +
                  luaL_typename(L, index));
   }
-  const std::string text = lua_tostring(L, index);
+  const std::string text = text_at(L, index);
   const auto value = parse_quantity_as(text, wanted, "");
   if (!value) raise(L, value.error());
   return {value.value(), unit_symbol(text)};
@@ -85,7 +94,12 @@ std::string check_text(lua_State* L, int index, const char* what) {
   if (lua_type(L, index) != LUA_TSTRING) {
     raise(L, std::string(what) + " is wanted, not a " + luaL_typename(L, index));
   }
-  return lua_tostring(L, index);
+  std::string text = text_at(L, index);
+  if (text.size() > kLongest_text_B) {
+    raise(L, std::string(what) + " of " + std::to_string(text.size()) + " bytes",
+          "4096 are enough");
+  }
+  return text;
 }
 
 lua::Table check_table(lua_State* L, int index) {

@@ -11,12 +11,27 @@ constexpr std::int64_t kTick_ns = 1'000'000, kStale_ns = 100'000'000;
 }  // namespace
 
 EscLine::EscLine(std::uint16_t port) : port_(port) {
-  decoder_.on_line([this](const std::string& line) { heard_.push_back(line); });
+  decoder_.on_line([this](const std::string& line) { hear(line); });
   decoder_.on_sample([this](const io::EscSample& sample) {
     if (sample_) period_ns_ = static_cast<std::int64_t>(sample.tick - sample_->tick) * kTick_ns;
     sample_ = sample;
     sample_ns_ = now_ns_;
   });
+}
+
+void EscLine::say(const std::string& line) {
+  to_send_ += line + "\r\n";
+  echo_ = line;
+}
+
+// A terminal may echo what it was told, behind its prompt: that is no answer.
+void EscLine::hear(const std::string& line) {
+  const std::size_t text = line.find_first_not_of("#$%>: ");
+  if (!echo_.empty() && text != std::string::npos && line.compare(text, line.npos, echo_) == 0) {
+    echo_.clear();
+    return;
+  }
+  heard_.push_back(line);
 }
 
 void EscLine::send(std::int64_t t_ns, io::Batch& sensed) {

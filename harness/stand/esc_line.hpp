@@ -20,8 +20,8 @@ class EscLine {
   EscLine(const EscLine&) = delete;
   EscLine& operator=(const EscLine&) = delete;
 
-  void say(const std::string& line) { to_send_ += line + "\r\n"; }
-  const std::vector<std::string>& heard() const { return heard_; }  // lines, in order
+  void say(const std::string& line);
+  const std::vector<std::string>& heard() const { return heard_; }  // lines, in order, no echoes
   void send(std::int64_t t_ns, io::Batch& sensed);
   void take(const io::Reader& message);  // ignores other ports
 
@@ -34,11 +34,13 @@ class EscLine {
  private:
   using Field = double (*)(const io::EscSample&);
   double value(Field field) const;
+  void hear(const std::string& line);
 
   std::uint16_t port_;
   std::string to_send_;
   io::EscStreamDecoder decoder_;
   std::vector<std::string> heard_;
+  std::string echo_;  // the line that a terminal which echoes would send back next; empty: none
   std::optional<io::EscSample> sample_;
   std::int64_t sample_ns_ = 0, period_ns_ = 0, now_ns_ = 0;
 };

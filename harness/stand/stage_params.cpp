@@ -31,6 +31,7 @@ void read_motor(const lua::Table& t, StageParams& params) {
   read_amount(t, "resistance", Dimension::resistance, base.resistance_ohm, params);
   read_amount(t, "inductance", Dimension::inductance, base.inductance_H, params);
   read_amount(t, "no_load_current", Dimension::current, base.no_load_current_A, params);
+  if (t.flag_or("swap_wires", false)) params["swap_wires"] = 1.0;
   if (t.has("kv_rpm_per_V")) {
     const double kv = t.number("kv_rpm_per_V", lua::between(10.0, 1e5));
     if (kv > 0.0) params["torque_constant"] = 30.0 / (std::numbers::pi * kv);

@@ -5,7 +5,8 @@
 //            use what the other had delivered by the start of the step, so neither order of execution
 //            nor host speed can change a result.
 //   Silence  a target that does not answer within the host-side limit is an Error (internal for a
-//            crash of ours, bad_input for an image that cannot run), with its last output in `what`.
+//            crash of ours, bad_input for an image that cannot run, host for what the machine did), with
+//            its last output in `what`.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -20,7 +21,7 @@ namespace whirl {
 enum class TargetState {
   running,
   ended,       // the board asked for power-down, or the run was ended
-  cpu_locked,  // lock-up: a fault in a fault handler; firmware's doing, named in a cpu_fault message
+  cpu_locked,  // the core cannot go on; firmware's doing, named in a cpu_fault message
 };
 
 class Target {

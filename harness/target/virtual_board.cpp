@@ -8,31 +8,44 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <cstdio>
 #include <cstring>
+#include <iterator>
 #include <nlohmann/json.hpp>
-#include <optional>
 
+#include "harness/base/interruption.hpp"
+#include "harness/base/places.hpp"
 #include "io_bridges/link/channel.hpp"
 #include "io_bridges/qemu/board/parts.hpp"
 
 namespace whirl {
 namespace {
 
-constexpr int kSlice_ms = 100;       // how soon the death of QEMU is noticed
-constexpr int kLast_words = 12;      // lines of output that an error repeats
-constexpr int kFarewell_ms = 10000;  // for the statistics at the end
+constexpr int kSlice_ms = 100;        // how soon the death of QEMU is noticed
+constexpr int kLast_words = 12;       // lines of output that an error repeats
+constexpr int kFarewell_ms = 10000;   // for the statistics at the end
+constexpr double kLeast_share = 0.5;  // of the silence, in which a healthy host lets QEMU compute
+constexpr int kNot_started = 127;     // our child's exit code when there is nothing to run
+
+// A signal may interrupt it, or let it write a part.
+bool write_all(int fd, const std::string& text) {
+  for (std::size_t at = 0; at < text.size();) {
+    const ssize_t n = write(fd, text.data() + at, text.size() - at);
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) return false;
+    at += static_cast<std::size_t>(n);
+  }
+  return true;
+}
 
 int text_in_memory(const char* name, const std::string& text) {
   const int fd = memfd_create(name, MFD_CLOEXEC);
-  if (fd < 0) return fd;
-  if (write(fd, text.data(), text.size()) != static_cast<ssize_t>(text.size())) {
-    close(fd);
-    return -1;
-  }
-  return fd;
+  if (fd < 0 || write_all(fd, text)) return fd;
+  close(fd);
+  return -1;
 }
 
 std::string last_lines(const std::string& text, int lines) {
@@ -45,11 +58,55 @@ std::string last_lines(const std::string& text, int lines) {
   return text.substr(from == 0 ? 0 : from + 1);
 }
 
-std::string how_it_ended(int status) {
+// Signals that come from outside: a user, the kernel (out of memory, out of backing store), a limit.
+bool from_outside(int signal) {
+  static constexpr int kOutside[] = {SIGKILL, SIGTERM, SIGINT,  SIGHUP,  SIGQUIT,
+                                     SIGBUS,  SIGXCPU, SIGXFSZ, SIGUSR1, SIGUSR2};
+  return std::find(std::begin(kOutside), std::end(kOutside), signal) != std::end(kOutside);
+}
+
+// QEMU has gone without a word through the link: whose doing was it?
+Error why_it_ended(int status, const std::string& qemu, const std::string& words) {
+  const auto said = [&](const char* text) { return words.find(text) != std::string::npos; };
+  const std::string tail = "; its last words:\n" + last_lines(words, kLast_words);
   if (WIFSIGNALED(status)) {
-    return std::string("QEMU was ended by signal ") + strsignal(WTERMSIG(status));
+    const int signal = WTERMSIG(status);
+    const std::string what = std::string("QEMU was ended by signal ") + strsignal(signal) + tail;
+    if (!from_outside(signal)) return {ErrorKind::internal, "virtual board", what, ""};
+    return {ErrorKind::host, "virtual board", what,
+            "did somebody end it, or the kernel for want of memory?"};
   }
-  return "QEMU ended with exit code " + std::to_string(WEXITSTATUS(status));
+  const int code = WEXITSTATUS(status);
+  if (code == kNot_started) {
+    return {ErrorKind::host, qemu, "cannot be started" + tail, "apt-get install qemu-system-arm"};
+  }
+  const std::string what = "QEMU ended with exit code " + std::to_string(code) + tail;
+  if (said("Failed to find an available port") || said("Address already in use")) {
+    return {ErrorKind::bad_input, "--gdb", "the port is in use" + tail, "end what listens there"};
+  }
+  const bool host = said("terminating on signal") || said("Cannot allocate memory") ||
+                    said("Too many open files") || said("Resource temporarily unavailable");
+  return {host ? ErrorKind::host : ErrorKind::internal, "virtual board", what, ""};
+}
+
+// Of /proc/PID/stat: the state's letter, and the CPU time that the process has used.
+struct Activity {
+  char state = '?';
+  double cpu_s = 0.0;
+};
+Activity activity_of(pid_t pid) {
+  Activity activity;
+  FILE* file = std::fopen(("/proc/" + std::to_string(pid) + "/stat").c_str(), "r");
+  if (file == nullptr) return activity;
+  unsigned long user = 0, system = 0;
+  const int got =
+      std::fscanf(file, "%*d (%*[^)]) %c %*d %*d %*d %*d %*d %*u %*u %*u %*u %*u %lu %lu",
+                  &activity.state, &user, &system);
+  std::fclose(file);
+  if (got == 3) {
+    activity.cpu_s = static_cast<double>(user + system) / static_cast<double>(sysconf(_SC_CLK_TCK));
+  }
+  return activity;
 }
 
 // The few facts of the board's description that the command line of QEMU needs.
@@ -170,7 +227,8 @@ pid_t launch_process(const std::vector<std::string>& line, int log_fd, int link_
   const pid_t pid = fork();
   if (pid != 0) return pid;
   prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (getppid() != parent) _exit(127);  // it died before we asked
+  setpgid(0, 0);  // a terminal's interrupt is the harness's to act on
+  if (getppid() != parent) _exit(kNot_started);  // it died before we asked
   const int null = open("/dev/null", O_RDONLY);
   fcntl(link_fd, F_SETFD, 0);
   fcntl(config_fd, F_SETFD, 0);
@@ -179,7 +237,7 @@ pid_t launch_process(const std::vector<std::string>& line, int log_fd, int link_
   dup2(log_fd, 2);
   execvp(argv[0], argv.data());
   dprintf(2, "%s: %s\n", argv[0], strerror(errno));
-  _exit(127);
+  _exit(kNot_started);
 }
 
 }  // namespace
@@ -224,25 +282,46 @@ void VirtualBoard::run(std::int64_t until_ns, const io::Batch& sensed) {
 Result<TargetState> VirtualBoard::arrive(io::Batch& happened) {
   happened.clear();
   if (!posted_) return posted_.error();
+  if (process_->link.wait(kSlice_ms)) return delivered(happened);
   const auto from = std::chrono::steady_clock::now();
+  const double cpu_s = activity_of(process_->pid).cpu_s;
   while (!process_->link.wait(kSlice_ms)) {
     // Dead, and nothing came in the moment before: the order of the two questions matters.
     if (process_->gone() && !process_->link.wait(0)) {
-      return Error{ErrorKind::internal, "virtual board",
-                   how_it_ended(process_->status) + "; its last words:\n" +
-                       last_lines(output(), kLast_words),
-                   ""};
+      return why_it_ended(process_->status, options_.qemu, output());
+    }
+    if (interrupted_by() != 0) {
+      return Error{ErrorKind::host, "virtual board", "interrupted while it waited", ""};
     }
     const auto silent = std::chrono::steady_clock::now() - from;
     if (process_->watch_silence && silent > std::chrono::seconds(options_.silence_s)) {
-      process_->end();
-      return Error{ErrorKind::internal, "virtual board",
-                   "no answer for " + std::to_string(options_.silence_s) +
-                       " s of host time at virtual " + std::to_string(process_->until_ns) +
-                       " ns; its last words:\n" + last_lines(output(), kLast_words),
-                   ""};
+      return give_up(cpu_s);
     }
   }
+  return delivered(happened);
+}
+
+// A QEMU that computes without end is our bug; one that hardly got to compute is the host's.
+Error VirtualBoard::give_up(double cpu_s_before) {
+  const Activity activity = activity_of(process_->pid);
+  process_->end();
+  const std::string what = "no answer for " + std::to_string(options_.silence_s) +
+                           " s of host time at virtual " + std::to_string(process_->until_ns) +
+                           " ns; its last words:\n" + last_lines(output(), kLast_words);
+  if (activity.state == 'T' || activity.state == 't') {
+    return {ErrorKind::host, "virtual board", "QEMU was stopped by a signal or a debugger: " + what,
+            ""};
+  }
+  const double used_s = activity.cpu_s - cpu_s_before;
+  if (used_s < kLeast_share * options_.silence_s) {
+    return {ErrorKind::host, "virtual board",
+            "QEMU got " + std::to_string(used_s) + " s of a processor: " + what,
+            "is the machine overloaded?"};
+  }
+  return {ErrorKind::internal, "virtual board", what, ""};
+}
+
+Result<TargetState> VirtualBoard::delivered(io::Batch& happened) const {
   const io::Delivery delivery = process_->link.received();
   const io::BoardState state = process_->link.state();
   if (state == io::BoardState::failed) return process_->link.failure();
@@ -293,7 +372,7 @@ Result<std::string> probe_qemu(const std::string& qemu) {
 }
 
 std::string default_plugin() {
-  return WHIRL_BOARD_PLUGIN;
+  return places().ok() ? places().value().plugin : "";
 }
 
 }  // namespace whirl

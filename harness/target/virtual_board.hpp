@@ -3,7 +3,8 @@
 //   Life      start() launches QEMU and waits until the image has been loaded; stop(), or the end of
 //             this process, ends it: no QEMU outlives its harness
 //   Silence   no answer for silence_s of host time, or the process gone: an Error with the last lines
-//             that QEMU wrote. Off when a gdb port is set: the world stands still while gdb holds it.
+//             that QEMU wrote, of the host when it was ended or stopped from outside. Off when a gdb
+//             port is set: the world stands still while gdb holds it.
 //   Threads   start() and all that follows belong to one thread (PDEATHSIG hangs on it)
 #pragma once
 #include <memory>
@@ -40,6 +41,8 @@ class VirtualBoard final : public Target {
 
  private:
   struct Process;
+  Result<TargetState> delivered(io::Batch& happened) const;
+  Error give_up(double cpu_s_before);
   std::unique_ptr<Process> process_;
   VirtualBoardOptions options_;
   Result<Done> posted_ = Done{};

@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 
+#include "harness/base/interruption.hpp"
 #include "harness/lua/table.hpp"
 #include "io_bridges/devices/faults.hpp"
 #include "results/folder.hpp"
@@ -36,8 +38,13 @@ class FakeTarget final : public Target {
     if (image_ == "lost" && t == 50 * kMs)
       return Error{ErrorKind::internal, "board", "no answer", ""};
     if (image_ == "late" && t == 50 * kMs) return Error{ErrorKind::host, "host", "too late", ""};
+    if (image_ == "throws" && t == 50 * kMs) throw std::runtime_error("a bug");
+    if (image_ == "interrupted" && t == 50 * kMs) pretend_interruption(SIGTERM);
     if (image_ == "asleep") return TargetState::running;
     if (image_ == "crash" && t == 50 * kMs) crash(happened, t);
+    if (image_ == "bitten" && t == 50 * kMs) {
+      happened.add(io::Kind::board_reset, io::kResetByWindowWatchdog, t, nullptr, 0);
+    }
     tasks(happened, t);
     if (t % (20 * kMs) == 0) talk_to_escs(happened, t, false);
     if (t % (50 * kMs) == 10 * kMs) talk_to_escs(happened, t, true);
@@ -160,7 +167,8 @@ constexpr const char* kBoard = R"(return {
 }  // namespace
 
 FakeRoot::FakeRoot() {
-  for (const char* image : {"flight", "crash", "asleep", "lost", "late", "drifting"}) {
+  for (const char* image : {"flight", "crash", "asleep", "lost", "late", "drifting", "throws",
+                            "interrupted", "bitten"}) {
     write(std::string("build/firmware/") + image + ".elf", "");
   }
   write("test_plans/boards/px4fmu_v1.lua", kBoard);

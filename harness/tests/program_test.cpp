@@ -1,46 +1,11 @@
 // The program as a user meets it: plans in, verdicts, exit codes, messages and results out.
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
-
 #include "harness/base/near.hpp"
-#include "harness/tests/fake.hpp"
+#include "harness/tests/plans.hpp"
 
 namespace whirl::test {
 namespace {
-
-using nlohmann::json;
-
-std::string plan_text(const std::string& body, const std::string& image = "flight",
-                      const std::string& more = "") {
-  return "plan \"p\" { image = \"" + image + "\", vehicle = \"hp_quad\", timeout = \"5 s\", " +
-         more + "\n run = function(t)\n" + body + "\n end }\n";
-}
-
-struct Ran {
-  Outcome outcome;
-  json run;  // run.json; null where there is none
-};
-
-Ran run_plan(const std::string& text, std::vector<std::string> more = {}) {
-  FakeRoot root;
-  root.write("test_plans/p.lua", text);
-  std::vector<std::string> words{"run", root.path() + "/test_plans/p.lua"};
-  words.insert(words.end(), more.begin(), more.end());
-  Ran ran{whirl(root, words), nullptr};
-  const std::string file = root.read("results/runs/latest/run.json");
-  if (!file.empty()) ran.run = json::parse(file);
-  return ran;
-}
-
-const json& expectation(const json& run, const std::string& name) {
-  static const json kNone;
-  for (const json& e : run["expectations"]) {
-    if (e["name"] == name) return e;
-  }
-  ADD_FAILURE() << "no expectation called " << name << " in " << run["expectations"].dump(1);
-  return kNone;
-}
 
 TEST(Program, AGoodPlanPassesAndExplainsItself) {
   const Ran ran = run_plan(plan_text(R"(
@@ -91,6 +56,7 @@ TEST(Program, SettlingAfterAGustIsMeasuredOnTheDistance) {
     local r = t:record({ "east", "height" }, "3 s", function() t:gust { duration = "500 ms" } end)
     t:expect(r:settled("10 cm", { east = "0 m" })):at_most "1 s"
     t:expect(r:max "east"):at_most "20 cm"
+    t:expect(r:settled("height", "10 cm", "0 m"), "height stays"):at_most "1 ms"
     t:expect(r:rms_error { east = "0 m", height = "0 m" }):at_most "20 cm")"));
   EXPECT_EQ(ran.outcome.code, 0) << ran.outcome.out;
   // 0.15 m after 500 ms, then back with tau 500 ms: within 0.1 m after 500 ms ln 1.5 more.
@@ -174,14 +140,15 @@ TEST(Program, AFaultActsAndIsCounted) {
 TEST(Program, AFaultThatNobodyAppliedIsAnError) {
   const Ran ran = run_plan(plan_text(R"(
     t:fault { kind = "i2c_nack", device = "esc2", start = "10 s" }
-    t:expect(1):at_most(2)
+    t:expect(t:value "tilt"):at_most "1 rad"
     t:wait "1 s")"));
   EXPECT_EQ(ran.outcome.code, 2);
   EXPECT_NE(ran.outcome.out.find("was applied by nobody"), std::string::npos);
 }
 
 TEST(Program, AFirmwareFaultFailsByNameAddressAndFunction) {
-  const Ran ran = run_plan(plan_text("t:wait \"1 s\" t:expect(1):at_most(2)", "crash"));
+  const Ran ran =
+      run_plan(plan_text("t:wait \"1 s\" t:expect(t:value \"tilt\"):at_most \"1 rad\"", "crash"));
   EXPECT_EQ(ran.outcome.code, 1);
   EXPECT_EQ(ran.run["reason"], "firmware fault: HardFault in fw::crash+0x4 at 0x08001234");
   EXPECT_NE(ran.run["cpu_faults"][0]["registers"].get<std::string>().find("PRECISERR"),
@@ -199,7 +166,7 @@ TEST(Program, AFirmwareThatSleepsForEverFailsAtTheTimeoutInVirtualTime) {
 }
 
 TEST(Program, ATargetThatStopsAnsweringIsAnInternalErrorAndAHostThatIsLateIsInconclusive) {
-  const std::string body = "t:wait \"1 s\" t:expect(1):at_most(2)";
+  const std::string body = "t:wait \"1 s\" t:expect(t:value \"tilt\"):at_most \"1 rad\"";
   EXPECT_EQ(run_plan(plan_text(body, "lost")).outcome.code, 4);
   EXPECT_EQ(run_plan(plan_text(body, "late")).outcome.code, 3);
 }
@@ -225,6 +192,8 @@ TEST(Program, BadPlansAreOneClearLineAndExitCodeTwo) {
       {"no limit", plan_text("t:expect(1) t:wait \"1 s\""), "has no limit"},
       {"unknown key", plan_text("", "flight", "colour = 1,"), "unknown key 'colour'"},
       {"unknown command", plan_text("t:command { fly = true }"), "unknown key 'fly'"},
+      {"no bus", plan_text("t:fault { kind = \"i2c_nack\", bus = \"i2c99999999999\" }"),
+       "is no bus"},
       {"unknown fault", plan_text("t:fault { kind = \"gremlins\" }"),
        "unknown kind of fault 'gremlins'"},
       {"not watched", plan_text("t:budget(\"fw::x\") { execution = \"1 ms\" }"), "is not watched"},
@@ -253,7 +222,9 @@ TEST(Program, BadUsageIsExitCodeTwo) {
   EXPECT_EQ(whirl(root, {"run", "nowhere.lua"}).code, 2);
   EXPECT_EQ(whirl(root, {"run", "--colour"}).code, 2);
   EXPECT_EQ(whirl(root, {}).code, 2);
-  EXPECT_EQ(whirl(root, {"run", "--seed", "x"}).code, 2);
+  for (const char* seed : {"x", "-1", "18446744073709551616", "", "1.5", " 1"}) {
+    EXPECT_EQ(whirl(root, {"run", "--seed", seed}).code, 2) << seed;
+  }
   EXPECT_EQ(whirl(root, {"--help"}).code, 0);
   EXPECT_EQ(whirl(root, {"--version"}).code, 0);
 }
@@ -271,7 +242,7 @@ TEST(Program, SweepsRefuseWhatTheyCannotRead) {
 }
 
 TEST(Program, TheSamePlanAndSeedGiveTheSameDigestAndTwiceMakesItAVerdict) {
-  const std::string body = "t:wait \"1 s\" t:expect(1):at_most(2)";
+  const std::string body = "t:wait \"1 s\" t:expect(t:value \"tilt\"):at_most \"1 rad\"";
   const Ran once = run_plan(plan_text(body)), again = run_plan(plan_text(body));
   EXPECT_EQ(once.run["digest"], again.run["digest"]);
   EXPECT_EQ(run_plan(plan_text(body), {"--twice"}).outcome.code, 0);
@@ -280,9 +251,10 @@ TEST(Program, TheSamePlanAndSeedGiveTheSameDigestAndTwiceMakesItAVerdict) {
 
 TEST(Program, OfSeveralPlansTheWorstCounts) {
   FakeRoot root;
-  const std::string good = "t:wait \"1 s\" t:expect(1):at_most(2)";
+  const std::string good = "t:wait \"1 s\" t:expect(t:value \"tilt\"):at_most \"1 rad\"";
   root.write("test_plans/a.lua", plan_text(good));
-  root.write("test_plans/b.lua", plan_text("t:wait \"1 s\" t:expect(3):at_most(2)"));
+  root.write("test_plans/b.lua",
+             plan_text("t:wait \"1 s\" t:expect(t:value \"thrust\"):at_most \"1 N\""));
   EXPECT_EQ(whirl(root, {"run"}).code, 1);
   root.write("test_plans/c.lua", "plan");
   EXPECT_EQ(whirl(root, {"run"}).code, 2);
@@ -293,8 +265,9 @@ TEST(Program, OfSeveralPlansTheWorstCounts) {
 TEST(Program, TagsChooseAndListShows) {
   FakeRoot root;
   root.write("test_plans/a.lua",
-             plan_text("t:expect(1):at_most(2)", "flight", "tags = { \"quick\" },"));
-  root.write("test_plans/b.lua", plan_text("t:expect(3):at_most(2)"));
+             plan_text("t:wait \"1 s\" t:expect(t:value \"tilt\"):at_most \"1 rad\"", "flight",
+                       "tags = { \"quick\" },"));
+  root.write("test_plans/b.lua", plan_text("t:expect(t:value \"thrust\"):at_most \"1 N\""));
   EXPECT_EQ(whirl(root, {"run", "--tag", "quick"}).code, 0);
   EXPECT_EQ(whirl(root, {"run", "--tag", "slow"}).code, 2);
   EXPECT_NE(whirl(root, {"list"}).out.find("[quick]"), std::string::npos);
@@ -302,14 +275,17 @@ TEST(Program, TagsChooseAndListShows) {
 
 TEST(Program, JsonOnStandardOutputIsTheRunsOwnFile) {
   FakeRoot root;
-  root.write("test_plans/p.lua", plan_text("t:wait \"1 s\" t:expect(1):at_most(2)"));
+  root.write("test_plans/p.lua",
+             plan_text("t:wait \"1 s\" t:expect(t:value \"tilt\"):at_most \"1 rad\""));
   const Outcome outcome = whirl(root, {"run", "--json"});
   EXPECT_EQ(json::parse(outcome.out), json::parse(root.read("results/runs/latest/run.json")));
 }
 
 TEST(Program, HistoryRemembersTheMargins) {
   FakeRoot root;
-  root.write("test_plans/p.lua", plan_text("t:wait \"1 s\" t:expect(1.5, \"x\"):at_most(2)"));
+  root.write(
+      "test_plans/p.lua",
+      plan_text("t:wait \"1 s\" t:expect(t:value(\"thrust\", \"N\") - 0.5, \"x\"):at_most(2)"));
   EXPECT_EQ(whirl(root, {"history"}).code, 2);
   whirl(root, {"run"});
   whirl(root, {"run"});

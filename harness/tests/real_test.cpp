@@ -1,6 +1,7 @@
 // The program on real images in the real QEMU: bad images by name, faults by address and function,
 // silence by the plan's deadline, and digests that repeat, and change with one bit of one sensor.
 #include <gtest/gtest.h>
+#include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -55,11 +56,100 @@ class Real : public ::testing::Test {
   whirl::ScratchFolder folder_;
 };
 
-constexpr const char* kSecond = "t:wait \"1 s\" t:expect(1):at_most(2)";
+constexpr const char* kSecond = "t:wait \"1 s\" t:expect(t:value \"tilt\"):at_most \"1 rad\"";
 
 void expect_told(const Outcome& outcome, int code, const std::string& words) {
   EXPECT_EQ(outcome.code, code) << outcome.text;
   EXPECT_NE(outcome.text.find(words), std::string::npos) << outcome.text;
+}
+
+// Started, sent this signal when the folder of its run is there, and waited for.
+int code_after(int signal, const std::string& arguments, const std::string& runs) {
+  const pid_t pid = fork();
+  if (pid == 0) {
+    const std::string line = std::string("exec ") + WHIRL_PROGRAM + " " + arguments + " >/dev/null";
+    execl("/bin/sh", "sh", "-c", line.c_str(), nullptr);
+    _exit(127);
+  }
+  int status = 0;
+  while (fs::is_empty(runs)) {
+    if (waitpid(pid, &status, WNOHANG) == pid) return -1;  // it ended before its run
+    usleep(10'000);
+  }
+  kill(pid, signal);
+  waitpid(pid, &status, 0);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+TEST_F(Real, ASignalEndsTheRunInOrder) {
+  write("long.lua",
+        "plan \"long\" { image = \"flight\", vehicle = \"hp_quad\", timeout = \"10000 s\",\n"
+        "run = function(t) t:wait \"9000 s\" t:expect(t:value \"tilt\"):at_most \"1 rad\" end }\n");
+  for (int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    const std::string out = folder_.file("out" + std::to_string(signal));
+    fs::create_directories(out + "/runs");
+    EXPECT_EQ(
+        code_after(signal, "run --out " + out + " " + folder_.file("long.lua"), out + "/runs"), 3)
+        << signal;
+    std::ifstream in(out + "/runs/latest/run.json");
+    const json run = json::parse(in, nullptr, false);
+    ASSERT_TRUE(run.is_object()) << signal;
+    EXPECT_NE(run["reason"].get<std::string>().find("interrupted by signal"), std::string::npos);
+    EXPECT_TRUE(fs::canonical(out + "/runs/latest").string().ends_with("-interrupted"));
+  }
+}
+
+// As cmake --install lays it out; the checkout's own boards, plug-in and results must play no part.
+TEST_F(Real, AnInstalledProgramUsesItsOwnFiles) {
+  const std::string prefix = folder_.file("prefix");
+  const fs::path share = fs::path(prefix) / "share/whirl";
+  fs::create_directories(prefix + "/bin");
+  fs::create_directories(prefix + "/lib/whirl");
+  fs::create_directories(share / "images");
+  fs::create_directories(share / "plant");
+  fs::copy_file(WHIRL_PROGRAM, prefix + "/bin/whirl");
+  fs::copy_file(WHIRL_PLUGIN, prefix + "/lib/whirl/whirl_board.so");
+  fs::copy(std::string(WHIRL_ROOT) + "/test_plans", share / "test_plans",
+           fs::copy_options::recursive);
+  fs::copy(std::string(WHIRL_ROOT) + "/plant/data", share / "plant/data",
+           fs::copy_options::recursive);
+  fs::copy_file(std::string(WHIRL_IMAGES) + "/flight.elf", share / "images/renamed.elf");
+  write("p.lua",
+        std::string("plan \"p\" { image = \"renamed\", vehicle = \"hp_quad\", timeout = ") +
+            "\"3 s\", run = function(t) " + kSecond + " end }");
+  unsetenv("WHIRL_RESULTS");
+  const std::string go = "cd " + folder_.path() + " && " + prefix + "/bin/whirl run p.lua";
+  EXPECT_EQ(std::system((go + " >/dev/null").c_str()), 0);
+  EXPECT_TRUE(fs::exists(folder_.file("whirl-results/runs/latest/index.html")));
+  fs::remove(share / "test_plans/boards/px4fmu_v1.lua");  // its own is the only one
+  EXPECT_EQ(WEXITSTATUS(std::system((go + " >/dev/null 2>&1").c_str())), 2);
+  fs::remove_all(share);
+  EXPECT_EQ(WEXITSTATUS(std::system((go + " >/dev/null 2>&1").c_str())), 2);
+}
+
+// Neither the program nor the plug-in knows where it was built.
+TEST_F(Real, NothingOfTheCheckoutsPathIsCompiledIn) {
+  for (const char* file : {WHIRL_PROGRAM, WHIRL_PLUGIN}) {
+    std::ifstream in(file, std::ios::binary);
+    const std::string bytes((std::istreambuf_iterator<char>(in)), {});
+    ASSERT_GT(bytes.size(), 100'000u);
+    EXPECT_EQ(bytes.find(std::string(WHIRL_ROOT) + "/"), std::string::npos) << file;
+  }
+}
+
+TEST_F(Real, OutputThatIsLostIsNoPass) {
+  write("p.lua",
+        std::string("plan \"p\" { image = \"flight\", vehicle = \"hp_quad\", timeout = \"3 s\",") +
+            " run = function(t) " + kSecond + " end }");
+  const std::string line = std::string(WHIRL_PROGRAM) + " run " + folder_.file("p.lua");
+  EXPECT_EQ(WEXITSTATUS(std::system((line + " >/dev/full 2>/dev/null").c_str())), 3);
+  EXPECT_EQ(WEXITSTATUS(std::system((line + " >&- 2>/dev/null").c_str())), 3);
+  EXPECT_EQ(WEXITSTATUS(std::system((line + " >/dev/null 2>&- <&-").c_str())), 0);
+  // A parent may have had SIGCHLD ignored.
+  EXPECT_EQ(WEXITSTATUS(std::system(("timeout 60 env --ignore-signal=CHLD " + line + " " +
+                                     folder_.file("p.lua") + " --jobs 2 >/dev/null")
+                                        .c_str())),
+            0);
 }
 
 TEST_F(Real, AMissingImageIsNamed) {

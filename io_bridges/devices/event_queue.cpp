@@ -63,8 +63,11 @@ void EventQueue::run_until(Nanoseconds t) {
   running_ = true;
   while (!heap_.empty() && heap_.front()->due_ <= t) {
     Event& event = *heap_.front();
+    at_this_instant_ = event.due_ > now_ ? 0 : at_this_instant_ + 1;
+    WHIRL_CHECK(at_this_instant_ < kMost_at_one_instant, now_);
     now_ = std::max(now_, event.due_);
     remove(event);
+    ++fired_;
     event.action_();
   }
   now_ = t;

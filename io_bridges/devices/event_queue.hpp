@@ -2,6 +2,7 @@
 //
 //   Order    by time; events of equal time fire in the order in which they were set
 //   Driver   QEMU's virtual clock in the board process, run_until() in tests
+//   Progress a model whose events keep setting new ones at one instant is a bug: a failed check
 //   Rule     an action runs with now() == its due time; it may set or cancel any event, itself too
 #pragma once
 #include <cstdint>
@@ -25,6 +26,7 @@ class EventQueue {
 
   Nanoseconds now() const { return running_ || !clock_ ? now_ : clock_(); }
   Nanoseconds next_deadline() const;
+  std::uint64_t fired() const { return fired_; }  // so far
   // Fires all that is due until t, then sets the time to t. Pre: t >= now().
   void run_until(Nanoseconds t);
 
@@ -35,12 +37,14 @@ class EventQueue {
   void sift_up(std::size_t i);
   void sift_down(std::size_t i);
   static bool before(const Event& a, const Event& b);
+  static constexpr std::int64_t kMost_at_one_instant = 100'000;  // a busy board has some dozens
 
   std::vector<Event*> heap_;
   std::function<Nanoseconds()> clock_;
   std::function<void(Nanoseconds)> rearm_;
   Nanoseconds now_ = 0;
-  std::uint64_t sequence_ = 0;
+  std::int64_t at_this_instant_ = 0;
+  std::uint64_t sequence_ = 0, fired_ = 0;
   bool running_ = false;
 };
 

@@ -66,10 +66,15 @@ Result<Channel> Channel::create(Side side, std::size_t capacity) {
     return Error{ErrorKind::host, "link", "no shared memory: " + std::string(std::strerror(errno)),
                  ""};
   const std::size_t size = sizeof(Page) + 4 * capacity;
-  if (ftruncate(fd, static_cast<off_t>(size)) != 0) {
+  int status = 0;
+  do {
+    status = ftruncate(fd, static_cast<off_t>(size));
+  } while (status != 0 && errno == EINTR);
+  if (status != 0) {
+    const std::string why = std::strerror(errno);
     close(fd);
     return Error{ErrorKind::host, "link",
-                 "shared memory of " + std::to_string(size) + " bytes refused", ""};
+                 "shared memory of " + std::to_string(size) + " bytes refused: " + why, ""};
   }
   void* memory = mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_SHARED, fd, 0);
   if (memory == MAP_FAILED) {

@@ -25,7 +25,7 @@ enum class BoardState : std::uint32_t {
   running = 1,
   failed = 2,      // failure() says why
   ended = 3,       // the last batch is in the mailbox
-  cpu_locked = 4,  // as ended: the core locked up
+  cpu_locked = 4,  // as ended: the core cannot go on
 };
 
 struct Delivery {

@@ -103,7 +103,8 @@ struct FaultCommand {  // the name follows as text, for messages to people
 };
 
 struct CpuFault {
-  std::uint32_t exception = 0;  // 3 HardFault, 4 MemManage, 5 BusFault, 6 UsageFault; 255: lock-up
+  std::uint32_t exception = 0;  // 3 HardFault, 4 MemManage, 5 BusFault, 6 UsageFault;
+                                // 254, 255: board::StoppedCore
   std::uint32_t pc = 0, lr = 0, sp = 0, xpsr = 0, cfsr = 0, hfsr = 0, mmfar = 0, bfar = 0;
   std::uint32_t r[13] = {};
 };

@@ -1,15 +1,18 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <pugixml.hpp>
 #include <set>
+#include <sstream>
 
 #include "harness/base/scratch_folder.hpp"
+#include "harness/base/text.hpp"
+#include "results/charts.hpp"
 #include "results/folder.hpp"
-#include "results/history.hpp"
 
 namespace whirl::results {
 namespace {
@@ -46,6 +49,15 @@ std::string contents(const std::string& path) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
+TruthLog truth() {
+  TruthLog log({{"height", "m", "m"}, {"climb", "mps", "m/s"}, {"armed", "", ""}}, 1'000'000);
+  for (int i = 0; i < 5000; ++i) {
+    const double row[] = {i == 2500 ? 9.0 : 1.0, std::nan(""), 1.0};
+    log.append(row);
+  }
+  return log;
+}
+
 TEST(Verdicts, PrecedenceIsInternalBadInputFailedInconclusivePass) {
   const int order[] = {0, 3, 1, 2, 4};
   for (int i = 0; i < 5; ++i) {
@@ -54,6 +66,69 @@ TEST(Verdicts, PrecedenceIsInternalBadInputFailedInconclusivePass) {
     }
   }
   EXPECT_EQ(worse_exit_code(0, 139), 4);  // an unknown code is nobody's pass
+}
+
+// The table of verdict.hpp, typed again.
+TEST(Verdicts, WhoIsAtFaultDecidesVerdictAndExitCode) {
+  struct Row {
+    Blame blame;
+    Verdict verdict;
+    int code;
+  };
+  const Row kTable[] = {{Blame::firmware, Verdict::fail, 1},
+                        {Blame::user, Verdict::error, 2},
+                        {Blame::host, Verdict::inconclusive, 3},
+                        {Blame::not_shown, Verdict::inconclusive, 3},
+                        {Blame::harness, Verdict::error, 4}};
+  for (const Row& row : kTable) {
+    Report r = sample();
+    r.expectations.pop_back();
+    r.reasons = {{row.blame, "why"}};
+    conclude(r);
+    EXPECT_EQ(r.verdict, row.verdict) << name(row.blame);
+    EXPECT_EQ(exit_code(r), row.code) << name(row.blame);
+    EXPECT_EQ(r.reason, "why");
+  }
+}
+
+TEST(Verdicts, WhatWasSeenOfTheFirmwareStaysWhateverFollows) {
+  for (Blame later : {Blame::user, Blame::host, Blame::not_shown, Blame::harness}) {
+    for (bool before : {false, true}) {
+      Report r = sample();
+      r.expectations.pop_back();
+      r.reasons = {{Blame::firmware, "HardFault"}};
+      r.reasons.insert(before ? r.reasons.begin() : r.reasons.end(), Reason{later, "also"});
+      conclude(r);
+      EXPECT_EQ(exit_code(r), 1) << name(later);
+      EXPECT_EQ(r.reason, "HardFault");
+    }
+    Report r = sample();  // has a failed expectation
+    r.reasons = {{later, "also"}};
+    conclude(r);
+    EXPECT_EQ(exit_code(r), 1) << name(later);
+  }
+}
+
+TEST(Verdicts, OfLesserReasonsTheFirstStaysAndWhatWasNotShownGivesWay) {
+  const Blame kCauses[] = {Blame::user, Blame::host, Blame::harness};
+  for (Blame first : kCauses) {
+    for (Blame second : kCauses) {
+      Report r = sample();
+      r.expectations.pop_back();
+      r.reasons = {{Blame::not_shown, "0"}, {first, "1"}, {second, "2"}};
+      conclude(r);
+      EXPECT_EQ(r.reason, "1");
+      EXPECT_EQ(r.blame, first);
+    }
+  }
+}
+
+TEST(Verdicts, AnExpectationThatWasNotShownIsNoPass) {
+  Report r = sample();
+  r.expectations.pop_back();
+  r.expectations[0].verdict = Verdict::inconclusive;
+  conclude(r);
+  EXPECT_EQ(exit_code(r), 3);
 }
 
 TEST(Verdicts, NothingExpectedIsBadInput) {
@@ -97,8 +172,9 @@ TEST(Junit, RepeatsTheMessageAndHasNoControlCharacters) {
 
 TEST(Junit, ABadRunIsAnErrorOfItsLastCase) {
   Report r = sample();
-  r.verdict = Verdict::error;
-  r.reason = "the board fell silent";
+  r.expectations.pop_back();
+  r.reasons = {{Blame::harness, "the board fell silent"}};
+  conclude(r);
   pugi::xml_document document;
   ASSERT_TRUE(document.load_string(junit_xml({&r}).c_str()));
   EXPECT_STREQ(document.select_node("//error").node().attribute("message").value(),
@@ -112,13 +188,41 @@ TEST(RunJson, WritesNullForWhatCouldNotBeMeasured) {
   EXPECT_EQ(json["verdict"], "fail");
 }
 
-TruthLog truth() {
-  TruthLog log({{"height", "m", "m"}, {"climb", "mps", "m/s"}, {"armed", "", ""}}, 1'000'000);
-  for (int i = 0; i < 5000; ++i) {
-    const double row[] = {i == 2500 ? 9.0 : 1.0, std::nan(""), 1.0};
-    log.append(row);
+// All bytes, as firmware may send them through t:ask: every file stays well-formed and keeps them
+// apart.
+TEST(Results, AnyBytesGiveWellFormedFiles) {
+  std::string bytes;
+  for (int i = 1; i <= 256; ++i) bytes += static_cast<char>(i);  // the zero, which ends C's, last
+  Report r = sample();
+  r.plan = r.file = r.reason = r.digest = bytes;
+  r.verdict = Verdict::error;
+  r.tags = {bytes};
+  r.versions = {{bytes, bytes}};
+  r.log = r.findings = r.steps = {{0.0, bytes, bytes}};
+  r.cpu_faults = {{bytes, bytes, bytes, bytes, 0.0}};
+  r.tasks = {{bytes}};
+  for (Expectation& e : r.expectations) {
+    e.name += bytes;
+    e.note = e.how = e.unit = e.place = bytes;
+    e.signals = {bytes};
   }
-  return log;
+  pugi::xml_document document;
+  const std::string xml = junit_xml({&r});
+  ASSERT_TRUE(document.load_string(xml.c_str()));
+  EXPECT_EQ(xml, legal_text(xml));
+  const auto json = nlohmann::json::parse(run_json(r));
+  EXPECT_EQ(json["plan"], legal_text(bytes));
+  EXPECT_EQ(legal_text(page_html(r, truth())), page_html(r, truth()));
+  const std::string charts = charts_html(bytes, bytes,
+                                         {{bytes,
+                                           bytes,
+                                           bytes,
+                                           bytes,
+                                           bytes,
+                                           bytes,
+                                           {{bytes, {1.0}, {1.0}}},
+                                           {{bytes, 1.0, 2.0, bytes, true}}}});
+  EXPECT_EQ(legal_text(charts), charts);
 }
 
 TEST(Truth, ColumnsCarryTheirUnits) {
@@ -143,18 +247,32 @@ TEST(Truth, ALongRunKeepsEveryThirdRowInItsFile) {
   EXPECT_NE(csv.find("\n449.997,9\n"), std::string::npos);
 }
 
+nlohmann::json data_of(const std::string& page) {
+  const auto begin = page.find("application/json\">") + 18;
+  return nlohmann::json::parse(page.substr(begin, page.find("</script>", begin) - begin));
+}
+
 TEST(Page, IsOneFileWithoutNetworkAndKeepsEverySpike) {
   const std::string page = page_html(sample(), truth());
   for (const char* outside : {"http://", "https://", "src=", "<link"}) {
     EXPECT_EQ(page.find(outside), std::string::npos) << outside;
   }
-  const auto begin = page.find("application/json\">") + 18;
-  const auto data =
-      nlohmann::json::parse(page.substr(begin, page.find("</script>", begin) - begin));
+  const auto data = data_of(page);
   const auto& height = data["signals"][0]["high"];
   EXPECT_EQ(*std::max_element(height.begin(), height.end()), 9.0);
   EXPECT_EQ(data["signals"][2]["constant"], 1.0);
   EXPECT_TRUE(data["signals"][1]["low"][0].is_null());
+}
+
+TEST(Page, ShowsTheStackOfEachTask) {
+  Report r = sample();
+  r.statistics_json =
+      R"({"stack_used_bytes":300,"task_stacks":[{"stack":"idle_stack","top":"0x1","used_bytes":64}]})";
+  const auto stacks = data_of(page_html(r, truth()))["stacks"];
+  ASSERT_EQ(stacks.size(), 2u);
+  EXPECT_EQ(stacks[0]["used_bytes"], 300);
+  EXPECT_EQ(stacks[1]["stack"], "idle_stack");
+  EXPECT_EQ(stacks[1]["used_bytes"], 64);
 }
 
 TEST(Page, NoTextOfAPlanEndsTheScript) {
@@ -164,52 +282,85 @@ TEST(Page, NoTextOfAPlanEndsTheScript) {
   EXPECT_EQ(page.find("</script><b>"), std::string::npos);
 }
 
+// "<!--<script>" makes a browser read on over the next "</script>", to a blank page.
+TEST(Page, NoTextOfAPlanBeginsAComment) {
+  Report r = sample();
+  r.plan = "<!--<script>";
+  const std::string page = page_html(r, truth());
+  EXPECT_EQ(page.find("<!--"), std::string::npos);
+  EXPECT_NE(page.find("\\u003c!--\\u003cscript>"), std::string::npos);
+}
+
+std::vector<std::string> names_in(const std::string& folder) {
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    names.push_back(entry.path().filename().string());
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
 TEST(RunFolder, LatestPointsAtTheNewestAndNoRunOverwritesAnother) {
   const ScratchFolder folder;
   Report r = sample();
   const EventLog events;
-  const auto first = make_run_folder(folder.path(), r.plan),
-             second = make_run_folder(folder.path(), r.plan);
-  ASSERT_TRUE(first.ok() && second.ok());
-  EXPECT_NE(first.value(), second.value());
-  ASSERT_TRUE(write_run(second.value(), r, truth(), events).ok());
-  EXPECT_EQ(fs::canonical(folder.file("runs/latest")), fs::canonical(second.value()));
-}
-
-TEST(Events, ATruncatedBatchIsNoticed) {
-  io::Batch batch;
-  batch.add(io::Kind::data_ready, 0, 5, nullptr, 0);
-  io::Batch cut;
-  cut.assign(batch.bytes().first(batch.bytes().size() - 1));
-  EventLog log;
-  EXPECT_TRUE(log.add(batch));
-  EXPECT_FALSE(log.add(cut));
-}
-
-TEST(Events, BusyShareCountsWholePiecesOfTheWindow) {
-  EventLog log;
-  log.busy = {{0, 100, 90}, {100, 200, 20}, {200, 300, 40}, {300, 400, 90}};
-  EXPECT_EQ(log.busy_share(100, 350), 0.3);
-  EXPECT_TRUE(std::isnan(log.busy_share(110, 190)));
-}
-
-TEST(History, GivesTheLastRunsOldestFirst) {
-  const ScratchFolder folder;
-  const std::string file = folder.file("history.sqlite");
-  for (int i = 0; i < 5; ++i) {
-    Report r = sample();
-    r.seed = static_cast<std::uint64_t>(i);
-    r.expectations[0].margin = i;
-    ASSERT_TRUE(remember(file, r).ok());
+  std::string paths[2];
+  for (std::string& path : paths) {
+    auto made = RunFolder::create(folder.path(), r.plan);
+    ASSERT_TRUE(made.ok());
+    ASSERT_TRUE(write_run(made.value(), r, truth(), events));
+    const auto published = made.value().publish("");
+    ASSERT_TRUE(published.ok());
+    path = published.value();
   }
-  const auto rows = recall(file, sample().plan, "height", 3);
-  ASSERT_TRUE(rows.ok());
-  ASSERT_EQ(rows.value().size(), 3u);
-  EXPECT_EQ(rows.value().front().margin, 2.0);
-  EXPECT_EQ(rows.value().back().margin, 4.0);
-  const auto unmeasured = recall(file, "", "tilt", 1);
-  EXPECT_TRUE(std::isnan(unmeasured.value().at(0).measured));
-  EXPECT_FALSE(recall(folder.file("none.sqlite"), "", "", 1).ok());
+  EXPECT_NE(paths[0], paths[1]);
+  EXPECT_EQ(fs::canonical(folder.file("runs/latest")), fs::canonical(paths[1]));
+}
+
+TEST(RunFolder, HasItsNameOnlyWhenAllIsInIt) {
+  const ScratchFolder folder;
+  {
+    auto made = RunFolder::create(folder.path(), "p");
+    ASSERT_TRUE(made.ok());
+    const auto names = names_in(folder.file("runs"));
+    ASSERT_EQ(names.size(), 1u);
+    EXPECT_TRUE(names[0].starts_with(".unfinished-")) << names[0];
+    ASSERT_TRUE(write_text(made.value().file("run.json"), "{}").ok());
+    const auto published = made.value().publish("interrupted");
+    ASSERT_TRUE(published.ok());
+    EXPECT_TRUE(published.value().ends_with("-p-interrupted")) << published.value();
+  }
+  const auto names = names_in(folder.file("runs"));
+  ASSERT_EQ(names.size(), 2u);  // and latest
+  EXPECT_EQ(names_in(folder.file("runs/latest")), std::vector<std::string>{"run.json"});
+}
+
+TEST(RunFolder, AnEmptyOneLeavesNothing) {
+  const ScratchFolder folder;
+  { ASSERT_TRUE(RunFolder::create(folder.path(), "p").ok()); }
+  EXPECT_TRUE(names_in(folder.file("runs")).empty());
+}
+
+TEST(RunFolder, WhatCannotBeWrittenIsAReasonAndTheRestIsThere) {
+  const ScratchFolder folder;
+  auto made = RunFolder::create(folder.path(), "p");
+  ASSERT_TRUE(made.ok());
+  fs::create_directory(made.value().file("truth.csv"));  // in the way
+  Report passed = sample();
+  passed.expectations.pop_back();
+  conclude(passed);
+  ASSERT_EQ(exit_code(passed), 0);
+  EXPECT_FALSE(write_run(made.value(), passed, truth(), EventLog()));
+  EXPECT_EQ(exit_code(passed), 3);
+  const auto json = nlohmann::json::parse(contents(made.value().file("run.json")));
+  EXPECT_EQ(json["verdict"], "inconclusive");
+  EXPECT_NE(json["reason"].get<std::string>().find("results lost"), std::string::npos);
+  EXPECT_NE(contents(made.value().file("junit.xml")).find("results lost"), std::string::npos);
+  fs::create_directory(made.value().file("bus.csv.x"));
+  Report failed = sample();
+  fs::create_directories(made.value().file("truth.csv") + "/x");
+  EXPECT_FALSE(write_run(made.value(), failed, truth(), EventLog()));
+  EXPECT_EQ(exit_code(failed), 1);  // what was seen of the firmware stays
 }
 
 }  // namespace

@@ -74,6 +74,23 @@ TEST(DataFile, WhatIsNoDataIsRefused) {
   EXPECT_FALSE(read_file("/nonexistent/quad.lua").ok());
 }
 
+TEST(DataFile, SharedTablesAreCountedEachTimeAndBounded) {
+  const auto wide = read_text("local x = {} for i = 1, 30 do x = { x, x } end return x", "x");
+  EXPECT_NE(wide.error().message().find("more than 100000 values"), std::string::npos);
+  const auto heavy =
+      read_text("local s, t = ('x'):rep(1e6), {} for i = 1, 1000 do t[i] = s end return t", "x");
+  EXPECT_NE(heavy.error().message().find("16 MiB"), std::string::npos);
+  EXPECT_TRUE(read_text("local a = { 1, 2 } return { a, a, a }", "x").ok());
+}
+
+TEST(DataFile, BytesThatAreNoTextAreNoData) {
+  for (const char* bytes : {"a\\0b", "\\xFF", "\\27[2J"}) {
+    EXPECT_EQ(read_text(std::string("return { name = '") + bytes + "' }", "x").error().message(),
+              "x: name holds control characters, or is no UTF-8");
+  }
+  EXPECT_FALSE(read_text("return { ['a\\0b'] = 1 }", "x").ok());
+}
+
 TEST(DataFile, NotANumberFitsNoRange) {
   EXPECT_FALSE(kAny.holds(std::nan("")));
   const Table t = read_good("return { x = 0/0 }");

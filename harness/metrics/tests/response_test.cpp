@@ -85,12 +85,37 @@ TEST(Response, NotANumberSpoilsEveryMetric) {
   EXPECT_TRUE(std::isnan(settled_s(record(v), kNaN, 0.1)));
 }
 
+// A hole anywhere after the command may hide what would have counted: beyond the rise as well.
+TEST(Response, AHoleAnywhereAfterTheCommandLeavesNothingToMeasure) {
+  auto v = answer(0.0, 1.0, [](double t) { return std::min(t / 0.1, 1.0); });
+  for (std::size_t at : {5, 50, 400}) {
+    auto holed = v;
+    holed[kBefore + at] = kNaN;
+    for (double m : {rise_time_s(record(holed)), response_time_s(record(holed)),
+                     overshoot_ratio(record(holed)), settled_s(record(holed), 1.0, 0.1),
+                     change(record(holed))}) {
+      EXPECT_TRUE(std::isnan(m)) << at;
+    }
+  }
+  v[kBefore - 250] = kNaN;  // before the reference: nobody asks
+  EXPECT_EQ(change(record(v)), 1.0);
+}
+
+TEST(Response, ChangeIsSignedAndNeedsTwoHundredMillisecondsOnEitherSide) {
+  const auto v = answer(3.0, 1.0, [](double t) { return t < 0.1 ? 3.0 : 1.5; });
+  EXPECT_EQ(change(record(v)), -1.5);
+  EXPECT_TRUE(std::isnan(change({v, 1'000'000, 199})));
+  EXPECT_TRUE(std::isnan(change(record(answer(2.0, 1.0, [](double) { return 2.0; })))));
+}
+
 TEST(Response, SettledIsTheLastEntryIntoTheBand) {
   const auto v = answer(0.0, 1.0, [](double t) {
     return t < 0.2 ? 0.0 : t < 0.5 ? 1.0 : t < 0.6 ? 2.0 : 1.0;
   });
   EXPECT_TRUE(near(settled_s(record(v), 1.0, 0.1), 0.6, round_off(4, 1.0)));
   EXPECT_EQ(settled_s(record(v), 1.0, 5.0), 0.0);
+  const auto at_first = answer(0.0, 1.0, [](double t) { return t == 0.0 ? 0.0 : 1.0; });
+  EXPECT_EQ(settled_s(record(at_first), 1.0, 0.1), 0.001);
   EXPECT_TRUE(std::isnan(settled_s(record(v), 3.0, 0.1)));
 }
 
@@ -108,6 +133,9 @@ TEST(Response, QuantilesOfTheFirstHundredIntegers) {
   for (int i = 100; i >= 0; --i) v.push_back(i);
   EXPECT_EQ(quantile(v, 0.5), 50.0);
   EXPECT_EQ(quantile(v, 0.99), 99.0);
+  EXPECT_EQ(quantile(v, 1.0), quantile(v, 0.99) + 1.0);
+  EXPECT_TRUE(std::isnan(quantile(v, 1.005)));
+  EXPECT_TRUE(std::isnan(quantile(v, -0.005)));
   EXPECT_TRUE(near(quantile(v, 0.005), 0.5, round_off(4, 1.0)));
   EXPECT_TRUE(std::isnan(quantile({}, 0.5)));
 }

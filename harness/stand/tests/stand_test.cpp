@@ -282,6 +282,19 @@ TEST(Stand, LinesGoOutWithTheirEndAndAnswersAreKept) {
   EXPECT_EQ(b.world.heard(), (std::vector<std::string>{"kt 1e-2", "ok"}));
 }
 
+TEST(Stand, TheEchoOfALineIsNoAnswer) {
+  Bench b;
+  const auto hear = [&b](const std::string& text, int until_ms) {
+    for (const char c : text) b.serial.push_back(static_cast<std::uint8_t>(c));
+    b.run_until(until_ms * kMs, 0.0);
+  };
+  ASSERT_TRUE(b.world.say("get kt"));
+  hear("> get kt\r\nkt 1e-2\r\n", 10);
+  EXPECT_EQ(b.world.heard(), (std::vector<std::string>{"kt 1e-2"}));
+  hear("get kt\r\n", 20);  // said by itself, later: no echo any more
+  EXPECT_EQ(b.world.heard().size(), 2u);
+}
+
 TEST(Stand, MistakesAreNamed) {
   const auto complaint = [](const std::string& text) {
     const auto read = read_stand(table(text), kPropellers);

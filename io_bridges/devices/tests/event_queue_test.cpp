@@ -5,6 +5,8 @@
 #include <memory>
 #include <vector>
 
+#include "harness/base/check.hpp"
+
 namespace whirl::io {
 namespace {
 
@@ -67,6 +69,23 @@ TEST(EventQueue, KeepsTimeOrderUnderRandomSettingAndCancelling) {
   for (int i = 0; i < 500; i += 5) events[static_cast<std::size_t>(i)]->cancel();
   queue.run_until(2000);
   EXPECT_EQ(fired, 400);
+}
+
+TEST(EventQueue, EventsForEverAtOneInstantFailACheckInsteadOfHanging) {
+  whirl::base::set_check_handler(whirl::base::throw_check_failure);
+  EventQueue queue;
+  int left = 1000;
+  std::unique_ptr<Event> patient, restless;
+  patient = std::make_unique<Event>(queue, [&] {
+    if (--left > 0) patient->in(0);
+  });
+  patient->at(5);
+  queue.run_until(10);  // a thousand at one instant are many, but not for ever
+  EXPECT_EQ(left, 0);
+  restless = std::make_unique<Event>(queue, [&] { restless->in(0); });
+  restless->at(20);
+  EXPECT_THROW(queue.run_until(30), whirl::base::CheckFailed);
+  whirl::base::set_check_handler(nullptr);
 }
 
 }  // namespace

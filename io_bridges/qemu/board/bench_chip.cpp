@@ -1,7 +1,11 @@
 #include "io_bridges/qemu/board/bench_chip.hpp"
 
 #include <cstdio>
+#include <cstdlib>
+#include <new>
+#include <stdexcept>
 
+#include "harness/base/check.hpp"
 #include "harness/base/digest.hpp"
 
 namespace whirl::board {
@@ -88,6 +92,8 @@ class BenchBlock final : public stm32::Peripheral {
         return;
       case 0x24:
         return host_.flash.erase(value, 16 * 1024);
+      case 0x30:
+        return go_wrong(value);
       default:
         return;
     }
@@ -99,7 +105,16 @@ class BenchBlock final : public stm32::Peripheral {
     std::snprintf(text, sizeof text, "says 0x%08x", value);
     host_.finding({host_.events.now(), "BENCH", text});
   }
+  void go_wrong(std::uint32_t how) {
+    WHIRL_CHECK(how != 1, how);
+    if (how == 2) throw std::bad_alloc();
+    if (how == 3) std::abort();
+    if (how == 4) throw std::runtime_error("thrown on purpose");
+    for_ever_ = how == 5;
+    timer_.in(0);
+  }
   void fire() {
+    if (for_ever_) return timer_.in(0);
     ++ticks_;
     host_.interrupts.set(kIrq, true);
     if (every_ns_ != 0) timer_.in(every_ns_);
@@ -110,7 +125,7 @@ class BenchBlock final : public stm32::Peripheral {
   std::function<void(stm32::ResetCause)> request_;
   io::Nanoseconds every_ns_ = 0;
   std::uint32_t ticks_ = 0;
-  bool flash_open_ = false;
+  bool flash_open_ = false, for_ever_ = false;
   stm32::ResetCause cause_ = stm32::ResetCause::power_on;
   Digest digest_;
 };

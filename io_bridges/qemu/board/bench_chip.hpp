@@ -8,6 +8,8 @@
 //   0x18 SAY    w   a finding "says 0x..." at that time      0x1C RESET w  resets by that cause
 //   0x20 FLASHCR rw 1: stores into flash program it          0x24 ERASE w  erases 16 KiB at address
 //   0x28 CAUSE  r   of the last reset                        0x2C TICKS r  interrupts raised so far
+//   0x30 BUG    w   of ours, on purpose: 1 a failed check, 2 out of memory, 3 abort(), 4 an exception,
+//                   5 events for ever at one instant
 #pragma once
 #include <memory>
 

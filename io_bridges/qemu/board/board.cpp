@@ -18,9 +18,11 @@ namespace {
 
 constexpr std::uint32_t kPeripherals = 0x40000000, kPeripherals_size = 0x20000000;
 constexpr double kLeastCycles = 0.8, kMostCycles = 3.0;  // per instruction, of a Cortex-M4
+constexpr Nanoseconds kSettled_ns = 100'000'000;         // a clock that stays so long is meant
 constexpr std::uint32_t kPage = 0x1000;
+constexpr std::uint32_t kSmallest_stack = 64;  // an exception's frame and a little
 constexpr std::uint32_t kSysTickException = 15, kFirstInterrupt = 16;
-constexpr std::uint32_t kHardFault = 3, kUsageFault = 6, kLockUp = 255;
+constexpr std::uint32_t kHardFault = 3, kUsageFault = 6;
 constexpr std::uint32_t kCfsr = 0xD28, kHfsr = 0xD2C, kMmfar = 0xD34, kBfar = 0xD38;  // in SCS
 
 std::string hex(std::uint32_t value) {
@@ -31,27 +33,15 @@ std::string hex(std::uint32_t value) {
 
 }  // namespace
 
-Result<Setup> read_setup(std::string_view board_json) {
-  auto config = parse_board(board_json);
-  if (!config) return config.error();
-  const Part* part = find_part(config.value().mcu);
-  if (part == nullptr) {
-    return Error{ErrorKind::bad_input, config.value().board,
-                 "unknown mcu '" + config.value().mcu + "'", "use stm32f405rg or stm32f103cb"};
-  }
-  auto image = load_image(config.value().image, *part);
-  if (!image) return image.error();
-  return Setup{std::move(config.value()), part, std::move(image.value())};
-}
-
 Board::Board(Setup setup, io::Channel channel, Emulator& emulator)
     : setup_(std::move(setup)),
       channel_(std::move(channel)),
       emulator_(emulator),
-      watch_(happened_),
+      watch_(happened_, [this](std::uint32_t address, void* to,
+                               std::size_t size) { return emulator_.peek(address, to, size); }),
       chip_(make_chip(*setup_.part,
                       {events_, *this, *this, *this, [this](const io::Finding& f) { find(f); },
-                       setup_.config.hse_Hz, setup_.config.lse_Hz})),
+                       setup_.config.hse_Hz, setup_.config.lse_Hz, setup_.config.hse_start_ns})),
       devices_({events_, *chip_, happened_, [this](const io::Finding& f) { find(f); },
                 setup_.config.seed}),
       hangs_(events_, emulator, happened_),
@@ -74,7 +64,8 @@ Board::Board(Setup setup, io::Channel channel, Emulator& emulator)
       tpiu_("TPIU", 0),
       etm_("ETM", 0),
       debug_mcu_("DBGMCU", setup_.part->idcode),
-      boundary_(events_, [this] { synchronise(); }) {
+      boundary_(events_, [this] { synchronise(); }),
+      profile_(events_, [this] { check_profile(); }) {
   events_.set_clock([this] { return emulator_.now(); });
   events_.set_rearm([this](Nanoseconds deadline) { emulator_.arm(deadline); });
   chip_->on_clock_change([this] {
@@ -137,11 +128,22 @@ void Board::power_on(const std::string& versions) {
   systick_.reset();
   cycle_counter_.reset();
   channel_.set_hello(versions);
+  for (const std::string& oddity : setup_.image.oddities()) find({0, "image", oddity});
+  report_unknown_watches();
   boundary_.at(0);
   channel_.set_state(io::BoardState::running);
   std::ignore = channel_.post(0, happened_.bytes());
   happened_.clear();
   reported_ = true;
+}
+
+// A board file serves many images, so a function that this one lacks is no error, but it is said.
+void Board::report_unknown_watches() {
+  for (const std::string& name : setup_.config.watch) {
+    const bool converter = name.size() == 4 && name.compare(0, 3, "adc") == 0;
+    if (converter || !setup_.image.functions_named(name).empty()) continue;
+    find({0, "watch", "the image has no function '" + name + "'"});
+  }
 }
 
 void Board::on_timer() {
@@ -205,6 +207,7 @@ void Board::report_clocks() {
   if (all(now) == all(clocks_told_)) return;
   clocks_told_ = now;
   happened_.add(io::Kind::clock_setup, 0, events_.now(), now);
+  profile_.in(kSettled_ns);
 }
 
 void Board::report_busy() {
@@ -224,9 +227,11 @@ void Board::refuse(const Error& error) {
 
 // Instructions take the same time whatever SYSCLK is: a profile for 168 MHz does not fit 16 MHz.
 void Board::check_profile() {
+  if (profile_told_Hz_ == clocks_told_.sysclk_Hz) return;
   const double cycles =
       clocks_told_.sysclk_Hz * 1e-9 * static_cast<double>(setup_.config.ns_per_instruction);
   if (cycles >= kLeastCycles && cycles <= kMostCycles) return;
+  profile_told_Hz_ = clocks_told_.sysclk_Hz;
   char text[160];
   std::snprintf(text, sizeof text,
                 "SYSCLK of %.6g MHz does not fit the timing profile: %lld ns per instruction are "
@@ -234,6 +239,25 @@ void Board::check_profile() {
                 clocks_told_.sysclk_Hz * 1e-6,
                 static_cast<long long>(setup_.config.ns_per_instruction), cycles);
   find({events_.now(), "board", text});
+}
+
+// The array that a stack's top ends or lies in, or its address.
+std::string Board::stack_name(std::uint32_t top) const {
+  const Symbol* array = setup_.image.object_at(top - 1);
+  if (array == nullptr) return hex(top);
+  const std::uint32_t end = array->address + array->size;
+  if (end - top < kSmallest_stack) return array->name;
+  return array->name + " up to +" + std::to_string(top - array->address);
+}
+
+nlohmann::json Board::task_stacks() const {
+  nlohmann::json list = nlohmann::json::array();
+  for (const StackUse& stack : watch_.stacks().task_stacks()) {
+    list.push_back({{"stack", stack_name(stack.top)},
+                    {"top", hex(stack.top)},
+                    {"used_bytes", stack.used_bytes}});
+  }
+  return list;
 }
 
 void Board::add_statistics() {
@@ -250,11 +274,13 @@ void Board::add_statistics() {
   const Peek peek = [this](std::uint32_t address, void* to, std::size_t size) {
     return emulator_.peek(address, to, size);
   };
-  const std::string text = nlohmann::json{{"unanswered", list},
-                                          {"stack_used_bytes", stack_used(*setup_.part, peek)},
-                                          {"slept_ns", emulator_.slept_ns()},
-                                          {"ns_per_instruction", setup_.config.ns_per_instruction}}
-                               .dump();
+  nlohmann::json statistics = {{"unanswered", list},
+                               {"stack_used_bytes", stack_used(*setup_.part, peek)},
+                               {"slept_ns", emulator_.slept_ns()},
+                               {"hse_start_ns", setup_.config.hse_start_ns},
+                               {"ns_per_instruction", setup_.config.ns_per_instruction}};
+  if (watch_.stacks().count() > 1) statistics["task_stacks"] = task_stacks();
+  const std::string text = statistics.dump();
   happened_.add(io::Kind::statistics, 0, events_.now(), text.data(),
                 static_cast<std::uint32_t>(text.size()));
 }
@@ -291,28 +317,26 @@ io::CpuFault Board::fault_registers(const Registers& registers) {
   return fault;
 }
 
-void Board::exception_entered(std::uint32_t preempted, std::uint32_t frame, const CoreState& core,
-                              const Registers& registers) {
-  if (!watch_.enter_exception(preempted, core)) return;
-  if (core.exception < kHardFault || core.exception > kUsageFault) return;
+void Board::exception(const CoreState& before, const CoreState& after, const Registers& registers) {
+  if (!watch_.exception(before, after)) return;
+  if (after.exception() < kHardFault || after.exception() > kUsageFault) return;
   const Peek peek = [this](std::uint32_t address, void* to, std::size_t size) {
     return emulator_.peek(address, to, size);
   };
-  const ExceptionFrame stacked = read_frame(peek, frame, core.lr);
   io::CpuFault fault = fault_registers(registers);
-  fault.exception = core.exception;
-  fault.pc = stacked.pc;
-  fault.lr = stacked.lr;
-  fault.sp = stacked.sp_before;
-  fault.xpsr = stacked.xpsr;
-  const std::string text = backtrace(setup_.image, peek, stacked.pc, stacked.lr, stacked.sp_before);
-  happened_.add(io::Kind::cpu_fault, 0, core.now, fault, text.data(),
+  fault.exception = after.exception();
+  fault.pc = before.pc;
+  fault.lr = before.lr;
+  fault.sp = before.sp;
+  fault.xpsr = before.xpsr;
+  const std::string text = backtrace(setup_.image, peek, before.pc, before.lr, before.sp);
+  happened_.add(io::Kind::cpu_fault, 0, after.now, fault, text.data(),
                 static_cast<std::uint32_t>(text.size()));
 }
 
-void Board::core_locked_up(Nanoseconds now, const Registers& registers) {
+void Board::core_stopped(StoppedCore why, Nanoseconds now, const Registers& registers) {
   io::CpuFault fault = fault_registers(registers);
-  fault.exception = kLockUp;
+  fault.exception = static_cast<std::uint32_t>(why);
   fault.sp = registers(13);
   fault.lr = registers(14);
   fault.pc = registers(15);

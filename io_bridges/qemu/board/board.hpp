@@ -7,6 +7,7 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -35,6 +36,12 @@ struct Setup {
 
 Result<Setup> read_setup(std::string_view board_json);
 
+// Why a core cannot go on: the number that takes the place of an exception's in a cpu_fault message.
+enum class StoppedCore : std::uint32_t {
+  frame_among_registers = 254,  // stack or vectors where registers or flash are
+  locked_up = 255,              // a fault within HardFault or NMI
+};
+
 class Board final : stm32::InterruptLines, stm32::SystemBus, stm32::FlashArray {
  public:
   Board(Setup setup, io::Channel channel, Emulator& emulator);
@@ -62,12 +69,11 @@ class Board final : stm32::InterruptLines, stm32::SystemBus, stm32::FlashArray {
   void on_timer();                             // the armed deadline is here
   void core_was_reset(stm32::ResetCause cause);
   [[noreturn]] void refuse(const Error& error);  // tells the harness why, and ends
-  // Core registers by number: 0..15, 25 XPSR; as of the first instruction of the handler.
+  // Core registers by number: 0..15, 25 XPSR.
   using Registers = std::function<std::uint32_t(int number)>;
-  [[noreturn]] void core_locked_up(Nanoseconds now, const Registers& registers);
-  // First instruction of a handler; `frame` is where the core stacked the interrupted context.
-  void exception_entered(std::uint32_t preempted, std::uint32_t frame, const CoreState& core,
-                         const Registers& registers);
+  [[noreturn]] void core_stopped(StoppedCore why, Nanoseconds now, const Registers& registers);
+  // The core took or left an exception.
+  void exception(const CoreState& before, const CoreState& after, const Registers& registers);
   Watch& watch() { return watch_; }
 
   // Messages to the harness, in order of time.
@@ -90,6 +96,9 @@ class Board final : stm32::InterruptLines, stm32::SystemBus, stm32::FlashArray {
   void report_clocks();
   void report_busy();
   void check_profile();
+  std::string stack_name(std::uint32_t top) const;
+  nlohmann::json task_stacks() const;
+  void report_unknown_watches();
   io::CpuFault fault_registers(const Registers& registers);
   void add_statistics();
   [[noreturn]] void finish(io::BoardState state);
@@ -107,7 +116,8 @@ class Board final : stm32::InterruptLines, stm32::SystemBus, stm32::FlashArray {
   CycleCounter cycle_counter_;
   Unanswered unanswered_;
   StoredWords itm_, flash_patch_, tpiu_, etm_, debug_mcu_;
-  io::Event boundary_;
+  io::Event boundary_, profile_;
+  double profile_told_Hz_ = 0.0;
   io::ClockSetup clocks_told_;
   Nanoseconds busy_told_ns_ = 0, slept_told_ns_ = 0;
   bool reported_ = false;  // the batch of this boundary has been posted

@@ -1,11 +1,35 @@
 #include "io_bridges/qemu/board/config.hpp"
 
+#include <cmath>
+#include <concepts>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 namespace whirl::board {
 namespace {
 
 using nlohmann::json;
+
+// JSON's numbers have no range: a cast of one that does not fit is undefined.
+template <std::integral T>
+bool read_whole(const json& value, T& into) {
+  if (value.is_number_unsigned()) {
+    const auto whole = value.get<std::uint64_t>();
+    into = static_cast<T>(whole);
+    return std::in_range<T>(whole);
+  }
+  if (value.is_number_integer()) {
+    const auto whole = value.get<std::int64_t>();
+    into = static_cast<T>(whole);
+    return std::in_range<T>(whole);
+  }
+  constexpr double kExact = 9007199254740992.0;  // 2^53
+  const double number = value.is_number() ? value.get<double>() : NAN;
+  if (!(std::abs(number) <= kExact) || number != std::floor(number)) return false;
+  const auto whole = static_cast<std::int64_t>(number);
+  into = static_cast<T>(whole);
+  return std::in_range<T>(whole);
+}
 
 // Walks objects and remembers the first thing that is wrong.
 class Keys {
@@ -14,10 +38,15 @@ class Keys {
   void read(const json& object, const char* key, const std::string& place, T& into) {
     const auto found = object.find(key);
     if (found == object.end() || failed()) return;
-    try {
-      into = found->get<T>();
-    } catch (const json::exception&) {
-      fail(place + key, "has the wrong type: " + found->dump().substr(0, 40));
+    if constexpr (std::integral<T>) {
+      if (read_whole(*found, into)) return;
+      fail(place + key, "is not a whole number in range: " + found->dump().substr(0, 40));
+    } else {
+      try {
+        into = found->get<T>();
+      } catch (const json::exception&) {
+        fail(place + key, "has the wrong type: " + found->dump().substr(0, 40));
+      }
     }
   }
   void fail(const std::string& place, const std::string& what) {
@@ -84,6 +113,8 @@ void read_lists(Keys& keys, const json& top, BoardConfig& config) {
     PinConfig pin;
     keys.read(entry, "name", place, pin.name);
     keys.read(entry, "pin", place, pin.pin);
+    keys.read(entry, "pull", place, pin.pull);
+    keys.read(entry, "bus", place, pin.bus);
     config.pins.push_back(pin);
   }
   for (const json& entry : list_of(keys, top, "watch")) {
@@ -103,7 +134,10 @@ Result<BoardConfig> parse_board(std::string_view json_text) {
   keys.read(top, "mcu", "", config.mcu);
   keys.read(top, "image", "", config.image);
   keys.read(top, "hse_Hz", "", config.hse_Hz);
+  keys.read(top, "hse_start_ns", "", config.hse_start_ns);
   keys.read(top, "lse_Hz", "", config.lse_Hz);
+  keys.read(top, "boot_image", "", config.boot_image);
+  keys.read(top, "start", "", config.start);
   keys.read(top, "ns_per_instruction", "", config.ns_per_instruction);
   keys.read(top, "seed", "", config.seed);
   keys.read(top, "sync_ns", "", config.sync_ns);
@@ -111,6 +145,7 @@ Result<BoardConfig> parse_board(std::string_view json_text) {
   read_lists(keys, top, config);
   if (config.image.empty()) keys.fail("image", "is missing");
   if (!(config.hse_Hz >= 0.0 && config.hse_Hz <= 50e6)) keys.fail("hse_Hz", "is outside 0..50 MHz");
+  if (config.hse_start_ns < 0) keys.fail("hse_start_ns", "is negative");
   if (config.ns_per_instruction <= 0) keys.fail("ns_per_instruction", "is not positive");
   if (keys.failed()) {
     Error error = keys.error();

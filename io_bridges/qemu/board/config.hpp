@@ -1,8 +1,8 @@
 // What a board process is told at its start: the board's description as JSON with SI numbers.
 //
-//   Keys    board, mcu, hse_Hz, lse_Hz, image, ns_per_instruction, seed, sync_ns, gdb_port,
+//   Keys    board, mcu, hse_Hz, hse_start_ns, lse_Hz, image, boot_image, start, ns_per_instruction, seed, sync_ns, gdb_port,
 //           devices[] {name, type, bus, cs, int, address, motor, baud, params{}},
-//           pins[] {name, pin}, watch[] (function names), unanswered_limit
+//           pins[] {name, pin, pull, bus}, watch[] (function names)
 //   Errors  bad_input, with the key that is wrong
 #pragma once
 #include <cstdint>
@@ -25,11 +25,16 @@ struct DeviceConfig {
 
 struct PinConfig {
   std::string name, pin;
+  std::string pull;  // "up", "down": a resistor of the board
+  std::string bus;   // "i2c1.scl": soldered to that line
 };
 
 struct BoardConfig {
   std::string board, mcu, image;
+  std::string boot_image;   // of a boot loader that lies in flash beside the image; empty: none
+  std::uint32_t start = 0;  // address of the vector table at reset; 0: the start of flash
   double hse_Hz = 0.0, lse_Hz = 0.0;
+  std::int64_t hse_start_ns = 200'000;
   std::int64_t ns_per_instruction = 8;
   std::uint64_t seed = 1;
   std::int64_t sync_ns = 1'000'000;

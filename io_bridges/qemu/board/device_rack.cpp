@@ -4,6 +4,7 @@
 #include <cctype>
 #include <cstdlib>
 #include <map>
+#include <set>
 
 #include "io_bridges/devices/esc_i2c.hpp"
 #include "io_bridges/devices/mavlink_link.hpp"
@@ -11,6 +12,7 @@
 #include "io_bridges/devices/pulse_source.hpp"
 #include "io_bridges/devices/serial_port.hpp"
 #include "io_bridges/devices/wire_faults.hpp"
+#include "io_bridges/qemu/board/board_pins.hpp"
 #include "io_bridges/qemu/board/i2c_orders.hpp"
 #include "io_bridges/qemu/board/inertial_sensor.hpp"
 #include "io_bridges/qemu/board/power_stage.hpp"
@@ -66,6 +68,8 @@ struct DeviceRack::Parts {
   Site site;
   std::string board;
   io::FaultBook faults;
+  std::set<std::pair<int, int>> addresses;  // bus, address
+  std::set<int> i2c_soldered;               // to the pins that the board names
   std::map<int, std::unique_ptr<io::I2cWireFaults>> i2c_buses;
   std::map<int, io::SpiBus*> spi_buses;
   std::map<const io::Wire*, std::unique_ptr<SpiLog>> spi_logs;
@@ -92,11 +96,16 @@ DeviceRack::~DeviceRack() = default;
 
 Result<Done> DeviceRack::build(const BoardConfig& config) {
   parts_->board = config.board;
+  auto soldered = join_pins(config.pins, parts_->site.chip, config.board);
+  if (!soldered) return soldered.error();
+  parts_->i2c_soldered = std::move(soldered.value());
   int number = 0;
   for (const DeviceConfig& device : config.devices) {
     const auto added = parts_->add(device, number++);
     if (!added) return added.error();
   }
+  const auto used = [this](int bus) { return parts_->i2c_buses.count(bus) != 0; };
+  watch_empty_buses(used, parts_->site.chip, parts_->site.finding);
   return Done{};
 }
 
@@ -119,6 +128,7 @@ Result<Done> DeviceRack::Parts::add(const DeviceConfig& device, int number) {
 io::I2cBus* DeviceRack::Parts::i2c(int number) {
   io::I2cBus* bus = site.chip.i2c(number);
   if (bus == nullptr || i2c_buses.count(number) != 0) return bus;
+  if (i2c_soldered.count(number) == 0) site.chip.solder_i2c(number, "", "");
   i2c_buses[number] = std::make_unique<io::I2cWireFaults>(site.events, faults, *bus, number);
   bus->on_transaction([this, number](const io::I2cTransaction& t) {
     io::BusTransaction head;
@@ -186,6 +196,9 @@ Result<Done> DeviceRack::Parts::add_esc(const DeviceConfig& device) {
   if (device.motor < 1 || escs.count(device.motor) != 0) {
     return wrong(device, "needs a motor number of its own");
   }
+  if (!addresses.insert({name.number, device.address}).second) {
+    return wrong(device, "another device has its address on " + device.bus);
+  }
   auto esc = std::make_unique<io::EscI2c>(static_cast<std::uint8_t>(device.address));
   esc->on_setpoint([this, motor = device.motor](const io::EscI2c::Write& write) {
     io::EscSetpoint setpoint;
@@ -203,6 +216,11 @@ Result<Done> DeviceRack::Parts::add_radio(const DeviceConfig& device) {
   const BusName name = split(device.bus);
   io::MavlinkLink::Params params;
   params.seed = site.seed;
+  for (const char* loss : {"uplink_loss", "downlink_loss"}) {
+    const auto share = device.params.find(loss);
+    if (share == device.params.end() || (share->second >= 0.0 && share->second <= 1.0)) continue;
+    return wrong(device, std::string(loss) + " is not between 0 and 100 %");
+  }
   if (device.baud > 0.0) params.baud = device.baud;
   for (const auto& [key, value] : device.params) {
     if (key == "uplink_loss")
@@ -279,6 +297,11 @@ Result<Done> DeviceRack::Parts::add_power_stage(const DeviceConfig& device) {
                       "shoot-through: both switches of leg " + std::string(1, "abc"[leg]) +
                           " were on for " + std::to_string(end_ns - start_ns) + " ns"});
       });
+  stage->on_backwards([this, name = device.name](io::Nanoseconds now) {
+    site.finding({now, name,
+                  "the motor turns backwards, without any load of the air: swap two of its wires "
+                  "(swap_wires) or the firmware's direction"});
+  });
   stages[device.motor] = std::move(stage);
   return Done{};
 }
@@ -294,9 +317,8 @@ Result<Done> DeviceRack::Parts::add_pulse_source(const DeviceConfig& device) {
 }
 
 Result<Done> DeviceRack::Parts::add_volts(const DeviceConfig& device) {
-  const auto volts = device.params.find("volts");
-  if (volts == device.params.end()) return wrong(device, "needs params.volts");
-  const double level_V = volts->second;
+  if (device.params.count("volts") == 0) return wrong(device, "needs params.volts");
+  const double level_V = device.params.at("volts");
   if (!site.chip.set_analog(device.bus, [level_V](io::Nanoseconds) { return level_V; })) {
     return wrong(device, "the part has no analog pin '" + device.bus + "'");
   }
@@ -333,16 +355,14 @@ bool DeviceRack::take(const io::Reader& message) {
       const auto radio = parts_->radios.find(head.port);
       if (radio != parts_->radios.end()) radio->second->send_frame(message.payload(), head.t_ns);
       const auto serial = parts_->serials.find(head.port);
-      if (serial != parts_->serials.end()) {
-        serial->second->send_bytes(message.payload(), head.t_ns);
-      }
+      if (serial == parts_->serials.end()) return true;
+      serial->second->send_bytes(message.payload(), head.t_ns);
       return true;
     }
     case Kind::shaft_load: {
       const auto stage = parts_->stages.find(head.port);
-      if (stage != parts_->stages.end()) {
-        stage->second->set_load(message.as<io::ShaftLoad>(), head.t_ns);
-      }
+      if (stage == parts_->stages.end()) return true;
+      stage->second->set_load(message.as<io::ShaftLoad>(), head.t_ns);
       return true;
     }
     case Kind::i2c_order: {
@@ -355,10 +375,9 @@ bool DeviceRack::take(const io::Reader& message) {
     }
     case Kind::pulse_train: {
       const auto source = parts_->pulses.find(head.port);
-      if (source != parts_->pulses.end()) {
-        const auto t = message.as<io::PulseTrain>();
-        source->second->set({t.width_ns, t.period_ns, t.glitch_ns, t.glitch_after_ns});
-      }
+      if (source == parts_->pulses.end()) return true;
+      const auto t = message.as<io::PulseTrain>();
+      source->second->set({t.width_ns, t.period_ns, t.glitch_ns, t.glitch_after_ns});
       return true;
     }
     case Kind::fault: {

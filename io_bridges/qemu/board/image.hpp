@@ -1,11 +1,14 @@
-// The firmware image: an ELF file for the part, checked before anything runs.
+// The firmware image: one or two ELF files for the part, checked before anything runs.
 //
 //   Out     what goes into flash (program headers with file content, at their load addresses), the
-//           function and object symbols, names demangled
-//   Errors  bad_input: missing, not ELF, not 32-bit little-endian ARM, not Thumb at entry, beyond
-//           the part's flash, cut off
+//           function and object symbols, names demangled; what is odd about it, in words
+//   Start   the core starts from the vector table, as the part does; an ELF's entry point is for
+//           debuggers. What lies in RAM is not loaded: no flasher does
+//   Errors  bad_input: missing, not ELF, not 32-bit little-endian ARM, for a larger core than the
+//           part's, beyond the part's flash, overlapping, cut off, no vector table where it starts
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,7 +36,15 @@ class Image {
   const std::vector<Symbol>& symbols() const { return symbols_; }  // sorted by address
   std::uint64_t digest() const { return digest_; }                 // FNV-1a of the file
 
+  const std::vector<std::string>& oddities() const { return oddities_; }
+
+  // A second file beside this one (a boot loader). The error names what is in each other's way.
+  Result<Done> add(Image other, const std::string& path);
+  // A word of what is loaded; null: nothing is there.
+  std::optional<std::uint32_t> word_at(std::uint32_t address) const;
+
   const Symbol* function_at(std::uint32_t address) const;  // the one that contains it, or null
+  const Symbol* object_at(std::uint32_t address) const;
   // By mangled name, demangled name, or demangled name up to its parenthesis.
   std::vector<const Symbol*> functions_named(const std::string& name) const;
   const Symbol* object_named(const std::string& name) const;
@@ -44,9 +55,12 @@ class Image {
   friend Result<Image> load_image(const std::string& path, const Part& part);
   std::vector<Segment> segments_;
   std::vector<Symbol> symbols_;
+  std::vector<std::string> oddities_;
   std::uint64_t digest_ = 0;
 };
 
 Result<Image> load_image(const std::string& path, const Part& part);
+// Is there a vector table at the address from which the core starts?
+Result<Done> check_start(const Image& image, const std::string& path, std::uint32_t start);
 
 }  // namespace whirl::board

@@ -20,6 +20,7 @@ constexpr Part kF405 = {
     .interrupts = 82,
     .sysclk_maximum_Hz = 168e6,
     .elf_machine = 40,
+    .is_m4 = true,
 };
 
 constexpr Part kF103 = {
@@ -37,6 +38,7 @@ constexpr Part kF103 = {
     .interrupts = 43,
     .sysclk_maximum_Hz = 72e6,
     .elf_machine = 40,
+    .is_m4 = false,
 };
 
 // For tests of the virtual board itself (bench_chip.hpp): the F405's core and memories.

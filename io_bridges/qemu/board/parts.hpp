@@ -27,6 +27,7 @@ struct Part {
   int interrupts;        // lines into the NVIC
   double sysclk_maximum_Hz;
   std::uint16_t elf_machine;  // EM_ARM
+  bool is_m4;                 // Cortex-M4 with FPU, else M3
 };
 
 // Null: unknown.

@@ -9,7 +9,6 @@ namespace {
 
 constexpr int kFrames = 16;
 constexpr std::uint32_t kSearch = 2048;  // bytes of stack that a backtrace looks through
-constexpr std::uint32_t kGap = 512;      // of untouched RAM: below it nobody has been
 
 bool in(const MemoryBlock& block, std::uint32_t address) {
   return address >= block.base && address - block.base < block.size;
@@ -30,14 +29,6 @@ void add(std::string& text, const Image& image, std::uint32_t address) {
 }
 
 }  // namespace
-
-ExceptionFrame read_frame(const Peek& peek, std::uint32_t frame, std::uint32_t exc_return) {
-  std::array<std::uint32_t, 8> words{};
-  if (!peek(frame, words.data(), sizeof words)) return {};
-  const bool floating = (exc_return & 0x10u) == 0;  // S0-S15, FPSCR and a spare word above
-  const std::uint32_t padding = (words[7] & (1u << 9)) != 0 ? 4 : 0;
-  return {words[5], words[6], words[7], frame + (floating ? 0x68u : 0x20u) + padding};
-}
 
 std::string backtrace(const Image& image, const Peek& peek, std::uint32_t pc, std::uint32_t lr,
                       std::uint32_t sp) {
@@ -62,6 +53,15 @@ std::string backtrace(const Image& image, const Peek& peek, std::uint32_t pc, st
   return text;
 }
 
+std::uint32_t touched_below_top(std::span<const std::uint8_t> memory, const std::uint8_t* before) {
+  std::size_t deepest = memory.size(), untouched = 0;
+  for (std::size_t i = memory.size(); i-- > 0 && untouched < kStack_gap;) {
+    untouched = memory[i] == before[i] ? untouched + 1 : 0;
+    if (untouched == 0) deepest = i;
+  }
+  return static_cast<std::uint32_t>(memory.size() - deepest);
+}
+
 std::uint32_t stack_used(const Part& part, const Peek& peek) {
   std::uint32_t top = 0;
   if (!peek(part.flash.base, &top, sizeof top)) return 0;
@@ -69,12 +69,8 @@ std::uint32_t stack_used(const Part& part, const Peek& peek) {
   if (!in(home, top - 1)) return 0;
   std::vector<std::uint8_t> memory(top - home.base);
   if (!peek(home.base, memory.data(), memory.size())) return 0;
-  std::size_t deepest = memory.size(), untouched = 0;
-  for (std::size_t i = memory.size(); i-- > 0 && untouched < kGap;) {
-    untouched = memory[i] == kUntouched ? untouched + 1 : 0;
-    if (untouched == 0) deepest = i;
-  }
-  return static_cast<std::uint32_t>(memory.size() - deepest);
+  const std::vector<std::uint8_t> before(memory.size(), kUntouched);
+  return touched_below_top(memory, before.data());
 }
 
 }  // namespace whirl::board

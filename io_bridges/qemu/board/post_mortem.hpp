@@ -6,6 +6,7 @@
 #pragma once
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -16,19 +17,17 @@
 namespace whirl::board {
 
 inline constexpr std::uint8_t kUntouched = 0xA5;  // of RAM at power-up
+inline constexpr std::uint32_t kStack_gap =
+    512;  // bytes that nobody touched: below them nobody has been
 
 using Peek = std::function<bool(std::uint32_t address, void* to, std::size_t size)>;
-
-// As the core stacked it at exception entry: r0-r3, r12, lr, pc, xpsr at `frame`.
-struct ExceptionFrame {
-  std::uint32_t lr = 0, pc = 0, xpsr = 0;
-  std::uint32_t sp_before = 0;  // of the interrupted code
-};
-ExceptionFrame read_frame(const Peek& peek, std::uint32_t frame, std::uint32_t exc_return);
 
 // One frame per line, innermost first.
 std::string backtrace(const Image& image, const Peek& peek, std::uint32_t pc, std::uint32_t lr,
                       std::uint32_t sp);
+
+// From the end of `memory`, which a stack grows down from, to its deepest byte that is not as before.
+std::uint32_t touched_below_top(std::span<const std::uint8_t> memory, const std::uint8_t* before);
 
 // Bytes used below the initial stack pointer; 0 when the vector table gives no sensible one.
 std::uint32_t stack_used(const Part& part, const Peek& peek);

@@ -15,6 +15,8 @@ constexpr double kLeast_source_ohm = 1e-3;  // leads; also keeps the bus capacit
 constexpr double kLongest_step_s = 25e-6;
 constexpr double kWindow_s = 50e-6;
 constexpr double kStands_radps = 5.0;
+constexpr double kBackwards_radps = -30.0;  // a start swings a little to both sides
+constexpr int kBackward_reports = 50;       // one each millisecond
 
 double at_pin(double volts) {
   return std::clamp(volts, 0.0, kReference_V);
@@ -32,6 +34,7 @@ bool set_one(PowerStageParams& p, const std::string& key, double value) {
   if (key == "no_load_current") return p.motor.no_load_current_A = value, true;
   if (key == "inertia") return p.motor.inertia_kgm2 = value, true;
   if (key == "bus_capacitance") return p.bus_capacitance_F = value, true;
+  if (key == "swap_wires") return p.swap_wires = value != 0.0, true;
   if (key == "shunt.offset") return p.shunt.offset_low_A = p.shunt.offset_high_A = value, true;
   if (key == "shunt.gain") return p.shunt.gain_tolerance = value, true;
   if (key == "shunt.gain_error") {
@@ -52,7 +55,8 @@ Result<PowerStageParams> power_stage_params(const std::map<std::string, double>&
     if (!set_one(result, key, value)) {
       return Error{ErrorKind::bad_input, place, "unknown parameter '" + key + "'",
                    "torque_constant, resistance, inductance, no_load_current, inertia, "
-                   "bus_capacitance, shunt { offset, gain, gain_error, noise, warm_up, wander }"};
+                   "bus_capacitance, swap_wires, shunt { offset, gain, gain_error, noise, warm_up, "
+                   "wander }"};
     }
   }
   if (!(result.bus_capacitance_F >= 10e-6 && result.bus_capacitance_F <= 0.1)) {
@@ -97,8 +101,12 @@ void PowerStage::switched(int leg, bool upper, bool on, Nanoseconds now) {
     end_shot(leg, now_ns_);
   }
   plant::Bridge bridge;
-  for (std::size_t k = 0; k < 3; ++k) bridge.leg[k] = leg_of(on_[k]);
+  for (std::size_t k = 0; k < 3; ++k) bridge.leg[phase_at(k)] = leg_of(on_[k]);
   motor_.set_bridge(bridge);
+}
+
+std::size_t PowerStage::phase_at(std::size_t leg) const {
+  return params_.swap_wires && leg != 0 ? 3 - leg : leg;
 }
 
 // Edges of one instant overlap for no time: they are no short circuit.
@@ -110,7 +118,7 @@ void PowerStage::end_shot(int leg, Nanoseconds now) {
 
 double PowerStage::phase_V(int leg, Nanoseconds now) {
   advance(now);
-  return at_pin(motor_.phase_voltages()[static_cast<std::size_t>(leg)] * kDivider);
+  return at_pin(motor_.phase_voltages()[phase_at(static_cast<std::size_t>(leg))] * kDivider);
 }
 
 double PowerStage::bus_V(Nanoseconds now) {
@@ -171,12 +179,19 @@ void PowerStage::run(double dt_s) {
   window_charge_C_ = window_s_ = 0.0;
 }
 
+void PowerStage::watch_direction(double speed_radps, Nanoseconds now) {
+  if (backward_reports_ == kBackward_reports) return;  // told
+  backward_reports_ = speed_radps < kBackwards_radps ? backward_reports_ + 1 : 0;
+  if (backward_reports_ == kBackward_reports && backwards_) backwards_(now);
+}
+
 io::ShaftState PowerStage::report(Nanoseconds now) {
   advance(now);
   const double dt_s = static_cast<double>(now - reported_ns_) * 1e-9;
   WHIRL_CHECK(dt_s > 0.0, now, reported_ns_);
   io::ShaftState told = state_;
   told.speed_radps = motor_.speed_radps();
+  watch_direction(told.speed_radps, now);
   told.angle_rad = motor_.electrical_angle_rad();
   told.air_torque_Nm = books_.air_torque_Nm / dt_s;
   told.source_current_A = source_charge_C_ / dt_s;

@@ -33,10 +33,11 @@ struct PowerStageParams {
   plant::MotorParams motor;
   plant::CurrentShuntParams shunt;
   double bus_capacitance_F = 470e-6;
+  bool swap_wires = false;  // two of the motor's wires: it turns the other way
 };
 
 // From a device's parameters: torque_constant, resistance, inductance, no_load_current, inertia,
-// bus_capacitance; shunt.offset, shunt.gain (a tolerance to draw from), shunt.gain_error (this part's
+// bus_capacitance, swap_wires; shunt.offset, shunt.gain (a tolerance to draw from), shunt.gain_error (this part's
 // own, nothing is drawn), shunt.noise, shunt.warm_up, shunt.wander.
 Result<PowerStageParams> power_stage_params(const std::map<std::string, double>& params,
                                             const std::string& place);
@@ -57,6 +58,9 @@ class PowerStage {
 
   bool join(stm32::ChipModel& chip);               // all of the pins; false: one is missing
   void wire(int leg, bool upper, io::Wire& wire);  // the six switches, once each
+  // Told once, when the motor has turned the other way for a while: the air's load is that of the
+  // propeller's own direction only.
+  void on_backwards(std::function<void(Nanoseconds)> told) { backwards_ = std::move(told); }
   void on_shoot_through(Shot shot) { shot_ = std::move(shot); }
 
   // At the converter's pins.
@@ -70,8 +74,10 @@ class PowerStage {
   const plant::SwitchedMotor& motor() const { return motor_; }
 
  private:
+  std::size_t phase_at(std::size_t leg) const;  // the motor's phase on that leg
   void advance(Nanoseconds now);
   void run(double dt_s);
+  void watch_direction(double speed_radps, Nanoseconds now);
   void hold_or_turn();
   void switched(int leg, bool upper, bool on, Nanoseconds now);
   void end_shot(int leg, Nanoseconds now);
@@ -82,6 +88,8 @@ class PowerStage {
   std::array<std::array<bool, 2>, 3> on_{};  // [leg][upper]
   std::array<Nanoseconds, 3> both_since_{io::kNever, io::kNever, io::kNever};
   Shot shot_;
+  std::function<void(Nanoseconds)> backwards_;
+  int backward_reports_ = 0;  // in a row
   io::ShaftLoad load_;
   double bus_V_ = 0.0;
   Nanoseconds now_ns_ = 0, reported_ns_ = 0;

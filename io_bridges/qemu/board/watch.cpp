@@ -1,11 +1,25 @@
 #include "io_bridges/qemu/board/watch.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace whirl::board {
 namespace {
 
-constexpr std::uint32_t kExcReturn = 0xFFFFFFE0u;  // and above: a handler's link register
+constexpr std::uint32_t kExcReturn = 0xFFFFFFE0u;  // and above: what a handler returns by
+constexpr std::uint32_t kBasicFrame = 0x20, kFloatingFrame = 0x68;
+constexpr std::uint32_t kNoFloating = 1u << 4;  // of EXC_RETURN
+
+// What a function returns by, as a branch leaves it in PC.
+std::uint32_t return_address(std::uint32_t lr) {
+  return lr >= kExcReturn ? lr : lr & ~1u;
+}
+
+// Where the core has stacked what ran at `before`.
+std::uint32_t frame_of(const CoreState& before, const CoreState& after) {
+  const std::uint32_t size = (after.lr & kNoFloating) != 0 ? kBasicFrame : kFloatingFrame;
+  return (before.sp - size) & ~7u;
+}
 
 }  // namespace
 
@@ -16,75 +30,119 @@ std::array<Nanoseconds, Watch::kExceptions> Watch::filled() {
 }
 
 void Watch::core_was_reset() {
-  contexts_.assign(1, {});
-  calls_.clear();
+  tasks_.clear();
+  handlers_.clear();
+  stacks_.reset();
+  load_ = Load::none;
   raised_ns_ = filled();
 }
 
-void Watch::finish(std::size_t index, Nanoseconds now) {
-  const Call call = calls_[index];
-  calls_.erase(calls_.begin() + static_cast<std::ptrdiff_t>(index));
+Watch::Context& Watch::running() {
+  if (!handlers_.empty()) return handlers_.back();
+  if (tasks_.size() <= stacks_.current()) tasks_.resize(stacks_.current() + 1);
+  return tasks_[stacks_.current()];
+}
+
+void Watch::run_until(Nanoseconds now) {
+  running().ran_ns += now - std::exchange(counted_until_ns_, now);
+}
+
+// Where thread mode is; if it loaded its stack pointer on the way, the time since then is of the
+// stack that it loaded.
+void Watch::see(const CoreState& core) {
+  if (handlers_.empty()) {
+    const Load load = std::exchange(load_, Load::none);
+    if (load == Load::none) {
+      stacks_.ran_on(core.sp);
+    } else {
+      run_until(loaded_ns_);
+      stacks_.loaded(core.sp, load == Load::from_memory);
+    }
+  }
+  run_until(core.now);
+}
+
+void Watch::finish(const Context& context, const Call& call, Nanoseconds now) {
   io::FunctionCall message;
   message.entry_ns = call.entry_ns;
-  message.execution_ns =
-      now - call.entry_ns - (contexts_[call.depth].preempted_ns - call.preempted_before_ns);
-  message.latency_ns = call.latency_ns;
+  message.execution_ns = context.ran_ns - call.ran_before_ns;
+  message.latency_ns = context.latency_ns;
   happened_.add(io::Kind::function_call, call.number, now, message);
 }
 
-void Watch::leave_context() {
-  const Context left = contexts_.back();
-  const std::size_t depth = contexts_.size() - 1;
-  for (std::size_t i = calls_.size(); i-- > 0;) {
-    if (calls_[i].depth == depth) finish(i, left.left_ns);
-  }
-  contexts_.pop_back();
-  contexts_.back().preempted_ns += left.left_ns - left.entered_ns;
-}
-
-void Watch::settle(std::uint32_t exception) {
-  while (contexts_.size() > 1 && contexts_.back().exception != exception) leave_context();
-}
-
 void Watch::enter_function(std::uint16_t number, const CoreState& core) {
-  settle(core.exception);
-  const std::uint32_t to = core.lr >= kExcReturn ? core.lr : core.lr & ~1u;
-  for (std::size_t i = calls_.size(); i-- > 0;) {  // one that never came back (longjmp)
-    if (calls_[i].return_address == to && calls_[i].sp == core.sp && calls_[i].number == number) {
-      calls_.erase(calls_.begin() + static_cast<std::ptrdiff_t>(i));
-    }
-  }
-  if (calls_.size() == kDeepest) calls_.erase(calls_.begin());
-  const Context& context = contexts_.back();
-  calls_.push_back({number, to, core.sp, contexts_.size() - 1, core.now, context.preempted_ns,
-                    context.latency_ns});
+  see(core);
+  Context& context = running();
+  const Call call{number, return_address(core.lr), core.sp, core.now, context.ran_ns, loads_};
+  const auto known = std::find_if(context.calls.begin(), context.calls.end(), [&](const Call& c) {
+    return c.return_address == call.return_address && c.sp == call.sp && c.number == number;
+  });
+  if (known != context.calls.end() && known->loads_before == loads_) return;
+  if (known != context.calls.end()) context.calls.erase(known);
+  if (context.calls.size() == kDeepest) context.calls.erase(context.calls.begin());
+  context.calls.push_back(call);
 }
 
 void Watch::return_site(std::uint32_t address, const CoreState& core) {
-  if (calls_.empty()) return;
-  settle(core.exception);
-  for (std::size_t i = calls_.size(); i-- > 0;) {
-    if (calls_[i].return_address == address && calls_[i].sp == core.sp) finish(i, core.now);
+  see(core);
+  Context& context = running();
+  for (std::size_t i = context.calls.size(); i-- > 0;) {
+    const Call call = context.calls[i];
+    if (call.return_address != address || call.sp != core.sp) continue;
+    context.calls.erase(context.calls.begin() + static_cast<std::ptrdiff_t>(i));
+    finish(context, call, core.now);
   }
 }
 
-void Watch::may_leave_exception(Nanoseconds after) {
-  contexts_.back().left_ns = after;
-  contexts_.back().may_be_left = true;
+void Watch::stack_pointer_loads(const CoreState& core, bool may_be_new) {
+  see(core);
+  load_ = may_be_new ? Load::from_memory : Load::by_move;
+  loaded_ns_ = core.now;
+  ++loads_;
 }
 
-bool Watch::enter_exception(std::uint32_t preempted, const CoreState& core) {
-  const Context& top = contexts_.back();
-  if (top.exception == core.exception && top.sp == core.sp && !top.may_be_left) return false;
-  settle(preempted);
-  contexts_.push_back({core.exception, core.now, core.now, 0, take_latency(core), core.sp, false});
+bool Watch::exception(const CoreState& before, const CoreState& after) {
+  see(before);
+  if (before.exception() != 0 && before.pc >= (kExcReturn & ~1u)) {
+    leave(before.now);
+    return arrive(after);
+  }
+  if (after.exception() == before.exception()) return false;  // none was taken
+  if (handlers_.empty()) stacks_.interrupted(before.sp, frame_of(before, after));
+  enter(after);
   return true;
 }
 
+void Watch::enter(const CoreState& core) {
+  handlers_.push_back({core.exception(), 0, take_latency(core), {}});
+}
+
+void Watch::leave(Nanoseconds now) {
+  if (handlers_.empty()) return;
+  const Context& left = handlers_.back();
+  for (std::size_t i = left.calls.size(); i-- > 0;) finish(left, left.calls[i], now);
+  handlers_.pop_back();
+}
+
+// Behind an exception that was left: the handler or the task below, or the next exception at once.
+bool Watch::arrive(const CoreState& after) {
+  const auto active = std::find_if(handlers_.rbegin(), handlers_.rend(), [&](const Context& c) {
+    return c.exception == after.exception();
+  });
+  if (after.exception() != 0 && active == handlers_.rend()) {
+    enter(after);
+    return true;
+  }
+  while (!handlers_.empty() && handlers_.back().exception != after.exception()) leave(after.now);
+  if (handlers_.empty()) stacks_.resumed(after.sp);
+  return false;
+}
+
 Nanoseconds Watch::take_latency(const CoreState& core) {
-  if (core.exception >= kExceptions || raised_ns_[core.exception] < 0) return -1;
-  Nanoseconds& raised_ns = raised_ns_[core.exception];
-  happened_.add(io::Kind::interrupt_latency, static_cast<std::uint16_t>(core.exception), core.now,
+  const std::uint32_t exception = core.exception();
+  if (exception >= kExceptions || raised_ns_[exception] < 0) return -1;
+  Nanoseconds& raised_ns = raised_ns_[exception];
+  happened_.add(io::Kind::interrupt_latency, static_cast<std::uint16_t>(exception), core.now,
                 io::InterruptLatency{raised_ns});
   return core.now - std::exchange(raised_ns, -1);
 }

@@ -1,18 +1,19 @@
-// Watches an image that knows nothing of it: functions, exceptions and their latency, from a few
-// instrumented instructions.
+// Watches an image that knows nothing of it: functions, exceptions and their latency, the stacks of its
+// tasks.
 //
 //   In        told by the plug-in: entry of a watched function, arrival at an address to which one
-//             returns, first instruction of an exception handler, an instruction that may leave one
+//             returns, every exception taken and left as the core does it, every instruction of
+//             thread mode that loads the stack pointer
+//   Contexts  each active exception, and in thread mode each stack (stacks.hpp): time counts for the
+//             one that runs, so execution of a call is what its own context ran meanwhile
 //   Returns   a call ends where its link register said, with the stack pointer of its entry; a tail
 //             call counts for the caller. A handler's own call ends with the handler.
-//   Execution of a call: its time less that of the exceptions that came on top of it
 //   Latency   of an exception: from the request of its line to the first instruction of its handler,
 //             without the twelve cycles that the core itself takes to stack; it goes with each call
 //             that the handler makes
-//   Leaving   the last instruction that could leave a handler is the one that did: known when
-//             anything happens in another context
-//   Loops     a handler that jumps to its own first instruction ("b .") has not been entered again
-//   Left out  tasks switched by an RTOS: execution of a call then includes the other tasks'
+//   Again     a function that comes to its first instruction a second time, with the link register and
+//             stack pointer of a call that is open, goes on with that call; after a load of the
+//             stack pointer (longjmp) it is a new one
 #pragma once
 #include <array>
 #include <cstdint>
@@ -20,56 +21,69 @@
 
 #include "io_bridges/devices/event_queue.hpp"
 #include "io_bridges/link/messages.hpp"
+#include "io_bridges/qemu/board/stacks.hpp"
 
 namespace whirl::board {
 
 using io::Nanoseconds;
 
-// The core as of the start of a basic block.
+// The core between two instructions.
 struct CoreState {
   Nanoseconds now = 0;
-  std::uint32_t exception = 0;  // IPSR: 0 in thread mode
-  std::uint32_t sp = 0, lr = 0;
+  std::uint32_t xpsr = 0;
+  std::uint32_t sp = 0, lr = 0, pc = 0;
+  std::uint32_t exception() const { return xpsr & 0x1FFu; }  // IPSR: 0 in thread mode
 };
 
 class Watch {
  public:
-  explicit Watch(io::Batch& happened) : happened_(happened) { contexts_.push_back({}); }
+  Watch(io::Batch& happened, Peek peek) : happened_(happened), stacks_(std::move(peek)) {}
 
   void enter_function(std::uint16_t number, const CoreState& core);
   void return_site(std::uint32_t address, const CoreState& core);
-  // `preempted` is the exception number in the stacked xPSR. False: it was not an entry.
-  bool enter_exception(std::uint32_t preempted, const CoreState& core);
-  void may_leave_exception(Nanoseconds after);
+  // Thread mode is about to load its stack pointer; `core` is as of the start of that basic block.
+  void stack_pointer_loads(const CoreState& core, bool may_be_new);
+  // The core took or left an exception. True: it took one, maybe behind the one that it left.
+  bool exception(const CoreState& before, const CoreState& after);
 
   void line_changed(std::uint32_t exception, bool level, Nanoseconds now);
   void core_was_reset();
 
+  const Stacks& stacks() const { return stacks_; }
+
  private:
   static constexpr std::size_t kExceptions = 256, kDeepest = 64;
-  struct Context {
-    std::uint32_t exception = 0;
-    Nanoseconds entered_ns = 0, left_ns = 0;
-    Nanoseconds preempted_ns = 0;  // by what came on top
-    Nanoseconds latency_ns = -1;   // of its entry; -1: not known
-    std::uint32_t sp = 0;          // at entry
-    bool may_be_left = false;
-  };
   struct Call {
     std::uint16_t number = 0;
     std::uint32_t return_address = 0, sp = 0;
-    std::size_t depth = 0;  // of its context
-    Nanoseconds entry_ns = 0, preempted_before_ns = 0, latency_ns = -1;
+    Nanoseconds entry_ns = 0, ran_before_ns = 0;
+    std::uint64_t loads_before = 0;
   };
+  struct Context {
+    std::uint32_t exception = 0;
+    Nanoseconds ran_ns = 0;
+    Nanoseconds latency_ns = -1;  // of its entry; -1: not known
+    std::vector<Call> calls;
+  };
+  enum class Load : std::uint8_t { none, by_move, from_memory };
 
-  void settle(std::uint32_t exception);  // drops the contexts that have been left
-  void leave_context();
+  Context& running();
+  void run_until(Nanoseconds now);  // counts for the running context
+  void see(const CoreState& core);
+  void enter(const CoreState& core);
+  void leave(Nanoseconds now);
+  bool arrive(const CoreState& after);
   Nanoseconds take_latency(const CoreState& core);  // and tells it; -1: not known
-  void finish(std::size_t call, Nanoseconds now);
+  void finish(const Context& context, const Call& call, Nanoseconds now);
 
   io::Batch& happened_;
-  std::vector<Context> contexts_;
-  std::vector<Call> calls_;
+  Stacks stacks_;
+  std::vector<Context> tasks_;     // by number of their stack
+  std::vector<Context> handlers_;  // active exceptions, the running one last
+  Nanoseconds counted_until_ns_ = 0;
+  Load load_ = Load::none;  // of the stack pointer, not yet seen where to
+  Nanoseconds loaded_ns_ = 0;
+  std::uint64_t loads_ = 0;
   std::array<Nanoseconds, kExceptions> raised_ns_ = filled();
   static std::array<Nanoseconds, kExceptions> filled();
 };

@@ -1,18 +1,14 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "io_bridges/qemu/plugin/instruments.hpp"
 
-#include <algorithm>
-#include <array>
 #include <cstring>
 
 namespace whirl::qemu {
 namespace {
 
-constexpr int kSp = 13, kLr = 14, kXpsr = 25;
+constexpr int kXpsr = 25;
 constexpr std::uint32_t kIpsr = 0x1FF;
 constexpr std::uint32_t kExcReturn = 0xFFFFFFE0u;
-constexpr std::size_t kVectors = 16 + 82;
-constexpr std::uint32_t kStackedXpsr = 28;  // offset in the exception frame
 
 struct Code {
   std::uint16_t first = 0, second = 0;
@@ -34,12 +30,19 @@ bool is_wfi(const Code& code) {
   return !code.wide && code.first == 0xBF30;
 }
 
-// Instructions that may load EXC_RETURN into PC (ARMv7-M ARM B1.5.8): BX, POP, LDM, LDR.
-bool may_return(const Code& code) {
-  if (!code.wide) return (code.first & 0xFF87) == 0x4700 || (code.first & 0xFF00) == 0xBD00;
-  const bool ldm = (code.first & 0xFFD0) == 0xE890 || (code.first & 0xFFD0) == 0xE910;
-  if (ldm) return (code.second & 0x8000) != 0;
-  return (code.first & 0xFF70) == 0xF850 && (code.second >> 12) == 15;
+// MOV SP, Rm: ARMv7-M ARM A7.7.77.
+bool moves_to_sp(const Code& code) {
+  if (!code.wide) return (code.first & 0xFF87) == 0x4685;
+  return code.first == 0xEA4F && (code.second & 0xFFF0) == 0x0D00;
+}
+
+// LDR SP, [..] (A7.7.43 to 45), MSR of MSP, PSP or CONTROL (B5.2.3).
+bool loads_sp(const Code& code) {
+  if (!code.wide) return false;
+  const bool ldr = (code.first & 0xFF70) == 0xF850 && (code.second >> 12) == 13;
+  const int special = code.second & 0xFF;
+  const bool msr = (code.first & 0xFFF0) == 0xF380 && (code.second & 0xFF00) == 0x8800;
+  return ldr || (msr && (special == 8 || special == 9 || special == 20));
 }
 
 }  // namespace
@@ -53,20 +56,10 @@ Instruments::Instruments(Machine& machine) : machine_(machine) {
   }
 }
 
-bool Instruments::is_handler(std::uint32_t address) const {
-  std::array<std::uint32_t, kVectors> table{};
-  const std::uint32_t base = machine_.system_control().vector_table();
-  if (!machine_.look(base, table.data(), sizeof table)) return false;
-  return std::any_of(table.begin() + 2, table.end(),
-                     [&](std::uint32_t entry) { return (entry & ~1u) == address; });
-}
-
 void Instruments::translated(qemu_plugin_tb* block) {
   const std::size_t length = qemu_plugin_tb_n_insns(block);
   const auto start = static_cast<std::uint32_t>(qemu_plugin_tb_vaddr(block));
   qemu_plugin_register_vcpu_tb_exec_inline(block, 0, &machine_.timeline().instructions, length);
-  machine_.note_block(start, static_cast<std::uint32_t>(qemu_plugin_insn_vaddr(
-                                 qemu_plugin_tb_get_insn(block, length - 1))));
   handler_mode_ = (machine_.core_register(kXpsr) & kIpsr) != 0;
   put_block_start(qemu_plugin_tb_get_insn(block, 0), start, static_cast<std::uint32_t>(length));
   for (std::size_t i = 0; i < length; ++i) {
@@ -76,7 +69,6 @@ void Instruments::translated(qemu_plugin_tb* block) {
 
 void Instruments::put_block_start(qemu_plugin_insn* insn, std::uint32_t address,
                                   std::uint32_t length) {
-  if (handler_mode_ && is_handler(address)) put(insn, {this, Kind::handler, 0, address, length});
   if (return_sites_.count(address) != 0) {
     put(insn, {this, Kind::return_site, 0, address, length});
   }
@@ -89,7 +81,9 @@ void Instruments::put_block_start(qemu_plugin_insn* insn, std::uint32_t address,
 void Instruments::put_instruction(qemu_plugin_insn* insn, std::uint32_t behind) {
   const Code code = code_of(insn);
   if (is_wfi(code)) put(insn, {this, Kind::sleep, 0, 0, behind});
-  if (handler_mode_ && may_return(code)) put(insn, {this, Kind::handler_exit, 0, 0, behind});
+  if (handler_mode_) return;  // where a handler leaves its thread is seen at its return
+  if (loads_sp(code)) put(insn, {this, Kind::stack_load, 0, 0, behind});
+  if (moves_to_sp(code)) put(insn, {this, Kind::stack_move, 0, 0, behind});
 }
 
 void Instruments::put(qemu_plugin_insn* insn, const Site& site) {
@@ -104,8 +98,7 @@ void Instruments::put(qemu_plugin_insn* insn, const Site& site) {
 }
 
 board::CoreState Instruments::core_at(const Site& site) const {
-  return {machine_.timeline().at(site.behind), machine_.core_register(kXpsr) & kIpsr,
-          machine_.core_register(kSp), machine_.core_register(kLr)};
+  return machine_.core_at(machine_.timeline().at(site.behind));
 }
 
 void Instruments::reached(const Site& site) {
@@ -116,10 +109,10 @@ void Instruments::reached(const Site& site) {
       return enter_function(site);
     case Kind::return_site:
       return machine_.board().watch().return_site(site.address, core_at(site));
-    case Kind::handler:
-      return enter_handler(site);
-    case Kind::handler_exit:
-      return machine_.board().watch().may_leave_exception(machine_.timeline().at(site.behind - 1));
+    case Kind::stack_load:
+    case Kind::stack_move:
+      return machine_.board().watch().stack_pointer_loads(core_at(site),
+                                                          site.kind == Kind::stack_load);
   }
 }
 
@@ -128,16 +121,6 @@ void Instruments::enter_function(const Site& site) {
   machine_.board().watch().enter_function(site.number, core);
   if (core.lr >= kExcReturn) return;
   if (return_sites_.insert(core.lr & ~1u).second) machine_.throw_code_away();
-}
-
-void Instruments::enter_handler(const Site& site) {
-  const board::CoreState core = core_at(site);
-  if (core.lr < kExcReturn) return;  // an ordinary call of that function
-  const std::uint32_t frame = (core.lr & 4u) != 0 ? machine_.process_stack_pointer() : core.sp;
-  std::uint32_t xpsr = 0;
-  machine_.look(frame + kStackedXpsr, &xpsr, sizeof xpsr);
-  machine_.board().exception_entered(xpsr & kIpsr, frame, core,
-                                     [this](int number) { return machine_.core_register(number); });
 }
 
 }  // namespace whirl::qemu

@@ -6,8 +6,7 @@
 //   WFI               exact sleep (machine.hpp)
 //   Watched function  its first instruction; and the addresses to which it returns, learned at run
 //                     time: a new one throws all translated code away once, so that it is seen
-//   Handlers          first instruction (any address in the vector table, reached with EXC_RETURN
-//                     in LR), and in handler mode every instruction that may return
+//   Stack pointer     in thread mode every instruction that loads it: MSR, LDR and MOV
 //   Cost              a call of about 10 ns at each of these; nothing elsewhere
 #pragma once
 #include <cstdint>
@@ -30,7 +29,7 @@ class Instruments {
   void code_thrown_away() { sites_.clear(); }
 
  private:
-  enum class Kind : std::uint8_t { sleep, function, return_site, handler, handler_exit };
+  enum class Kind : std::uint8_t { sleep, function, return_site, stack_load, stack_move };
   struct Site {
     Instruments* owner;
     Kind kind;
@@ -44,9 +43,7 @@ class Instruments {
   void put_instruction(qemu_plugin_insn* insn, std::uint32_t behind);
   void reached(const Site& site);
   void enter_function(const Site& site);
-  void enter_handler(const Site& site);
   board::CoreState core_at(const Site& site) const;
-  bool is_handler(std::uint32_t address) const;
 
   Machine& machine_;
   std::multimap<std::uint32_t, std::uint16_t> functions_;  // address, watch number

@@ -8,11 +8,13 @@
 #include <cstring>
 #include <utility>
 
+#include "io_bridges/qemu/plugin/exception_hook.hpp"
+
 namespace whirl::qemu {
 namespace {
 
 constexpr int kSysTickException = 15;
-constexpr int kCoreRegisters = 16;
+constexpr int kCoreRegisters = 16, kSp = 13, kLr = 14, kPc = 15, kXpsr = 25;
 constexpr int kRounds = 64;  // of a sleep before other work of the CPU's thread gets a turn
 
 }  // namespace
@@ -49,9 +51,13 @@ Result<Done> Machine::build(const std::string& versions) {
     return whirl::Error{ErrorKind::internal, "QEMU", "the core's registers are not side by side",
                         ""};
   }
+  if (const auto hooked = hook_exceptions(api_, cpu_, [this] { take_exception(); }); !hooked) {
+    return hooked.error();
+  }
   system_control_ = std::make_unique<SystemControl>(
       api_, board_, reinterpret_cast<MemoryRegion*>(registers),
-      [this] { reset_core(stm32::ResetCause::software); }, [this] { anchor(); });
+      [this] { reset_core(stm32::ResetCause::software); },
+      [this](std::uint32_t address) { accessed(address); });
   api_.timer_init_full(
       &timer_, nullptr, kVirtualClock, 1, 0,
       [](void* self) { static_cast<Machine*>(self)->on_timer(); }, this);
@@ -139,6 +145,19 @@ std::uint32_t Machine::core_register(int number) const {
   return value;
 }
 
+board::CoreState Machine::core_at(io::Nanoseconds now) const {
+  return {now, core_register(kXpsr), core_register(kSp), core_register(kLr), core_register(kPc)};
+}
+
+// Between two instructions, with all registers in place and QEMU's clock readable.
+void Machine::take_exception() {
+  anchor();
+  const board::CoreState before = core_at(timeline_.anchor_ns);
+  api_.arm_v7m_cpu_do_interrupt(cpu_);
+  board_.exception(before, core_at(timeline_.anchor_ns),
+                   [this](int number) { return core_register(number); });
+}
+
 // QEMU's CPU keeps R0 to R15 side by side. Where, is found by writing a pattern the official way.
 bool Machine::find_registers() {
   constexpr int kMarked = 13;
@@ -156,26 +175,7 @@ bool Machine::find_registers() {
     api_.arm_cpu_gdb_write_register(cpu_, reinterpret_cast<std::uint8_t*>(&zero), i);
   }
   core_registers_ = found == last ? nullptr : found;
-  core_end_ = last;
   return core_registers_ != nullptr;
-}
-
-// Where QEMU keeps the stack pointer that is not in use is learned the first time that it matters:
-// it is the word that points at a frame which holds what R0-R3 and R12 still hold.
-std::uint32_t Machine::process_stack_pointer() {
-  if (other_sp_ != nullptr) return *other_sp_;
-  const std::uint32_t* r = core_registers_;
-  const std::array<std::uint32_t, 5> stacked = {r[0], r[1], r[2], r[3], r[12]};
-  for (const std::uint32_t* word = r + kCoreRegisters; word < core_end_; ++word) {
-    std::array<std::uint32_t, 8> frame{};
-    if ((*word & 3u) != 0 || *word < board_.part().ccm.base || *word >= 0x40000000u) continue;
-    if (!peek(*word, frame.data(), sizeof frame)) continue;
-    const bool thumb = (frame[7] & (1u << 24)) != 0 && (frame[7] & 0x1FFu) == 0;
-    if (!thumb || !std::equal(stacked.begin(), stacked.end(), frame.begin())) continue;
-    other_sp_ = word;
-    return *word;
-  }
-  return 0;
 }
 
 io::Nanoseconds Machine::slept_ns() const {
@@ -190,7 +190,11 @@ void Machine::on_timer() {
 }
 
 std::uint32_t Machine::accessing_pc() const {
-  return core_register(15);
+  return core_register(kPc);
+}
+
+void Machine::core_stopped(board::StoppedCore why) {
+  board_.core_stopped(why, timeline_.at(0), [this](int number) { return core_register(number); });
 }
 
 void Machine::end() {

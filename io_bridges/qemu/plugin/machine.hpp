@@ -17,7 +17,6 @@
 #include <chrono>
 #include <memory>
 #include <string>
-#include <unordered_map>
 #include <vector>
 
 #include "io_bridges/qemu/board/board.hpp"
@@ -43,12 +42,15 @@ class Machine final : public board::Emulator {
   SystemControl& system_control() { return *system_control_; }
   // R0..R15 (0..15) and XPSR (25) as of the start of the current basic block.
   std::uint32_t core_register(int number) const;
-  std::uint32_t process_stack_pointer();  // in handler mode; 0: not found
+  board::CoreState core_at(io::Nanoseconds now) const;
+
+  // The core cannot go on, by the firmware's doing. Ends the process.
+  [[noreturn]] void core_stopped(board::StoppedCore why);
+  // The core reaches for what is no memory.
+  void accessed(std::uint32_t address);
 
   // For the instruments.
   Timeline& timeline() { return timeline_; }
-  bool look(std::uint32_t address, void* to, std::size_t size) { return peek(address, to, size); }
-  void note_block(std::uint32_t start, std::uint32_t last) { last_in_block_[start] = last; }
   void throw_code_away() { api_.tb_flush(cpu_); }
 
   io::Nanoseconds now() const override {
@@ -72,11 +74,13 @@ class Machine final : public board::Emulator {
   struct Window {
     Machine* machine;
     stm32::Peripheral* block;
+    std::uint32_t base;
   };
   static std::uint64_t read_window(void* window, hwaddr offset, unsigned size);
   static void write_window(void* window, hwaddr offset, std::uint64_t value, unsigned size);
   void anchor() { timeline_.anchor(now()); }
   void on_timer();
+  void take_exception();
   bool find_registers();
   MemoryRegion& new_region();
   void map_block(MemoryRegion* parent, const stm32::Region& block, int priority);
@@ -115,9 +119,6 @@ class Machine final : public board::Emulator {
   Timer timer_;
   Timeline timeline_;
   const std::uint32_t* core_registers_ = nullptr;  // R0..R15 in QEMU's CPU; its env begins there
-  const std::uint32_t* core_end_ = nullptr;
-  const std::uint32_t* other_sp_ = nullptr;
-  std::unordered_map<std::uint32_t, std::uint32_t> last_in_block_;
   io::Nanoseconds slept_ns_ = 0, asleep_since_ns_ = -1, sleep_now_ns_ = 0;
   std::chrono::steady_clock::time_point gave_way_{};  // host's clock: moves nothing in the guest
   std::vector<Deferred> deferred_;                    // in order

@@ -13,6 +13,7 @@ namespace {
 // Over the machine (0), under nothing: gaps first, then blocks.
 constexpr int kGaps = 5, kBlocks = 10, kMemories = 10;
 constexpr std::size_t kHostPage = 4096;
+constexpr int kSp = 13;
 using board::kUntouched;  // RAM is not 0 at power-up; the stack watch counts on it
 
 bool nobody_answers(void*, hwaddr, unsigned, bool, Attributes) {
@@ -33,8 +34,10 @@ std::uint64_t read_flash(void*, hwaddr, unsigned) {
 
 std::uint32_t store_into_flash(void* self, hwaddr offset, std::uint64_t value, unsigned size,
                                Attributes) {
-  auto& board = *static_cast<board::Board*>(self);
+  auto& machine = *static_cast<Machine*>(self);
+  board::Board& board = machine.board();
   const auto address = board.part().flash.base + static_cast<std::uint32_t>(offset);
+  machine.accessed(address);
   return board.flash_store(address, size, static_cast<std::uint32_t>(value)) ? kOk : kBusError;
 }
 
@@ -44,15 +47,26 @@ const RegionOps kFlashOps = {read_flash,       nullptr,       nullptr,
 
 }  // namespace
 
+// No register may be a place on the stack. An exception's frame that would go there must be stopped
+// before the clock is read: in the middle of an exception's entry QEMU has none, and gives up.
+void Machine::accessed(std::uint32_t address) {
+  constexpr std::uint32_t kFrame = 0x6C;  // the largest: with floating point, aligned
+  const std::uint32_t sp = core_registers_[kSp];
+  if (address - (sp - kFrame) < 2 * kFrame) {
+    core_stopped(board::StoppedCore::frame_among_registers);
+  }
+  anchor();
+}
+
 std::uint64_t Machine::read_window(void* window, hwaddr offset, unsigned size) {
-  auto& [machine, block] = *static_cast<Window*>(window);
-  machine->anchor();
+  auto& [machine, block, base] = *static_cast<Window*>(window);
+  machine->accessed(base + static_cast<std::uint32_t>(offset));
   return block->read(static_cast<std::uint32_t>(offset), size);
 }
 
 void Machine::write_window(void* window, hwaddr offset, std::uint64_t value, unsigned size) {
-  auto& [machine, block] = *static_cast<Window*>(window);
-  machine->anchor();
+  auto& [machine, block, base] = *static_cast<Window*>(window);
+  machine->accessed(base + static_cast<std::uint32_t>(offset));
   block->write(static_cast<std::uint32_t>(offset), static_cast<std::uint32_t>(value), size);
 }
 
@@ -66,7 +80,7 @@ void Machine::map_block(MemoryRegion* parent, const stm32::Region& block, int pr
   static const RegionOps kOps = {read_window,   write_window,           nullptr,      nullptr,
                                  kLittleEndian, {1, 4, false, nullptr}, {1, 4, false}};
   MemoryRegion& region = new_region();
-  windows_.push_back(std::make_unique<Window>(Window{this, block.block}));
+  windows_.push_back(std::make_unique<Window>(Window{this, block.block, block.base}));
   api_.memory_region_init_io(&region, nullptr, &kOps, windows_.back().get(), block.block->name(),
                              block.size);
   api_.memory_region_add_subregion_overlap(parent, block.base, &region, priority);
@@ -94,11 +108,15 @@ void Machine::map_memories() {
   MemoryRegion* system = api_.get_system_memory();
 
   MemoryRegion& flash = new_region();
-  api_.memory_region_init_rom_device_nomigrate(&flash, nullptr, &kFlashOps, &board_, "whirl.flash",
+  api_.memory_region_init_rom_device_nomigrate(&flash, nullptr, &kFlashOps, this, "whirl.flash",
                                                part.flash.size, nullptr);
   api_.memory_region_add_subregion_overlap(system, part.flash.base, &flash, kMemories);
   MemoryRegion& alias = new_region();
-  api_.memory_region_init_alias(&alias, nullptr, "whirl.boot", &flash, 0, part.flash.size);
+  // A start behind the start of flash: as a boot loader leaves the core that is not there.
+  const std::uint32_t start = board_.config().start;
+  const std::uint32_t skipped = start != 0 ? start - part.flash.base : 0;
+  const std::uint32_t aliased = part.flash.size - skipped;
+  api_.memory_region_init_alias(&alias, nullptr, "whirl.boot", &flash, skipped, aliased);
   api_.memory_region_add_subregion_overlap(system, 0, &alias, kMemories);
 
   MemoryRegion& rom = new_region();
@@ -110,7 +128,7 @@ void Machine::map_memories() {
 
   bar(part.sram.base + part.sram.size, part.machine_sram.base + part.machine_sram.size);
   bar(part.flash.base + part.flash.size, part.machine_flash.base + part.machine_flash.size);
-  bar(part.flash.size, part.machine_flash.size);  // its alias at 0
+  bar(aliased, part.machine_flash.size);  // its alias at 0
 
   map_block(system, board_.unanswered_region(), kGaps);
   for (const stm32::Region& block : board_.regions()) map_block(system, block, kBlocks);

@@ -9,11 +9,14 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <exception>
 #include <memory>
+#include <new>
 #include <optional>
 
 #include "io_bridges/qemu/plugin/instruments.hpp"
@@ -87,12 +90,65 @@ Result<std::string> check_qemu(const Api& api, const std::vector<std::string>& m
   _exit(1);
 }
 
-// QEMU aborts when the core locks up (a fault within HardFault or NMI).
-void on_abort(int) {
+[[noreturn]] void refuse_as(ErrorKind kind, const std::string& what) {
+  plugin->machine->board().refuse({kind, "virtual board", what, ""});
+}
+
+// The end of what QEMU has written: its standard error is a file of the harness.
+std::string last_words() {
+  struct stat status {};
+  if (fstat(STDERR_FILENO, &status) != 0 || !S_ISREG(status.st_mode)) return "";
+  constexpr off_t kTail = 8192;
+  const off_t size = std::min(status.st_size, kTail);
+  std::string text(static_cast<std::size_t>(size), '\0');
+  const ssize_t got = pread(STDERR_FILENO, text.data(), text.size(), status.st_size - size);
+  text.resize(got < 0 ? 0 : static_cast<std::size_t>(got));
+  return text;
+}
+
+// Who ended this process? The core's lock-up (a fault within HardFault or NMI) is told by the words
+// with which QEMU gives up; another process by the signal; all else is a bug in it or in us.
+void on_abort(int, siginfo_t* info, void*) {
   std::signal(SIGABRT, SIG_DFL);
-  Machine& machine = *plugin->machine;
-  machine.board().core_locked_up(machine.timeline().at(0),
-                                 [&](int number) { return machine.core_register(number); });
+  const std::string words = last_words();
+  if (words.find("qemu: fatal: Lockup: ") != std::string::npos) {
+    plugin->machine->core_stopped(board::StoppedCore::locked_up);
+  }
+  if (info->si_code == SI_USER && info->si_pid != getpid()) {
+    refuse_as(ErrorKind::host, "process " + std::to_string(info->si_pid) + " aborted QEMU");
+  }
+  refuse_as(ErrorKind::internal, "QEMU aborted; its last words:\n" + words);
+}
+
+void on_uncaught() {
+  try {
+    std::rethrow_exception(std::current_exception());
+  } catch (const std::bad_alloc&) {
+    refuse_as(ErrorKind::host, "out of memory");
+  } catch (const std::exception& exception) {
+    refuse_as(ErrorKind::internal, std::string("uncaught exception: ") + exception.what());
+  } catch (...) {
+    refuse_as(ErrorKind::internal, "uncaught exception");
+  }
+}
+
+// QEMU cannot tell the time while the core enters or leaves an exception, and gives up when a frame or
+// a vector is then found among registers. Machine refuses what it can see coming; this is the rest:
+// the process stack, and vectors.
+void on_exit() {
+  if (last_words().find("Bad icount read") == std::string::npos) return;
+  plugin->machine->core_stopped(board::StoppedCore::frame_among_registers);
+}
+
+void name_every_end() {
+  base::set_check_handler(
+      [](const std::string& message) { refuse_as(ErrorKind::internal, message); });
+  std::set_terminate(on_uncaught);
+  std::atexit(on_exit);
+  struct sigaction action {};
+  action.sa_sigaction = on_abort;
+  action.sa_flags = SA_SIGINFO;
+  sigaction(SIGABRT, &action, nullptr);
 }
 
 int install(qemu_plugin_id_t id, const Options& options) {
@@ -111,10 +167,10 @@ int install(qemu_plugin_id_t id, const Options& options) {
   plugin->machine =
       std::make_unique<Machine>(plugin->api, std::move(setup.value()), std::move(channel));
   plugin->board_exists.notify = [](Notifier*, void*) {
+    name_every_end();
     const auto built = plugin->machine->build(plugin->versions);
     if (!built) plugin->machine->board().refuse(built.error());
     plugin->instruments = std::make_unique<Instruments>(*plugin->machine);
-    std::signal(SIGABRT, on_abort);
   };
   plugin->api.qemu_add_machine_init_done_notifier(&plugin->board_exists);
   qemu_plugin_register_vcpu_tb_trans_cb(

@@ -100,6 +100,8 @@ constexpr unsigned kWord = 2;     // MO_32, little endian
   F(object_resolve_path_component, Object*, (Object*, const char*))                                \
   F(qdev_get_gpio_in, Irq*, (Object*, int))                                                        \
   F(qemu_set_irq, void, (Irq*, int))                                                               \
+  F(object_get_class, void*, (void*))                                                              \
+  F(arm_v7m_cpu_do_interrupt, void, (Cpu*))                                                        \
   F(armv7m_nvic_set_pending, void, (void*, int, bool))                                             \
   F(qemu_clock_get_ns, std::int64_t, (int))                                                        \
   F(qemu_clock_run_timers, bool, (int))                                                            \

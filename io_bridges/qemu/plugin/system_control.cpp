@@ -5,9 +5,10 @@ namespace whirl::qemu {
 namespace {
 
 // Offsets from 0xE000E000, ARMv7-M ARM B3.2.2.
+constexpr std::uint32_t kBase = 0xE000E000;
 constexpr std::uint32_t kSysTick = 0x010, kSysTick_end = 0x020;
 constexpr std::uint32_t kIpr = 0x400, kIpr_end = 0x4F0;
-constexpr std::uint32_t kVtor = 0xD08, kAircr = 0xD0C, kShpr = 0xD18, kShpr_end = 0xD24;
+constexpr std::uint32_t kAircr = 0xD0C, kShpr = 0xD18, kShpr_end = 0xD24;
 constexpr std::uint32_t kDemcr = 0xDFC;
 constexpr std::uint32_t kTrcena = 1u << 24;
 constexpr std::uint32_t kVectKey = 0x05FA, kSysResetReq = 1u << 2;
@@ -24,7 +25,8 @@ unsigned memory_op(unsigned size) {
 }  // namespace
 
 SystemControl::SystemControl(const Api& api, board::Board& board, MemoryRegion* nvic,
-                             std::function<void()> reset_request, std::function<void()> accessed)
+                             std::function<void()> reset_request,
+                             std::function<void(std::uint32_t address)> accessed)
     : api_(api),
       board_(board),
       nvic_(nvic),
@@ -35,7 +37,7 @@ void SystemControl::map(MemoryRegion* parent, MemoryRegion& region) {
   static const RegionOps kOps = {
       nullptr, nullptr, read_hook, write_hook, kLittleEndian, {1, 4, true, nullptr}, {1, 4, true}};
   api_.memory_region_init_io(&region, nullptr, &kOps, this, "whirl.scs", 0x1000);
-  api_.memory_region_add_subregion_overlap(parent, 0xE000E000, &region, 20);
+  api_.memory_region_add_subregion_overlap(parent, kBase, &region, 20);
 }
 
 std::uint32_t SystemControl::read_hook(void* self, hwaddr offset, std::uint64_t* value,
@@ -52,7 +54,7 @@ std::uint32_t SystemControl::write_hook(void* self, hwaddr offset, std::uint64_t
 
 std::uint32_t SystemControl::read(std::uint32_t offset, std::uint64_t& value, unsigned size,
                                   Attributes attributes) {
-  accessed_();
+  accessed_(kBase + offset);
   if (offset >= kSysTick && offset < kSysTick_end) {
     value = board_.systick().read(offset - kSysTick, size);
     return kOk;
@@ -69,7 +71,7 @@ std::uint32_t SystemControl::read(std::uint32_t offset, std::uint64_t& value, un
 
 std::uint32_t SystemControl::write(std::uint32_t offset, std::uint64_t value, unsigned size,
                                    Attributes attributes) {
-  accessed_();
+  accessed_(kBase + offset);
   if (offset >= kSysTick && offset < kSysTick_end) {
     board_.systick().write(offset - kSysTick, static_cast<std::uint32_t>(value), size);
     return kOk;
@@ -84,10 +86,7 @@ std::uint32_t SystemControl::write(std::uint32_t offset, std::uint64_t value, un
     return kOk;
   }
   if (is_priority(offset)) value |= kStoredZero;
-  const std::uint32_t result =
-      api_.memory_region_dispatch_write(nvic_, offset, value, memory_op(size), attributes);
-  if (offset == kVtor) vector_table_ = word(kVtor);
-  return result;
+  return api_.memory_region_dispatch_write(nvic_, offset, value, memory_op(size), attributes);
 }
 
 std::uint32_t SystemControl::word(std::uint32_t offset) {
@@ -105,7 +104,6 @@ void SystemControl::core_was_reset() {
   clear(kIpr, kIpr_end);
   clear(kShpr, kShpr_end);
   demcr_ = 0;
-  vector_table_ = word(kVtor);
 }
 
 }  // namespace whirl::qemu

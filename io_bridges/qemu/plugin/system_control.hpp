@@ -19,12 +19,12 @@ namespace whirl::qemu {
 class SystemControl {
  public:
   SystemControl(const Api& api, board::Board& board, MemoryRegion* nvic,
-                std::function<void()> reset_request, std::function<void()> accessed);
+                std::function<void()> reset_request,
+                std::function<void(std::uint32_t address)> accessed);
 
   void map(MemoryRegion* parent, MemoryRegion& region);
   void core_was_reset();  // priorities back to the stored form of 0
 
-  std::uint32_t vector_table() const { return vector_table_; }
   std::uint32_t word(std::uint32_t offset);  // of QEMU's NVIC, from 0xE000E000
 
  private:
@@ -36,9 +36,9 @@ class SystemControl {
   const Api& api_;
   board::Board& board_;
   MemoryRegion* nvic_;
-  std::function<void()> reset_request_, accessed_;
+  std::function<void()> reset_request_;
+  std::function<void(std::uint32_t)> accessed_;
   std::uint32_t demcr_ = 0;
-  std::uint32_t vector_table_ = 0;
 };
 
 }  // namespace whirl::qemu

@@ -2,9 +2,9 @@
 //
 // What time it is in the middle of translated code, where QEMU's clock must not be read.
 //
-//   Method  each basic block adds its length to a counter in line, at its start; at every event and
-//           register access, where the clock is exact, clock and counter are taken down together
-//   Error   0, except between a memory fault in mid-block and the next event: up to a block's length
+//   Method  each basic block adds its length to a counter in line, at its start; at every event,
+//           exception and register access, where the clock is exact, clock and counter are taken
+//           down together
 #pragma once
 #include <cstdint>
 

@@ -42,6 +42,7 @@ struct ChipHost {
   io::FindingSink finding;
   double hse_Hz = 0.0;  // crystals of the board; 0: not fitted
   double lse_Hz = 0.0;
+  Nanoseconds hse_start_ns = 2'000'000;  // until the crystal swings
 };
 
 class ChipModel {
@@ -56,6 +57,12 @@ class ChipModel {
 
   virtual io::Wire* pin(std::string_view name) = 0;  // "PB0"; null: the part has no such pin
   virtual io::I2cBus* i2c(int number) = 0;           // null: the part has no such bus
+  // Solders two pins to the bus: they belong to its nets in every mode. Empty names: the one pair
+  // that the part has for it; true without effect where it has several, and the first that firmware
+  // muxes to the bus joins then. False: no such bus or pins.
+  virtual bool solder_i2c(int /*number*/, std::string_view /*scl*/, std::string_view /*sda*/) {
+    return false;
+  }
   virtual io::SpiBus* spi(int number) = 0;
   virtual bool join_uart(int number, io::UartPeer& peer) = 0;  // USARTn or UARTn
   // Volts at an analog input, asked for at each sampling instant.

@@ -24,6 +24,20 @@ io::I2cBus* Part::i2c(int number) {
   return it != i2cs_.end() ? &it->second->bus() : nullptr;
 }
 
+// I2C2 and I2C3 have one pair of pins on the parts with 48 and 64 pins; I2C1 can be remapped.
+bool Part::solder_i2c(int number, std::string_view scl, std::string_view sda) {
+  io::I2cBus* bus = i2c(number);
+  if (bus == nullptr) return false;
+  if (scl.empty() && sda.empty() && number == 1) return true;
+  if (scl.empty()) scl = number == 2 ? "PB10" : "PA8";
+  if (sda.empty()) sda = number == 2 ? "PB11" : "PC9";
+  Pin *clock = bank_.find(scl), *data = bank_.find(sda);
+  if (clock == nullptr || data == nullptr) return false;
+  clock->join(bus->scl(), host_.events.now());
+  data->join(bus->sda(), host_.events.now());
+  return true;
+}
+
 io::SpiBus* Part::spi(int number) {
   const auto it = spis_.find(number);
   return it != spis_.end() ? &it->second->bus() : nullptr;

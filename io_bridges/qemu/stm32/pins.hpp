@@ -2,7 +2,8 @@
 //
 //   Pin      one driver on its wire; GPIO tells it mode, output type, pull and which signals its
 //            alternate function selects. The wire may be replaced by the net of a bus (I2C): a pin
-//            that is muxed to a signal with a net joins that net for good, as if soldered to it
+//            that the board solders to it, or that is muxed to a signal with a net, joins that net
+//            for good
 //   Input    signals hear the pin in whatever mode carries them (F103: RX and captures hear input
 //            mode, too); they drive it in alternate mode only
 //   Signals  by name ("SPI1_SCK"), shared by GPIO and the peripherals

@@ -17,9 +17,10 @@ void ProbeStub::reset() {
 }
 
 void ProbeStub::report(std::uint32_t offset) {
-  if (!reported_.insert(offset).second || !chip_.finding) return;
+  if (reported_ || !chip_.finding) return;
+  reported_ = true;
   char text[64];
-  std::snprintf(text, sizeof text, "not modelled: touched at 0x%08X", base_ + offset);
+  std::snprintf(text, sizeof text, "not modelled: touched first at 0x%08X", base_ + offset);
   chip_.finding({chip_.events.now(), name_, text});
 }
 

@@ -1,11 +1,10 @@
 // A block that is not modelled but answers a driver which only probes: reset values of the manual,
 // plain storage where the manual has storage, request bits that fall back by themselves.
 //
-//   Finding  the first touch of each address, once: the firmware uses what nobody models
+//   Finding  its first touch, once: the firmware uses what nobody models
 #pragma once
 #include <initializer_list>
 #include <map>
-#include <set>
 #include <string>
 
 #include "io_bridges/qemu/stm32/peripheral.hpp"
@@ -40,7 +39,7 @@ class ProbeStub : public Peripheral {
   std::string name_;
   std::uint32_t base_;
   std::map<std::uint32_t, Cell> cells_;
-  std::set<std::uint32_t> reported_;
+  bool reported_ = false;
 };
 
 }  // namespace whirl::stm32

@@ -1,6 +1,7 @@
 #include "io_bridges/qemu/stm32/rcc.hpp"
 
 #include <cmath>
+#include <cstdio>
 
 namespace whirl::stm32 {
 namespace {
@@ -20,8 +21,16 @@ constexpr std::uint32_t LSION = 1u << 0, LSIRDY = 1u << 1, RMVF = 1u << 24, PINR
                         SFTRSTF = 1u << 28, IWDGRSTF = 1u << 29, WWDGRSTF = 1u << 30,
                         LPWRRSTF = 1u << 31;
 
-constexpr Nanoseconds kHsiStart_ns = 2'200, kHseStart_ns = 2'000'000, kPllLock_ns = 200'000,
-                      kLsiStart_ns = 30'000, kLseStart_ns = 2'000'000'000;
+constexpr Nanoseconds kHsiStart_ns = 2'200, kPllLock_ns = 200'000, kLsiStart_ns = 30'000,
+                      kLseStart_ns = 2'000'000'000;
+// Firmware that means to use its crystal does so soon after it is ready, and soon after reset.
+constexpr Nanoseconds kCrystal_idle_ns = 10'000'000, kReset_clock_ns = 100'000'000;
+
+std::string megahertz(double frequency_Hz) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g MHz", frequency_Hz * 1e-6);
+  return text;
+}
 
 // An internal reset pulls NRST too.
 std::uint32_t cause_bits(ResetCause cause, std::uint32_t power_on) {
@@ -57,6 +66,7 @@ Rcc::Rcc(const RccSetup& setup, const RccLayout& layout)
       layout_(layout),
       hse_Hz_(setup.hse_Hz),
       lse_Hz_(setup.lse_Hz),
+      hse_start_ns_(setup.hse_start_ns),
       events_(setup.events),
       interrupts_(setup.interrupts),
       finding_(setup.finding),
@@ -65,14 +75,19 @@ Rcc::Rcc(const RccSetup& setup, const RccLayout& layout)
       pll_ready_(events_, [this] { became_ready(CR, PLLRDY, PLLRDYF); }),
       plli2s_ready_(events_, [this] { became_ready(CR, PLLI2SRDY, PLLI2SRDYF); }),
       lsi_ready_(events_, [this] { became_ready(layout_.csr, LSIRDY, LSIRDYF); }),
-      lse_ready_(events_, [this] { became_ready(layout_.bdcr, LSERDY, LSERDYF); }) {}
+      lse_ready_(events_, [this] { became_ready(layout_.bdcr, LSERDY, LSERDYF); }),
+      crystal_unused_(events_, [this] { report_unused_crystal(); }),
+      still_reset_clock_(events_, [this] { report_reset_clock(); }) {}
 
 void Rcc::on_block_reset(std::uint32_t offset, std::uint32_t mask, std::function<void()> reset) {
   reset_lines_.push_back({offset, mask, std::move(reset)});
 }
 
 void Rcc::reset() {
-  for (io::Event* e : {&hsi_ready_, &hse_ready_, &pll_ready_, &plli2s_ready_}) e->cancel();
+  for (io::Event* e : {&hsi_ready_, &hse_ready_, &pll_ready_, &plli2s_ready_, &crystal_unused_}) {
+    e->cancel();
+  }
+  still_reset_clock_.in(kReset_clock_ns);
   const std::uint32_t backup = word(layout_.bdcr), status = word(layout_.csr);
   words_.fill(0);
   word(CR) = 0x8000 | 0x80 | HSION | HSIRDY;  // HSICAL is a factory value
@@ -135,10 +150,39 @@ void Rcc::write_cr(std::uint32_t value) {
   if ((before & CSSON) != 0) on |= CSSON;  // cleared by reset only (or by the failure itself)
   word(CR) = (before & (kCrReady | kHsiCal)) | on;
   start(hsi_ready_, kHsiStart_ns, CR, HSION, before, on, true);
-  start(hse_ready_, kHseStart_ns, CR, HSEON, before, on, hse_Hz_ > 0.0);
+  start(hse_ready_, hse_start_ns_, CR, HSEON, before, on, hse_Hz_ > 0.0);
   const bool locks = (on & ~before & PLLON) == 0 || pll_can_lock();
   start(pll_ready_, kPllLock_ns, CR, PLLON, before, on, locks);
   start(plli2s_ready_, kPllLock_ns, CR, PLLI2SON, before, on, true);
+  watch_crystal(before, on);
+}
+
+// Firmware that waits too shortly for its crystal goes on at the speed of HSI, and mostly says nothing.
+void Rcc::watch_crystal(std::uint32_t before, std::uint32_t after) {
+  if ((before & HSERDY) != 0) return;
+  const std::uint32_t rising = after & ~before;
+  if ((rising & HSEON) != 0 && hse_Hz_ <= 0.0) {
+    report_once(64, "HSE was switched on, but the board has no crystal: it will not become ready");
+  }
+  const bool off = (before & ~after & HSEON) != 0;
+  const bool without = (before & HSEON) != 0 && (rising & PLLON) != 0 && !pll_from_hse();
+  if (!off && !without) return;
+  report_once(128, std::string("the crystal was given up: ") +
+                       (off ? "HSE was switched off" : "the PLL was started from HSI") +
+                       " before HSE was ready, which takes " +
+                       std::to_string(hse_start_ns_ / 1000) + " us on this board");
+}
+
+void Rcc::report_unused_crystal() {
+  if ((word(CR) & HSERDY) == 0 || runs_from_hse()) return;
+  report_once(128, "the crystal was given up: HSE has been ready for 10 ms, but SYSCLK is " +
+                       megahertz(sysclk_Hz_) + " from HSI");
+}
+
+void Rcc::report_reset_clock() {
+  if (sws() != hsi) return;
+  report_once(256, "100 ms after its reset the core still runs from its reset clock, HSI of " +
+                       megahertz(layout_.hsi_Hz));
 }
 
 void Rcc::write_cfgr(std::uint32_t value) {
@@ -158,6 +202,7 @@ void Rcc::try_switch() {
 void Rcc::became_ready(std::uint32_t offset, std::uint32_t ready_bit, std::uint32_t flag) {
   word(offset) |= ready_bit;
   word(layout_.cir) |= flag;
+  if (flag == HSERDYF) crystal_unused_.in(kCrystal_idle_ns);
   try_switch();
   update_irq();
   update_clocks();
@@ -247,7 +292,7 @@ void Rcc::report_once(std::uint32_t bit, const std::string& what) {
 void Rcc::fail_hse() {
   hse_ready_.cancel();
   word(CR) &= ~HSERDY;
-  const bool lost = sws() == hse || (sws() == pll && pll_from_hse());
+  const bool lost = runs_from_hse();
   if (pll_from_hse()) word(CR) &= ~PLLRDY;
   if ((word(CR) & CSSON) == 0) return;  // without CSS the part simply stops; not modelled
   word(CR) &= ~(HSEON | CSSON | (pll_from_hse() ? PLLON : 0));

@@ -2,7 +2,10 @@
 // ready interrupts, reset causes, the backup domain, block enables and resets.
 //
 //   Source    RM0090 chapter 7 (F405), RM0008 chapter 7 (F103)
-//   Times     typical values of the datasheets: HSE 2 ms, HSI 2.2 us, PLL 200 us, LSI 30 us, LSE 2 s
+//   Times     typical values of the datasheets: HSI 2.2 us, PLL 200 us, LSI 30 us, LSE 2 s; HSE as
+//             the board says (2 ms)
+//   Findings  limits of the part; a crystal that was given up, or is not there; a core that stays
+//             on its reset clock
 //   Left out  MCO pins, spread spectrum, I2S clocks (PLLI2S locks, nobody uses it)
 #pragma once
 #include <array>
@@ -22,6 +25,7 @@ struct RccSetup {
   io::FindingSink finding;
   double hse_Hz = 0.0;  // 0: no crystal fitted, HSE never becomes ready
   double lse_Hz = 0.0;
+  Nanoseconds hse_start_ns = 2'000'000;
 };
 
 // Where a part keeps what all parts have.
@@ -90,6 +94,7 @@ class Rcc : public WordBlock, public Clocks {
 
   const RccLayout layout_;
   const double hse_Hz_, lse_Hz_;
+  const Nanoseconds hse_start_ns_;
 
  private:
   struct ResetLine {
@@ -111,12 +116,17 @@ class Rcc : public WordBlock, public Clocks {
   void try_switch();
   void update_clocks();
   void update_irq();
+  bool runs_from_hse() const { return sws() == hse || (sws() == pll && pll_from_hse()); }
+  void watch_crystal(std::uint32_t before, std::uint32_t after);
+  void report_unused_crystal();
+  void report_reset_clock();
 
   io::EventQueue& events_;
   InterruptLines& interrupts_;
   io::FindingSink finding_;
   std::array<std::uint32_t, 0x90 / 4> words_{};
   io::Event hsi_ready_, hse_ready_, pll_ready_, plli2s_ready_, lsi_ready_, lse_ready_;
+  io::Event crystal_unused_, still_reset_clock_;  // moments to look again
   std::vector<ResetLine> reset_lines_;
   std::vector<std::function<void()>> listeners_;
   std::function<bool()> backup_writable_;

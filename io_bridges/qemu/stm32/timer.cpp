@@ -48,6 +48,7 @@ Timer::Timer(const Chip& chip, const TimerConfig& config)
              }),
       etr_(signal_name(config.number, "ETR"), false),
       break_(signal_name(config.number, "BKIN"), false),
+      resynchronised_(chip.events, [this] { hear_late_edges(); }),
       update_irq_(chip.interrupts, config.update_irq),
       compare_irq_(chip.interrupts, config.compare_irq),
       trigger_irq_(chip.interrupts, config.trigger_irq),
@@ -99,6 +100,8 @@ void Timer::reset() {
   psc_count_ = turns_ = 0;
   raised_ = pulses_ = burst_index_ = etr_edges_ = 0;
   burst_touched_ = false;
+  late_edges_.clear();
+  resynchronised_.cancel();
   for (auto& event : dead_time_) event->cancel();
   for (DmaRequest& request : dma_) request.set(false);
   select_trigger();
@@ -248,6 +251,7 @@ void Timer::write_control(std::uint32_t offset, std::uint32_t value) {
       break;
     case SMCR:
       smcr_ = value & mask.smcr;
+      normalise_direction();  // an encoder may have left CNT at 0, counting down
       select_trigger();
       break;
     case DIER:

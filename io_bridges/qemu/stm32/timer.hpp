@@ -13,6 +13,8 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "io_bridges/qemu/stm32/irq_line.hpp"
 #include "io_bridges/qemu/stm32/peripheral.hpp"
@@ -138,6 +140,9 @@ class Timer : public Peripheral {
   void clock_changed();
 
   // timer_input.cpp: capture, slave mode, triggers
+  Nanoseconds behind_synchroniser() const;
+  void hear_later(unsigned source, bool level);
+  void hear_late_edges();
   void raw_changed(int ti);
   void set_trigger_flag();
   void capture_on_trc();
@@ -193,7 +198,7 @@ class Timer : public Peripheral {
   std::int64_t anchor_ = 0;     // clock edge at which cnt_ and psc_count_ hold
   std::int64_t turns_ = 0;      // since the shadows last changed
   bool gate_ = false;
-  bool flushing_ = false;
+  bool flushing_ = false, settling_ = false;
 
   std::array<Input, 4> input_{};
   bool etr_level_ = false;
@@ -205,6 +210,9 @@ class Timer : public Peripheral {
   std::array<TriggerLine, 4> compare_;
   std::array<TriggerLine*, 4> itr_{};
   std::array<int, 4> itr_handle_{};
+  static constexpr int kSynchroniser_clocks = 3;
+  std::vector<std::pair<unsigned, bool>> late_edges_;  // trigger source, level
+  io::Event resynchronised_;
   std::array<std::unique_ptr<io::Event>, 4> dead_time_;
 
   std::array<DmaRequest, kRequests> dma_;

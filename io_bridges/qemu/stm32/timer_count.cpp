@@ -2,6 +2,7 @@
 //
 //   A run goes in one direction and ends one step before a turn: overflow, underflow, or the
 //   wrap of a counter that was above ARR. Matches inside a run and at turns set flags and OCxREF.
+#include "harness/base/check.hpp"
 #include "io_bridges/qemu/stm32/timer.hpp"
 
 namespace whirl::stm32 {
@@ -22,6 +23,7 @@ void Timer::advance(std::int64_t now_tick) {
     if (now_tick <= anchor_) return;
     const std::int64_t steps = (psc_count_ + now_tick - anchor_) / divider();
     const std::int64_t to_turn = steps_to_turn();
+    WHIRL_CHECK(to_turn > 0, config_.number, cnt_, arr_shadow_);
     if (steps < to_turn) {
       run(steps);
       psc_count_ += now_tick - anchor_ - steps * divider();
@@ -124,7 +126,8 @@ std::int64_t Timer::matches_per_period(int ch) const {
 // Once all shadows hold, one round of the repetition counter is as good as the next.
 void Timer::skip_equal_periods(std::int64_t now_tick) {
   const std::int64_t rounds = can_.advanced ? rcr_ + 1 : 1;
-  if (turns_ < 4 * rounds || (cr1_ & OPM) != 0 || cnt_ > arr_shadow_ || !shadows_settled()) return;
+  const bool one_pulse = (cr1_ & (OPM | UDIS)) == OPM;  // without updates it never ends
+  if (turns_ < 4 * rounds || one_pulse || cnt_ > arr_shadow_ || !shadows_settled()) return;
   const std::int64_t arr = arr_shadow_;
   const std::int64_t span = (centre() ? 2 * arr : arr + 1) * rounds * divider();
   const std::int64_t skipped = (now_tick - anchor_) / span;
@@ -200,7 +203,7 @@ void Timer::restart_count() {
   cnt_ = down_ ? arr_shadow_ : 0;
   turns_ = 0;
   pattern_dirty_ = phase_changed_ = true;
-  land();
+  if ((cr1_ & CEN) != 0) land();  // a counter that stands compares nothing
   if (master_mode() == 0) ++pulses_;
 }
 

@@ -1,5 +1,6 @@
 // The input side of a timer: filters, capture, the slave mode controller, encoder, ETR and break.
 #include <algorithm>
+#include <utility>
 
 #include "io_bridges/qemu/stm32/register_access.hpp"
 #include "io_bridges/qemu/stm32/timer.hpp"
@@ -42,7 +43,10 @@ void Timer::raw_changed(int ti) {
   if (level == input.raw) return;
   input.raw = level;
   const Nanoseconds time_ns = filter_time_ns(ti);
-  if (time_ns == 0) {
+  if (settling_ && slave_mode() != 0) {  // our own output, on its way out
+    const Nanoseconds due = behind_synchroniser();
+    if (due != io::kNever) input.filter->at(due);
+  } else if (time_ns == 0) {
     filtered_edge(ti);
   } else if (level == input.level) {
     input.filter->cancel();
@@ -112,10 +116,33 @@ void Timer::capture_on_trc() {
 void Timer::connect_itr(int n, TriggerLine& master) {
   itr_[n] = &master;
   itr_handle_[n] = master.add_sink([this, n](bool level, Nanoseconds) {
+    if (settling_) return hear_later(static_cast<unsigned>(n), level);
     sync();
     trigger_source_edge(static_cast<unsigned>(n), level);
     settle();
   });
+}
+
+// Timers in a ring reset each other: our own edge comes back while it is still going out. On the part
+// each hop takes the clocks of its synchroniser, so the ring swings; here that keeps it from going
+// round for ever at one instant.
+Nanoseconds Timer::behind_synchroniser() const {
+  return grid_.time(grid_.ticks(chip_.events.now()) + kSynchroniser_clocks);
+}
+
+void Timer::hear_later(unsigned source, bool level) {
+  const Nanoseconds due = behind_synchroniser();
+  if (due == io::kNever) return;  // without a clock nothing gets through
+  late_edges_.push_back({source, level});
+  if (!resynchronised_.pending()) resynchronised_.at(due);
+}
+
+void Timer::hear_late_edges() {
+  sync();
+  for (const auto& [source, level] : std::exchange(late_edges_, {})) {
+    trigger_source_edge(source, level);
+  }
+  settle();
 }
 
 // Listens to the master that TS selects, as far as anything here hears it.

@@ -1,5 +1,6 @@
 // Who waits for what of a timer: its one event, its interrupts, its DMA requests.
 #include <algorithm>
+#include <utility>
 
 #include "io_bridges/qemu/stm32/register_access.hpp"
 #include "io_bridges/qemu/stm32/timer.hpp"
@@ -10,10 +11,12 @@ using namespace tim;
 
 // After every access, event and edge: what follows from the new state, outwards.
 void Timer::settle() {
+  const bool outer = !std::exchange(settling_, true);
   follow_writes();
   refresh_outputs();
   flush();
   schedule();
+  if (outer) settling_ = false;
 }
 
 bool Timer::level_wanted(int ch) const {

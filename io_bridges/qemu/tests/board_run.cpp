@@ -16,7 +16,8 @@ VirtualBoardOptions options_for(const BoardSetup& setup) {
   VirtualBoardOptions options;
   options.board_json = R"({"board":"bench","hse_Hz":8000000,"mcu":")" + setup.mcu +
                        R"(","image":")" + setup.image + R"(","gdb_port":)" +
-                       std::to_string(setup.gdb_port) + R"(,"watch":[)" + watch + "]}";
+                       std::to_string(setup.gdb_port) + R"(,"watch":[)" + watch + "]" +
+                       (setup.more.empty() ? "" : "," + setup.more) + "}";
   options.silence_s = setup.silence_s;
   return options;
 }
@@ -69,6 +70,13 @@ std::vector<const Message*> BoardRun::of(io::Kind kind) const {
 std::string BoardRun::text_of(const Message& message, std::size_t head) const {
   if (message.payload.size() < head) return "";
   return {message.payload.begin() + static_cast<std::ptrdiff_t>(head), message.payload.end()};
+}
+
+bool BoardRun::found(const std::string& words) const {
+  for (const Message* message : of(io::Kind::finding)) {
+    if (text_of(*message).find(words) != std::string::npos) return true;
+  }
+  return false;
 }
 
 std::vector<std::uint32_t> BoardRun::said() const {

@@ -16,6 +16,7 @@ struct BoardSetup {
   int gdb_port = 0;
   int silence_s = 30;
   std::string mcu = "bench_m4";
+  std::string more = {};  // of the description: R"("start":134234112)"
 };
 VirtualBoardOptions options_for(const BoardSetup& setup);
 
@@ -39,6 +40,7 @@ struct BoardRun {
   std::vector<const Message*> of(io::Kind kind) const;
   // What the image said: values written to the bench part's SAY register.
   std::vector<std::uint32_t> said() const;
+  bool found(const std::string& words) const;  // in some finding
   std::string text_of(const Message& message, std::size_t head = 0) const;
 };
 

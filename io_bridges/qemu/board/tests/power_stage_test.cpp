@@ -17,7 +17,7 @@ constexpr Nanoseconds kUs = 1000, kMs = 1'000'000;
 constexpr double kDivider = 1.5 / 11.5;
 
 struct Stand {
-  Stand() {
+  explicit Stand(bool swap_wires = false) : stage(params(swap_wires), 1, "motor") {
     for (int leg = 0; leg < 3; ++leg) {
       for (const bool upper : {false, true}) {
         auto& slot = wire[static_cast<std::size_t>(leg)][upper ? 1 : 0];
@@ -31,8 +31,9 @@ struct Stand {
     });
     load(0.0);
   }
-  static PowerStageParams params() {
+  static PowerStageParams params(bool swap_wires) {
     PowerStageParams p;
+    p.swap_wires = swap_wires;
     p.shunt = {.gain_tolerance = 0.0,
                .offset_low_A = 4.3,
                .offset_high_A = 4.3,
@@ -61,18 +62,21 @@ struct Stand {
     const auto sector =
         static_cast<std::size_t>(plant::sector_of(stage.motor().electrical_angle_rad()));
     if (sector != last) off(), last = sector;
-    set(kLow[sector], false, true);
-    set(kHigh[sector], true, true);
+    const int high = reversed ? kLow[sector] : kHigh[sector];
+    const int low = reversed ? kHigh[sector] : kLow[sector];
+    set(low, false, true);
+    set(high, true, true);
     const auto on_ns = static_cast<Nanoseconds>(duty * 50e3);
     now += on_ns;
-    set(kHigh[sector], true, false);
+    set(high, true, false);
     now += 50 * kUs - on_ns;
   }
   void spin(double duty, int periods) {
     for (int i = 0; i < periods; ++i) period(duty);
   }
 
-  PowerStage stage{params(), 1, "motor"};
+  bool reversed = false;  // torque against the propeller's direction
+  PowerStage stage;
   std::array<std::array<std::unique_ptr<io::Wire>, 2>, 3> wire;
   std::array<std::array<int, 2>, 3> driver{};
   std::vector<std::pair<int, Nanoseconds>> shots;
@@ -111,6 +115,36 @@ TEST(PowerStage, StalledCurrentRisesWithTheWindingsTimeConstant) {
   EXPECT_TRUE(near(s.stage.motor().phase_currents_A()[0], expected_A,
                    stated(0.02 * expected_A, "the bus capacitor delays by 14 us")));
   EXPECT_EQ(s.stage.motor().speed_radps(), 0.0);
+}
+
+TEST(PowerStage, SwappedWiresExchangeTwoPhasesAtTheBridgeAndAtTheConverter) {
+  for (const bool swapped : {false, true}) {
+    Stand s(swapped);
+    s.load(1.0);
+    s.now = 5 * kMs;
+    s.set(1, false, true);
+    s.set(0, true, true);
+    s.now += 100 * kUs;
+    EXPECT_NEAR(s.stage.phase_V(1, s.now), 0.0, 0.05);
+    const auto current_A = s.stage.motor().phase_currents_A();
+    EXPECT_LT(current_A[swapped ? 2 : 1], -10.0);
+    EXPECT_EQ(current_A[swapped ? 1 : 2], 0.0);
+  }
+}
+
+TEST(PowerStage, AMotorThatTurnsBackwardsIsToldOnce) {
+  for (const bool reversed : {false, true}) {
+    Stand s;
+    int told = 0;
+    s.stage.on_backwards([&](Nanoseconds) { ++told; });
+    s.reversed = reversed;
+    for (int ms = 0; ms < 400; ++ms) {
+      s.spin(0.3, 20);
+      s.stage.report(s.now);
+    }
+    EXPECT_EQ(s.stage.motor().speed_radps() < -100.0, reversed) << s.stage.motor().speed_radps();
+    EXPECT_EQ(told, reversed ? 1 : 0);
+  }
 }
 
 TEST(PowerStage, OverlapOfOneLegIsToldWithItsDuration) {

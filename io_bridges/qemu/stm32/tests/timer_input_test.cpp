@@ -97,6 +97,42 @@ TEST(Timer, EncoderCountsFourPerCycleAndTurnsBack) {
   EXPECT_EQ(get(timer, CR1) & DIR, DIR);
 }
 
+// Each resets the other, and each reset is a pulse on TRGO: on the part that swings, here it must not
+// go round for ever at one instant.
+TEST(Timer, TwoThatResetEachOtherSwingAtTheirSynchronisersPace) {
+  BareChip bare;
+  Timer a(bare.chip(), general(3)), b(bare.chip(), general(4));
+  a.connect_itr(3, b.trgo());
+  b.connect_itr(2, a.trgo());
+  put(a, SMCR, (3u << 4) | 4);
+  put(b, SMCR, (2u << 4) | 4);
+  put(a, EGR, 1);
+  EXPECT_EQ(get(b, SR) & TIF, TIF);
+  put(b, SR, 0);
+  bare.run_to(10'000);
+  EXPECT_EQ(get(b, SR) & TIF, TIF);
+  EXPECT_GT(bare.events.fired(), 100u);  // 840 clocks
+  EXPECT_LT(bare.events.fired(), 1000u);
+}
+
+// An output that toggles at every reset, wired to the input that resets: a ring of one.
+TEST(Timer, AnOutputThatResetsItsOwnTimerSwingsToo) {
+  BareChip bare;
+  Timer timer(bare.chip(), general());
+  timer.pin(1).add_outlet(
+      [&](Drive drive, Nanoseconds now) { timer.pin(1).sense(drive == Drive::high, now); });
+  timer.pin(1).route(+1);
+  put(timer, CCMR1, 0x30);
+  put(timer, CCER, 1);
+  put(timer, ARR, 100);
+  put(timer, SMCR, (4u << 4) | 4);
+  put(timer, CR1, CEN);
+  put(timer, EGR, 1);
+  bare.run_to(10'000);
+  EXPECT_GT(bare.events.fired(), 100u);
+  EXPECT_LT(bare.events.fired(), 2000u);
+}
+
 TEST(Timer, AMastersUpdateClocksItsSlave) {
   BareChip bare;
   Timer master(bare.chip(), general(3)), slave(bare.chip(), general(4));

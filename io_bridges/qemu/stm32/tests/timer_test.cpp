@@ -100,6 +100,41 @@ TEST(Timer, CentreAlignedCountsToArrAndBackAndUpdatesAtBothEnds) {
 }
 
 // RM0090 figure "Center-aligned PWM waveforms (ARR=8)".
+// Encoder mode counts down to 0; then CMS alone decides how it goes on: up, from the lower end.
+TEST(Timer, CentreAlignedAfterAnEncoderGoesUpFromTheLowerEnd) {
+  for (const std::uint32_t cms : {1u, 2u, 3u}) {
+    BareChip bare;
+    Timer timer(bare.chip(), general());
+    put(timer, ARR, 8);
+    put(timer, CCMR1, 0x0101);
+    put(timer, SMCR, 3);
+    put(timer, DIER, 1);
+    put(timer, CNT, 2);
+    put(timer, CR1, CEN | (cms << 5));
+    timer.pin(2).sense(true, 0);
+    timer.pin(1).sense(true, 0);
+    ASSERT_EQ(get(timer, CNT), 0u);
+    ASSERT_EQ(get(timer, CR1) & DIR, DIR);
+    put(timer, SMCR, 0);
+    bare.run_to(edge_ns(3, 84'000'000));
+    EXPECT_EQ(get(timer, CNT), 2u);  // CNT_EN follows CEN by one clock
+    EXPECT_EQ(get(timer, CR1) & DIR, 0u);
+  }
+}
+
+// A counter that stands compares nothing: CCxIE must not storm after the UG of an initialisation.
+TEST(Timer, UpdateGenerationWhileStoppedSetsNoCompareFlag) {
+  for (const std::uint32_t enabled : {0u, 1u}) {
+    BareChip bare;
+    Timer timer(bare.chip(), general());
+    put(timer, DIER, 2);
+    if (enabled != 0) put(timer, CR1, CEN);
+    put(timer, EGR, 1);
+    EXPECT_EQ((get(timer, SR) & 2u) != 0, enabled != 0);
+    EXPECT_EQ(bare.interrupts.lines[29], enabled != 0);
+  }
+}
+
 TEST(Timer, CompareFlagsInCentreAlignedModesAreThoseOfTheManualsFigure) {
   struct Row {
     std::uint32_t cms, ccr;

@@ -14,12 +14,18 @@
 #define FLASHCR REG(0x40000020)
 #define ERASE REG(0x40000024)
 #define CAUSE REG(0x40000028)
+#define BUG REG(0x40000030)
 #define ISER0 REG(0xE000E100)
 #define AIRCR REG(0xE000ED0C)
 
 extern int main(void);
 void reset_handler(void);
 void stuck(void);
+void irq28_handler(void);
+void irq29_handler(void);
+void irq30_handler(void);
 void irq31_handler(void);
+void svc_handler(void);
+void pend_sv_handler(void);
 void systick_handler(void);
 void hard_fault_handler(void);

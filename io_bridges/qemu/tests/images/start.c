@@ -9,7 +9,12 @@ __attribute__((weak)) void stuck(void) {
   for (;;) {
   }
 }
+__attribute__((weak, alias("stuck"))) void irq28_handler(void);
+__attribute__((weak, alias("stuck"))) void irq29_handler(void);
+__attribute__((weak, alias("stuck"))) void irq30_handler(void);
 __attribute__((weak, alias("stuck"))) void irq31_handler(void);
+__attribute__((weak, alias("stuck"))) void svc_handler(void);
+__attribute__((weak, alias("stuck"))) void pend_sv_handler(void);
 __attribute__((weak, alias("stuck"))) void systick_handler(void);
 __attribute__((weak, alias("stuck"))) void hard_fault_handler(void);
 
@@ -34,9 +39,12 @@ const vector vectors[16 + 82] = {(vector)STACK_TOP,
                                  0,
                                  0,
                                  0,
-                                 stuck,
+                                 svc_handler,
                                  stuck,
                                  0,
-                                 stuck,
+                                 pend_sv_handler,
                                  systick_handler,
+                                 [16 + 28] = irq28_handler,
+                                 irq29_handler,
+                                 irq30_handler,
                                  [16 + 31] = irq31_handler};

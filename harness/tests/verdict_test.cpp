@@ -1,0 +1,166 @@
+// Verdicts as a user meets them: who is at fault, what was not shown, and what a run leaves behind that
+// did not end well.
+#include <sys/stat.h>
+
+#include <filesystem>
+
+#include "harness/base/interruption.hpp"
+#include "harness/base/near.hpp"
+#include "harness/tests/plans.hpp"
+
+namespace whirl::test {
+namespace {
+
+// A plan's exit code and what it says.
+struct Case {
+  const char* body;
+  const char* image;
+  int code;
+  const char* says;
+};
+
+void check(std::initializer_list<Case> cases) {
+  for (const Case& c : cases) {
+    const Ran ran = run_plan(plan_text(c.body, c.image));
+    EXPECT_EQ(ran.outcome.code, c.code) << c.body << "\n" << ran.outcome.out << ran.outcome.err;
+    EXPECT_NE((ran.outcome.out + ran.outcome.err).find(c.says), std::string::npos)
+        << c.body << "\n"
+        << ran.outcome.out;
+  }
+}
+
+TEST(Verdict, WhatWasSeenOfTheFirmwareIsNotBlamedOnThePlan) {
+  check({
+      // The fault is due after the crash at 50 ms: nobody can have applied it.
+      {R"(t:fault { kind = "i2c_nack", device = "esc1", start = "500 ms" }  t:wait "1 s")", "crash",
+       1, "HardFault"},
+      {R"(t:expect(t:value "tilt")  t:wait "1 s")", "crash", 1, "HardFault"},
+      {R"(t:expect(t:value "thrust"):at_most "1 N"  error "then the plan breaks")", "flight", 1,
+       "also: p.lua:3: then the plan breaks"},
+      {R"(t:expect(t:value "thrust"):at_most "1 N"  t:wait "1 s")", "lost", 1,
+       "also: board: no answer"},
+      {R"(t:expect(t:value "thrust"):at_most "1 N"  t:wait "1 s")", "late", 1,
+       "also: host: too late"},
+      // And the host's fault is not the plan's.
+      {R"(t:fault { kind = "i2c_nack", device = "esc1", start = "500 ms" }  t:wait "1 s")", "late",
+       3, "too late"},
+      {R"(t:always "height"  t:wait "1 s")", "late", 3, "too late"},
+  });
+}
+
+TEST(Verdict, AWatchdogsResetFailsByItsNameAndTime) {
+  const std::string body = R"(t:expect(t:value "tilt"):at_most "1 rad"  t:wait "1 s")";
+  const Ran ran = run_plan(plan_text(body, "bitten"));
+  EXPECT_EQ(ran.outcome.code, 1);
+  EXPECT_EQ(ran.run["reason"], "firmware fault: reset by the window watchdog");
+  const json& fed = expectation(ran.run, "the firmware keeps its watchdogs fed");
+  EXPECT_TRUE(near(fed["t_s"], 0.051, stated(1e-9, "the end of the step")));
+  EXPECT_TRUE(near(ran.run["virtual_s"], 0.051, stated(1e-9, "the end of the step")));
+  EXPECT_EQ(run_plan(plan_text(body, "bitten", "may_reset = true,")).outcome.code, 0);
+}
+
+TEST(Verdict, WhatWasNotShownIsNoPass) {
+  check({
+      {R"(t:always("never true", function() return false end))", "flight", 3,
+       "was never evaluated"},
+      {R"(t:always("height", "1 s"):at_most "1 m")", "flight", 3, "never watched"},
+      {R"(t:always("height"):at_most "1 m")", "flight", 3, "never watched"},
+      {R"(t:always("height", "1 s"):at_most "1 m"  t:wait "100 ms")", "flight", 3,
+       "only 100 ms of 1000 ms were watched"},
+      {R"(t:always("low", function(s) return s.height_m < 9 end, "1 s")  t:wait "100 ms")",
+       "flight", 3, "only 100 ms of 1000 ms"},
+      {R"(t:budget("fw::imu_task") { execution = "1 ms", during = "100 s" }  t:wait "100 ms")",
+       "flight", 3, "only 100 ms of 100000 ms"},
+      {R"(t:budget("cpu") { busy = "60 %", during = "100 s" }  t:wait "500 ms")", "flight", 3,
+       "only 500 ms"},
+      {R"(t:bus { device = "esc1", nacks = 3, during = "9 s" }  t:wait "100 ms")", "flight", 3,
+       "only 100 ms"},
+      // What was seen to be broken is a fail, however short the time.
+      {R"(t:budget("fw::imu_task") { execution = "1 us", during = "100 s" }  t:wait "100 ms")",
+       "flight", 1, "execution time"},
+      {R"(t:always("thrust", "1 s"):at_most "1 N"  t:wait "100 ms")", "flight", 1,
+       "thrust, always"},
+      // The last step of a window belongs to it.
+      {R"(t:always("thrust", "1 s"):at_most "3 N"  t:wait "1 s")", "flight", 0, "PASS"},
+      {R"(t:always("low", function(s) return s.height_m < 9 end, "1 ms")  t:wait "1 ms")", "flight",
+       0, "PASS"},
+      // Nothing of a running image is asserted.
+      {R"(t:wait "1 s"  t:expect(1):at_most(2))", "flight", 3,
+       "asserts nothing about the running image"},
+      {R"(t:wait "1 s"  t:expect(t:value "tilt"):at_most "1 rad")", "asleep", 3,
+       "never seen to run"},
+      {R"(t:expect(-1/0):at_most(5)  t:wait "1 s")", "flight", 1, "-inf"},
+  });
+}
+
+TEST(Verdict, ATimeThatLiesOnItsLimitMeetsIt) {
+  check(
+      {{R"(t:within("60 ms", function() return t:value("tilt", "rad") > 0 and t:now().value > 0.0595 end)
+            t:wait "10 ms")",
+        "flight", 0, "PASS"}});
+}
+
+TEST(Verdict, AThrownErrorEndsOnePlanAndTheNextStillRuns) {
+  FakeRoot root;
+  const std::string good = "t:wait \"1 s\" t:expect(t:value \"tilt\"):at_most \"1 rad\"";
+  root.write("test_plans/a.lua", plan_text(good, "throws"));
+  root.write("test_plans/b.lua", plan_text(good));
+  const Outcome outcome = whirl(root, {"run"});
+  EXPECT_EQ(outcome.code, 4);
+  EXPECT_NE(outcome.out.find("1 passed, 1 internal errors"), std::string::npos) << outcome.out;
+  const std::string failed = "t:expect(t:value \"thrust\"):at_most \"1 N\" t:wait \"1 s\"";
+  EXPECT_EQ(run_plan(plan_text(failed, "throws")).outcome.code, 1);
+}
+
+TEST(Verdict, AnInterruptedRunEndsInOrder) {
+  FakeRoot root;
+  const std::string good = "t:wait \"1 s\" t:expect(t:value \"tilt\"):at_most \"1 rad\"";
+  root.write("test_plans/a.lua", plan_text(good, "interrupted"));
+  root.write("test_plans/b.lua", plan_text(good));
+  const Outcome outcome = whirl(root, {"run"});
+  pretend_interruption(0);
+  EXPECT_EQ(outcome.code, 3);
+  EXPECT_NE(outcome.out.find("interrupted by signal TERM"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("0 passed, 1 inconclusive, 1 not run"), std::string::npos);
+  EXPECT_NE(outcome.out.find("-p-interrupted/index.html"), std::string::npos);
+  const json run = json::parse(root.read("results/runs/latest/run.json"));
+  EXPECT_EQ(run["verdict"], "inconclusive");
+  EXPECT_TRUE(near(run["virtual_s"], 0.051, stated(1e-9, "at once")));
+  EXPECT_EQ(whirl(root, {"history", "p"}).code, 0);
+}
+
+TEST(Verdict, ResultsThatCannotBeWrittenDoNotHideAFailure) {
+  FakeRoot root;
+  root.write("test_plans/p.lua",
+             plan_text("t:expect(t:value \"thrust\"):at_most \"1 N\" t:wait \"1 s\""));
+  root.write("in_the_way/runs", "");
+  const Outcome before = whirl(root, {"run", "--out", root.path() + "/in_the_way"});
+  EXPECT_EQ(before.code, 3);  // known before the run
+  EXPECT_NE(before.out.find("no folder for the results"), std::string::npos) << before.out;
+  root.write("taken/history.sqlite/x", "");
+  const Outcome after = whirl(root, {"run", "--out", root.path() + "/taken"});
+  EXPECT_EQ(after.code, 1);
+  EXPECT_NE(after.out.find("thrust: 2 N, wanted at most 1 N"), std::string::npos);
+}
+
+TEST(Verdict, FoldersThatCannotBeReadAreNotSkipped) {
+  FakeRoot root;
+  root.write("test_plans/a.lua",
+             plan_text("t:wait \"1 s\" t:expect(t:value \"tilt\"):at_most \"1 rad\""));
+  std::filesystem::create_directory_symlink(root.path() + "/nowhere",
+                                            root.path() + "/test_plans/b.lua");
+  EXPECT_EQ(whirl(root, {"run"}).code, 2);
+  std::filesystem::remove(root.path() + "/test_plans/b.lua");
+  std::filesystem::create_directory_symlink(root.path() + "/test_plans",
+                                            root.path() + "/test_plans/again");
+  EXPECT_EQ(whirl(root, {"run"}).code, 0);  // each folder once
+  ASSERT_EQ(mkfifo((root.path() + "/test_plans/x.lua").c_str(), 0600), 0);
+  const Outcome fifo = whirl(root, {"run"});
+  EXPECT_EQ(fifo.code, 2);
+  EXPECT_NE(fifo.err.find("no regular file"), std::string::npos) << fifo.err;
+  EXPECT_EQ(whirl(root, {"run", "/dev/zero"}).code, 2);
+  EXPECT_EQ(whirl(root, {"run", std::string(5000, 'x')}).code, 2);
+}
+
+}  // namespace
+}  // namespace whirl::test

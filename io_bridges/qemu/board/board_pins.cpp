@@ -1,0 +1,76 @@
+#include "io_bridges/qemu/board/board_pins.hpp"
+
+#include <cstdio>
+#include <utility>
+
+namespace whirl::board {
+namespace {
+
+Error wrong(const std::string& board, const PinConfig& pin, const std::string& what) {
+  return {ErrorKind::bad_input, board + ": pin " + pin.name, what, ""};
+}
+
+const PinConfig* line_of(const std::vector<PinConfig>& pins, const std::string& line) {
+  for (const PinConfig& pin : pins) {
+    if (pin.bus == line) return &pin;
+  }
+  return nullptr;
+}
+
+// "i2c2.scl" is 2; 0: no line of an I2C bus.
+int bus_number(const std::string& line) {
+  int number = 0, end = 0;
+  const int read = std::sscanf(line.c_str(), "i2c%1d.s%*[cd]%*[la]%n", &number, &end);
+  return read == 1 && static_cast<std::size_t>(end) == line.size() ? number : 0;
+}
+
+}  // namespace
+
+Result<std::set<int>> join_pins(const std::vector<PinConfig>& pins, stm32::ChipModel& chip,
+                                const std::string& board) {
+  std::set<int> soldered;
+  for (const PinConfig& pin : pins) {
+    if (chip.pin(pin.pin) == nullptr) {
+      return wrong(board, pin, "the part has no pin '" + pin.pin + "'");
+    }
+    if (pin.bus.empty()) continue;
+    const int number = bus_number(pin.bus);
+    const std::string bus = "i2c" + std::to_string(number);
+    const PinConfig *scl = line_of(pins, bus + ".scl"), *sda = line_of(pins, bus + ".sda");
+    if (number == 0 || scl == nullptr || sda == nullptr) {
+      return wrong(board, pin, "bus '" + pin.bus + "' is not one of a pair i2cN.scl and i2cN.sda");
+    }
+    if (!soldered.insert(number).second) continue;
+    if (!chip.solder_i2c(number, scl->pin, sda->pin)) {
+      return wrong(board, pin, "the part has no bus " + bus);
+    }
+  }
+  for (const PinConfig& pin : pins) {
+    if (pin.pull.empty()) continue;
+    if (pin.pull != "up" && pin.pull != "down") {
+      return wrong(board, pin, "pull '" + pin.pull + "' is not up or down");
+    }
+    io::Wire& wire = *chip.pin(pin.pin);
+    wire.drive(wire.add_driver(), pin.pull == "up" ? io::Drive::pull_high : io::Drive::pull_low, 0);
+  }
+  return soldered;
+}
+
+void watch_empty_buses(const std::function<bool(int bus)>& used, stm32::ChipModel& chip,
+                       const io::FindingSink& finding) {
+  constexpr int kBuses = 3;
+  for (int number = 1; number <= kBuses; ++number) {
+    io::I2cBus* bus = chip.i2c(number);
+    if (bus == nullptr || used(number)) continue;
+    bus->on_transaction([number, finding, told = false](const io::I2cTransaction& t) mutable {
+      if (std::exchange(told, true)) return;
+      char address[8];
+      std::snprintf(address, sizeof address, "0x%02x", t.address);
+      finding(
+          {t.stop_ns, "i2c" + std::to_string(number),
+           std::string("the board has no device on this bus: nobody answers address ") + address});
+    });
+  }
+}
+
+}  // namespace whirl::board

@@ -1,0 +1,43 @@
+// From a board's description and its images to what a board process is made of.
+#include <cstdio>
+
+#include "io_bridges/qemu/board/board.hpp"
+
+namespace whirl::board {
+namespace {
+
+Error wrong_start(const BoardConfig& board, std::uint32_t start) {
+  char text[16];
+  std::snprintf(text, sizeof text, "0x%08x", start);
+  return {ErrorKind::bad_input, board.board + ": start",
+          std::string(text) + " is no place in flash", "give a multiple of 0x200"};
+}
+
+}  // namespace
+
+Result<Setup> read_setup(std::string_view board_json) {
+  auto config = parse_board(board_json);
+  if (!config) return config.error();
+  const Part* part = find_part(config.value().mcu);
+  if (part == nullptr) {
+    return Error{ErrorKind::bad_input, config.value().board,
+                 "unknown mcu '" + config.value().mcu + "'", "use stm32f405rg or stm32f103cb"};
+  }
+  auto image = load_image(config.value().image, *part);
+  if (!image) return image.error();
+  const BoardConfig& board = config.value();
+  if (!board.boot_image.empty()) {
+    auto boot = load_image(board.boot_image, *part);
+    if (!boot) return boot.error();
+    const auto added = image.value().add(std::move(boot.value()), board.boot_image);
+    if (!added) return added.error();
+  }
+  const std::uint32_t start = board.start != 0 ? board.start : part->flash.base;
+  if (start % 0x200 != 0 || start - part->flash.base >= part->flash.size) {
+    return wrong_start(board, start);
+  }
+  if (auto good = check_start(image.value(), board.image, start); !good) return good.error();
+  return Setup{std::move(config.value()), part, std::move(image.value())};
+}
+
+}  // namespace whirl::board
