@@ -1,0 +1,58 @@
+// Facts of the judging, one by one: a few lines of Lua against signals and messages given by hand.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "harness/base/near.hpp"
+#include "harness/tests/oracle/by_hand.hpp"
+
+namespace whirl::oracle {
+namespace {
+
+constexpr std::int64_t kUs = 1000;
+
+TEST(Judging, WhatNeverChangedHasNotSettledWithinAShareOfItsChange) {
+  const auto settled = [](auto at) {
+    return only(
+        with_signal("t:wait '300 ms' local r = t:record('x', '500 ms')"
+                    " t:expect(r:settled '5 %'):at_most '1 s'",
+                    at));
+  };
+  EXPECT_TRUE(std::isnan(settled([](int) { return 2.0; }).measured));
+  EXPECT_EQ(settled([](int ms) { return ms < 400 ? 1.0 : 2.0; }).measured, 0.1);
+}
+
+TEST(Judging, AShareOfAChangeWantsItsReferenceOfTwoHundredMilliseconds) {
+  const auto settled = [](const std::string& wait) {
+    return only(with_signal("t:wait '" + wait +
+                                "' local r = t:record('x', '500 ms')"
+                                " t:expect(r:settled '5 %'):at_most '1 s'",
+                            [](int ms) { return ms < 300 ? 1.0 : 2.0; }))
+        .verdict;
+  };
+  EXPECT_EQ(settled("199 ms"), results::Verdict::fail);
+  EXPECT_EQ(settled("200 ms"), results::Verdict::pass);
+}
+
+// Entries every 5 ms; the window ends at 100 ms, in the midst of the call that began at 99.9 ms.
+TEST(Judging, ACallThatIsStillRunningAtTheEndOfAWindowHasCome) {
+  Scenario s = playing(
+      "t:budget 'fw::task' { period = '5 ms', jitter = '1 us', during = '100 ms' } t:wait '110 "
+      "ms'");
+  for (std::int64_t t = 4'900 * kUs; t < 110 * kMs; t += 5 * kMs) add_call(s, t, t + 300 * kUs);
+  EXPECT_TRUE(passes(s));
+}
+
+TEST(Judging, AnAnswerThatComesAtTheLimitIsInTime) {
+  for (int limit : {43, 55, 60}) {
+    Scenario s = playing("t:wait '65 ms' t:ask('hello', nil, '" + std::to_string(limit) +
+                         " ms') t:wait '9 ms'");
+    s.answers["hello"] = {limit, "yes"};
+    EXPECT_TRUE(passes(s)) << limit;
+    s.answers["hello"].after_ms += 1;
+    EXPECT_FALSE(passes(s)) << limit;
+  }
+}
+
+}  // namespace
+}  // namespace whirl::oracle
