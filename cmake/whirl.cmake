@@ -3,6 +3,7 @@
 #   whirl_test(name SOURCES ... LINK ... LABELS ...)   a GoogleTest executable; label host: needs the
 #                                               images, QEMU or a fast build, so no sanitizers
 include_guard()
+include(cmake/mutate.cmake)
 
 add_library(whirl_options INTERFACE)
 target_compile_features(whirl_options INTERFACE cxx_std_20)
@@ -25,7 +26,8 @@ endif()
 function(whirl_library name)
   cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
   if(ARG_SOURCES)
-    add_library(${name} STATIC ${ARG_SOURCES})
+    whirl_mutated_sources(${name} sources ${ARG_SOURCES})
+    add_library(${name} STATIC ${sources})
     target_link_libraries(${name} PUBLIC whirl_options ${ARG_LINK})
     set_target_properties(${name} PROPERTIES POSITION_INDEPENDENT_CODE ON)
   else()
