@@ -14,7 +14,8 @@ plant                    harness/base/ plant/
 io_bridges/protocols     harness/base/ io_bridges/protocols/ io_bridges/devices/
 io_bridges/devices       harness/base/ io_bridges/protocols/ io_bridges/devices/
 io_bridges/link          harness/base/ io_bridges/link/
-io_bridges/qemu/stm32    harness/base/ io_bridges/protocols/ io_bridges/devices/ io_bridges/qemu/stm32/
+io_bridges/qemu/cycles   io_bridges/qemu/cycles/
+io_bridges/qemu/stm32    harness/base/ io_bridges/protocols/ io_bridges/devices/ io_bridges/qemu/stm32/ io_bridges/qemu/cycles/flash_timing.hpp
 io_bridges/qemu/plugin   harness/base/ io_bridges/
 io_bridges/qemu/board    harness/base/ io_bridges/ plant/
 results                  harness/base/ io_bridges/link/ io_bridges/protocols/ results/

@@ -131,9 +131,11 @@ int Board::watch_number(const std::string& function) const {
 
 std::string Board::timing_profile() const {
   char text[80];
-  std::snprintf(text, sizeof text, "%d ns per instruction, crystal ready after %g ms",
-                ns_per_instruction, hse_start_s * 1e3);
-  return text;
+  std::snprintf(text, sizeof text, "crystal ready after %g ms", hse_start_s * 1e3);
+  const std::string rate = ns_per_instruction == 0
+                               ? "CPU cycles (+-10 %)"
+                               : std::to_string(ns_per_instruction) + " ns per instruction";
+  return rate + ", " + text;
 }
 
 Result<Board> read_board(const std::string& path) {
@@ -150,9 +152,10 @@ Result<Board> read_board(const std::string& path) {
       t.quantity_or("hse_start", Dimension::time, board.hse_start_s, lua::between(1e-6, 1.0));
   if (t.has("boot_image")) board.boot_image = t.sibling(t.text("boot_image"));
   board.start = static_cast<std::uint32_t>(t.integer_or("start", 0, 0, 0xFFFFFFFF));
-  const double instruction_s =
-      t.quantity_or("instruction", Dimension::time, 8e-9, lua::between(1e-9, 1e-6));
-  board.ns_per_instruction = static_cast<int>(std::lround(instruction_s * 1e9));
+  if (t.text_or("timing", "cycles") != "cycles") {
+    const double instruction_s = t.quantity("timing", Dimension::time, lua::between(1e-9, 512e-9));
+    board.ns_per_instruction = static_cast<int>(std::lround(instruction_s * 1e9));
+  }
   for (const lua::Table& entry : t.tables("devices")) board.devices.push_back(read_device(entry));
   board.pins_json = dumped(t, "pins", read_pins(t));
   board.watch = t.texts("watch");

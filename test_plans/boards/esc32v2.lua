@@ -4,8 +4,6 @@ return {
   board = "esc32v2",
   mcu = "stm32f103cb",
   hse = "8 MHz",
-  hse_start = "0.2 ms", -- silicon takes 2 ms, but instructions take as long at HSI as at full speed
-  instruction = "16 ns", -- timing profile: 62 MIPS, close to 72 MHz with two flash wait states
   devices = {
     { name = "stage", type = "power_stage", bus = "pins", motor = 1 },
     { name = "throttle", type = "i2c_master", bus = "i2c2", params = { rate = "400 kHz" } },

@@ -4,8 +4,6 @@ return {
   board = "px4fmu_v1",
   mcu = "stm32f405rg",
   hse = "24 MHz",
-  hse_start = "0.2 ms", -- silicon takes 2 ms, but instructions take as long at HSI as at full speed
-  instruction = "8 ns", -- timing profile: 125 MIPS, close to 168 MHz with flash wait states
   devices = {
     { name = "imu", type = "mpu6000", bus = "spi1", cs = "PB0", int = "PC5" },
     { name = "esc1", type = "esc_i2c", bus = "i2c3", address = 0x29, motor = 1 },

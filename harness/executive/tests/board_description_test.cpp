@@ -24,7 +24,7 @@ std::string board_with(const std::string& more) {
   return "return { board = 'b', mcu = 'stm32f405rg', hse = '24 MHz', " + more + " }";
 }
 
-constexpr const char* kDevices = R"(lse = '32768 Hz', instruction = '16 ns', devices = {
+constexpr const char* kDevices = R"(lse = '32768 Hz', timing = '16 ns', devices = {
   { name = 'imu', type = 'mpu6000', bus = 'spi1', cs = 'PB0', int = 'PC5',
     params = { noise = '5 %', note = 'words', count = 3, on = true, axes = { 1, 2, 3 }, deep = { rate = '1 kHz' } } },
   { name = 'esc1', type = 'esc_i2c', bus = 'i2c3', address = 0x08, motor = 1 },
@@ -95,7 +95,7 @@ TEST(BoardDescription, TellsTheBoardsProcessAllInSI) {
 TEST(BoardDescription, WithoutThemItTakesTheDefaults) {
   const auto board = read_text(board_with(""));
   ASSERT_TRUE(board) << board.error().message();
-  EXPECT_EQ(board.value().ns_per_instruction, 8);
+  EXPECT_EQ(board.value().ns_per_instruction, 0);
   EXPECT_EQ(board.value().lse_Hz, 0.0);
 }
 
@@ -118,8 +118,8 @@ TEST(BoardDescription, RefusesDoublesAndWhatIsOutOfRange) {
       {two("name = 'a', bus = 'i2c1', motor = 5", "name = 'b', bus = 'i2c1'"), "motor"},
       {two("name = 'a', bus = 'i2c1', baud = '0 baud'", "name = 'b', bus = 'i2c1'"), "baud"},
       {two("name = 'a', bus = 'i2c1', colour = 1", "name = 'b', bus = 'i2c1'"), "unknown key"},
-      {read_text(board_with("instruction = '0.5 ns'")), "instruction"},
-      {read_text(board_with("instruction = '2 us'")), "instruction"},
+      {read_text(board_with("timing = '0.5 ns'")), "timing"},
+      {read_text(board_with("timing = '2 us'")), "timing"},
       {read_text("return { board = 'b', mcu = 'm', hse = '0 Hz' }"), "hse"},
       {read_text("return { board = 'b', hse = '1 Hz' }"), "mcu"},
       {read_text("return {"), "board.lua"},

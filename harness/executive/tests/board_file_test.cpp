@@ -26,11 +26,20 @@ nlohmann::json json_of(const Board& board) {
   return nlohmann::json::parse(board_json(board, {.image = "i.elf"}));
 }
 
-TEST(BoardFile, ACrystalStartsAfterAFifthOfAMillisecondUnlessTheFileKnowsBetter) {
-  EXPECT_EQ(json_of(read("").value())["hse_start_ns"], 200'000);
-  const Board slow = read(R"(hse_start = "2 ms")").value();
-  EXPECT_EQ(json_of(slow)["hse_start_ns"], 2'000'000);
-  EXPECT_EQ(slow.timing_profile(), "8 ns per instruction, crystal ready after 2 ms");
+TEST(BoardFile, ACrystalStartsAfterTwoMillisecondsUnlessTheFileKnowsBetter) {
+  EXPECT_EQ(json_of(read("").value())["hse_start_ns"], 2'000'000);
+  const Board quick = read(R"(hse_start = "0.2 ms")").value();
+  EXPECT_EQ(json_of(quick)["hse_start_ns"], 200'000);
+  EXPECT_EQ(quick.timing_profile(), "CPU cycles (+-10 %), crystal ready after 0.2 ms");
+}
+
+TEST(BoardFile, TimePassesByCyclesUnlessTheFileFixesIt) {
+  EXPECT_EQ(json_of(read("").value())["ns_per_instruction"], 0);
+  EXPECT_EQ(json_of(read(R"(timing = "cycles")").value())["ns_per_instruction"], 0);
+  const Board fixed = read(R"(timing = "8 ns")").value();
+  EXPECT_EQ(json_of(fixed)["ns_per_instruction"], 8);
+  EXPECT_EQ(fixed.timing_profile(), "8 ns per instruction, crystal ready after 2 ms");
+  EXPECT_NE(complaint(R"(timing = "8 instructions")").find("timing"), std::string::npos);
 }
 
 TEST(BoardFile, PinsCarryTheirResistorAndTheirBus) {

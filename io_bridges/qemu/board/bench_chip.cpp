@@ -134,6 +134,8 @@ class BenchChip final : public stm32::ChipModel {
  public:
   explicit BenchChip(const stm32::ChipHost& host)
       : block_(host), regions_{{0x40000000, 0x400, &block_}} {}
+  cycles::FlashTiming flash_timing() const override { return {}; }  // no wait states, ever
+  void on_flash_timing_change(std::function<void()>) override {}
 
   const std::vector<stm32::Region>& regions() const override { return regions_; }
   void reset(stm32::ResetCause cause) override { block_.was_reset(cause); }

@@ -45,12 +45,13 @@ Board::Board(Setup setup, io::Channel channel, Emulator& emulator)
       devices_({events_, *chip_, happened_, [this](const io::Finding& f) { find(f); },
                 setup_.config.seed}),
       hangs_(events_, emulator, happened_),
-      systick_(events_, chip_->clocks(),
-               [this] {
-                 watch_.line_changed(kSysTickException, true, events_.now());
-                 emulator_.pend_systick();
-               }),
-      cycle_counter_(events_, chip_->clocks()),
+      systick_(
+          events_, chip_->clocks(), [this] { return emulator_.ahead_ns(); },
+          [this] {
+            watch_.line_changed(kSysTickException, true, events_.now());
+            emulator_.pend_systick();
+          }),
+      cycle_counter_([this] { return emulator_.core_cycles(); }),
       unanswered_(
           kPeripherals, [this] { return emulator_.accessing_pc(); },
           [this] { return events_.now(); },
@@ -69,9 +70,10 @@ Board::Board(Setup setup, io::Channel channel, Emulator& emulator)
   events_.set_clock([this] { return emulator_.now(); });
   events_.set_rearm([this](Nanoseconds deadline) { emulator_.arm(deadline); });
   chip_->on_clock_change([this] {
+    retime();
     systick_.clocks_changed();
-    cycle_counter_.clocks_changed();
   });
+  chip_->on_flash_timing_change([this] { retime(); });
   chip_->on_reset_request([this](stm32::ResetCause cause) { emulator_.reset_core(cause); });
 }
 
@@ -125,6 +127,7 @@ std::vector<std::uint8_t> Board::system_rom() const {
 
 void Board::power_on(const std::string& versions) {
   chip_->reset(stm32::ResetCause::power_on);
+  retime();
   systick_.reset();
   cycle_counter_.reset();
   channel_.set_hello(versions);
@@ -196,6 +199,12 @@ void Board::obey(const io::Reader& message) {
   }
 }
 
+void Board::retime() {
+  const stm32::Clocks& clocks = chip_->clocks();
+  if (clocks.hclk_Hz() <= 0.0) return;  // not out of reset
+  emulator_.retime({clocks.hclk_Hz(), clocks.pclk1_Hz(), clocks.pclk2_Hz(), chip_->flash_timing()});
+}
+
 // The firmware may set up its clocks at any time; the harness learns at the next boundary.
 void Board::report_clocks() {
   const stm32::Clocks& clocks = chip_->clocks();
@@ -227,6 +236,7 @@ void Board::refuse(const Error& error) {
 
 // Instructions take the same time whatever SYSCLK is: a profile for 168 MHz does not fit 16 MHz.
 void Board::check_profile() {
+  if (setup_.config.ns_per_instruction == 0) return;  // it takes cycles
   if (profile_told_Hz_ == clocks_told_.sysclk_Hz) return;
   const double cycles =
       clocks_told_.sysclk_Hz * 1e-9 * static_cast<double>(setup_.config.ns_per_instruction);

@@ -93,6 +93,7 @@ class Board final : stm32::InterruptLines, stm32::SystemBus, stm32::FlashArray {
   void obey(const io::Reader& message);
   void hang(const io::FaultCommand& fault);
   Result<Done> watch_converters();
+  void retime();
   void report_clocks();
   void report_busy();
   void check_profile();

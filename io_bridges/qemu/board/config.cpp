@@ -146,7 +146,7 @@ Result<BoardConfig> parse_board(std::string_view json_text) {
   if (config.image.empty()) keys.fail("image", "is missing");
   if (!(config.hse_Hz >= 0.0 && config.hse_Hz <= 50e6)) keys.fail("hse_Hz", "is outside 0..50 MHz");
   if (config.hse_start_ns < 0) keys.fail("hse_start_ns", "is negative");
-  if (config.ns_per_instruction <= 0) keys.fail("ns_per_instruction", "is not positive");
+  if (config.ns_per_instruction < 0) keys.fail("ns_per_instruction", "is negative");
   if (keys.failed()) {
     Error error = keys.error();
     error.place = (config.board.empty() ? "board" : config.board) + ": " + error.place;

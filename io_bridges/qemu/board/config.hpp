@@ -34,8 +34,8 @@ struct BoardConfig {
   std::string boot_image;   // of a boot loader that lies in flash beside the image; empty: none
   std::uint32_t start = 0;  // address of the vector table at reset; 0: the start of flash
   double hse_Hz = 0.0, lse_Hz = 0.0;
-  std::int64_t hse_start_ns = 200'000;
-  std::int64_t ns_per_instruction = 8;
+  std::int64_t hse_start_ns = 2'000'000;
+  std::int64_t ns_per_instruction = 0;  // 0: by the cycles that the core takes
   std::uint64_t seed = 1;
   std::int64_t sync_ns = 1'000'000;
   int gdb_port = 0;

@@ -9,12 +9,18 @@ constexpr std::uint32_t kCsr = 0x0, kRvr = 0x4, kCvr = 0x8, kCalib = 0xC;
 constexpr std::uint32_t kEnable = 1u << 0, kTickInt = 1u << 1, kClkSource = 1u << 2,
                         kCountFlag = 1u << 16;
 constexpr std::uint32_t kDwtCtrl = 0x0, kDwtCyccnt = 0x4;
+constexpr double kRounding = 1e-3;  // of a tick, in the core's time
 constexpr std::uint32_t kFourComparators = 4u << 28;
 
 }  // namespace
 
-SysTick::SysTick(io::EventQueue& events, const stm32::Clocks& clocks, std::function<void()> pend)
-    : events_(events), clocks_(clocks), pend_(std::move(pend)), wrap_(events, [this] { wrap(); }) {}
+SysTick::SysTick(io::EventQueue& events, const stm32::Clocks& clocks,
+                 std::function<double()> ahead_ns, std::function<void()> pend)
+    : events_(events),
+      clocks_(clocks),
+      ahead_ns_(std::move(ahead_ns)),
+      pend_(std::move(pend)),
+      wrap_(events, [this] { wrap(); }) {}
 
 double SysTick::frequency_Hz() const {
   return (control_ & kClkSource) != 0 ? clocks_.hclk_Hz() : clocks_.hclk_Hz() / 8.0;
@@ -28,17 +34,18 @@ void SysTick::reset() {
 
 std::uint32_t SysTick::current() const {
   if ((control_ & kEnable) == 0 || anchor_Hz_ <= 0.0) return frozen_;
-  const double ticks = static_cast<double>(events_.now() - anchor_ns_) * 1e-9 * anchor_Hz_;
+  const double now_ns = static_cast<double>(events_.now()) + ahead_ns_();
+  const double ticks = (now_ns - anchor_ns_) * 1e-9 * anchor_Hz_;
   const double left = to_first_wrap_ + static_cast<double>(wraps_) * (reload_ + 1.0) - ticks;
   // `left` ticks to the next wrap: the counter reads that, and 0 in the last tick is the wrap itself.
-  const double value = std::ceil(left - 1e-6);
+  const double value = std::ceil(left - kRounding);
   if (value <= 0.0) return reload_;
   return value > reload_ + 1.0 && wraps_ > 0 ? reload_
                                              : static_cast<std::uint32_t>(value) & 0xFFFFFFu;
 }
 
 void SysTick::start_from(std::uint32_t value) {
-  anchor_ns_ = events_.now();
+  anchor_ns_ = static_cast<double>(events_.now()) + ahead_ns_();
   anchor_Hz_ = frequency_Hz();
   wraps_ = 0;
   // From 0 the next tick loads RVR; COUNTFLAG rises when 1 goes to 0 (B3.3.1).
@@ -49,7 +56,7 @@ void SysTick::start_from(std::uint32_t value) {
 void SysTick::schedule() {
   if ((control_ & kEnable) == 0 || reload_ == 0 || anchor_Hz_ <= 0.0) return wrap_.cancel();
   const double ticks = to_first_wrap_ + static_cast<double>(wraps_) * (reload_ + 1.0);
-  wrap_.at(anchor_ns_ + static_cast<Nanoseconds>(std::llround(ticks / anchor_Hz_ * 1e9)));
+  wrap_.at(static_cast<Nanoseconds>(std::llround(anchor_ns_ + ticks / anchor_Hz_ * 1e9)));
 }
 
 void SysTick::wrap() {
@@ -104,9 +111,6 @@ void SysTick::write(std::uint32_t offset, std::uint32_t value, unsigned /*size*/
   }
 }
 
-CycleCounter::CycleCounter(io::EventQueue& events, const stm32::Clocks& clocks)
-    : events_(events), clocks_(clocks) {}
-
 void CycleCounter::reset() {
   control_ = 0;
   trace_ = false;
@@ -114,19 +118,12 @@ void CycleCounter::reset() {
 }
 
 std::uint32_t CycleCounter::count() const {
-  if (!counting()) return base_;
-  const double cycles = static_cast<double>(events_.now() - base_ns_) * 1e-9 * base_Hz_;
-  return base_ + static_cast<std::uint32_t>(static_cast<std::uint64_t>(cycles));
+  return counting() ? base_ + static_cast<std::uint32_t>(cycles_() - base_cycles_) : base_;
 }
 
 void CycleCounter::rebase(std::uint32_t value) {
   base_ = value;
-  base_ns_ = events_.now();
-  base_Hz_ = clocks_.hclk_Hz();
-}
-
-void CycleCounter::clocks_changed() {
-  rebase(count());
+  base_cycles_ = cycles_();
 }
 
 void CycleCounter::set_trace_enabled(bool on) {

@@ -3,7 +3,7 @@
 //
 //   Source    ARMv7-M ARM: B3.3 SysTick, C1.8 DWT; RM0090 38.16 DBGMCU
 //   SysTick   wraps at exact multiples of (RVR + 1) / f from its start: no drift by rounding
-//   CYCCNT    counts HCLK cycles of virtual time: it shows time, not QEMU's instruction count
+//   CYCCNT    counts HCLK's cycles, asleep or not
 //   Left out  DWT comparators and profiling counters (read 0), FPB, ITM and TPIU output (swallowed)
 #pragma once
 #include <cstdint>
@@ -17,7 +17,9 @@ using io::Nanoseconds;
 
 class SysTick final : public stm32::Peripheral {
  public:
-  SysTick(io::EventQueue& events, const stm32::Clocks& clocks, std::function<void()> pend);
+  // `ahead_ns`: of the core's own time before that of events.
+  SysTick(io::EventQueue& events, const stm32::Clocks& clocks, std::function<double()> ahead_ns,
+          std::function<void()> pend);
 
   const char* name() const override { return "SysTick"; }
   std::uint32_t read(std::uint32_t offset, unsigned size) override;
@@ -34,12 +36,13 @@ class SysTick final : public stm32::Peripheral {
 
   io::EventQueue& events_;
   const stm32::Clocks& clocks_;
+  std::function<double()> ahead_ns_;
   std::function<void()> pend_;
   io::Event wrap_;
   std::uint32_t control_ = 0, reload_ = 0;
   std::uint32_t frozen_ = 0;  // value while stopped
   bool flag_ = false;
-  Nanoseconds anchor_ns_ = 0;   // the counter was `anchor_value_` here
+  double anchor_ns_ = 0;        // the count began here
   double to_first_wrap_ = 0.0;  // ticks from the anchor to the first wrap
   std::int64_t wraps_ = 0;      // since the anchor
   double anchor_Hz_ = 0.0;
@@ -47,13 +50,12 @@ class SysTick final : public stm32::Peripheral {
 
 class CycleCounter final : public stm32::Peripheral {
  public:
-  CycleCounter(io::EventQueue& events, const stm32::Clocks& clocks);
+  explicit CycleCounter(std::function<std::uint64_t()> cycles) : cycles_(std::move(cycles)) {}
 
   const char* name() const override { return "DWT"; }
   std::uint32_t read(std::uint32_t offset, unsigned size) override;
   void write(std::uint32_t offset, std::uint32_t value, unsigned size) override;
   void reset() override;
-  void clocks_changed();
   void set_trace_enabled(bool on);  // DEMCR.TRCENA
 
  private:
@@ -61,13 +63,11 @@ class CycleCounter final : public stm32::Peripheral {
   std::uint32_t count() const;
   void rebase(std::uint32_t value);
 
-  io::EventQueue& events_;
-  const stm32::Clocks& clocks_;
+  std::function<std::uint64_t()> cycles_;
   bool trace_ = false;
   std::uint32_t control_ = 0;
   std::uint32_t base_ = 0;
-  Nanoseconds base_ns_ = 0;
-  double base_Hz_ = 0.0;
+  std::uint64_t base_cycles_ = 0;
 };
 
 // A few words with fixed or remembered values; other offsets read 0.

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "io_bridges/devices/event_queue.hpp"
+#include "io_bridges/qemu/board/core_timing.hpp"
 #include "io_bridges/qemu/stm32/reset_cause.hpp"
 
 namespace whirl::board {
@@ -38,6 +39,12 @@ class Emulator {
 
   // The instruction whose register access is being served; exact to its basic block's last access.
   virtual std::uint32_t accessing_pc() const = 0;
+  // The core's own time is ahead of now() by that much, less than an instruction.
+  virtual double ahead_ns() const = 0;
+  // Of HCLK since power-on, as of the register access or event that is being served.
+  virtual std::uint64_t core_cycles() const = 0;
+  // The firmware has changed what the core's time depends on: from its next instruction on.
+  virtual void retime(const CoreTiming& timing) = 0;
   // How long the core has slept so far.
   virtual Nanoseconds slept_ns() const = 0;
   // Ends the process, in order, at once.

@@ -103,6 +103,7 @@ void Watch::stack_pointer_loads(const CoreState& core, bool may_be_new) {
 
 bool Watch::exception(const CoreState& before, const CoreState& after) {
   see(before);
+  counted_until_ns_ = after.now;
   if (before.exception() != 0 && before.pc >= (kExcReturn & ~1u)) {
     leave(before.now);
     return arrive(after);

@@ -8,9 +8,9 @@
 //             one that runs, so execution of a call is what its own context ran meanwhile
 //   Returns   a call ends where its link register said, with the stack pointer of its entry; a tail
 //             call counts for the caller. A handler's own call ends with the handler.
-//   Latency   of an exception: from the request of its line to the first instruction of its handler,
-//             without the twelve cycles that the core itself takes to stack; it goes with each call
-//             that the handler makes
+//   Latency   of an exception: from the request of its line to the first instruction of its handler;
+//             it goes with each call that the handler makes. What the core takes to enter and to leave
+//             counts for no context
 //   Again     a function that comes to its first instruction a second time, with the link register and
 //             stack pointer of a call that is open, goes on with that call; after a load of the
 //             stack pointer (longjmp) it is a new one

@@ -58,32 +58,42 @@ Instruments::Instruments(Machine& machine) : machine_(machine) {
 
 void Instruments::translated(qemu_plugin_tb* block) {
   const std::size_t length = qemu_plugin_tb_n_insns(block);
-  const auto start = static_cast<std::uint32_t>(qemu_plugin_tb_vaddr(block));
-  qemu_plugin_register_vcpu_tb_exec_inline(block, 0, &machine_.timeline().instructions, length);
   handler_mode_ = (machine_.core_register(kXpsr) & kIpsr) != 0;
-  put_block_start(qemu_plugin_tb_get_insn(block, 0), start, static_cast<std::uint32_t>(length));
+  found_.clear();
+  find_at_start(static_cast<std::uint32_t>(qemu_plugin_tb_vaddr(block)));
   for (std::size_t i = 0; i < length; ++i) {
-    put_instruction(qemu_plugin_tb_get_insn(block, i), static_cast<std::uint32_t>(length - i));
+    find_in(qemu_plugin_tb_get_insn(block, i), static_cast<std::uint32_t>(i));
+  }
+  std::vector<std::uint32_t> places;
+  for (const Site& site : found_) places.push_back(site.place);
+  const std::vector<std::int64_t> times = machine_.clock().translated(block, places);
+  for (std::size_t n = 0; n < found_.size(); ++n) {
+    found_[n].time = times[n];
+    put(qemu_plugin_tb_get_insn(block, found_[n].place), found_[n]);
   }
 }
 
-void Instruments::put_block_start(qemu_plugin_insn* insn, std::uint32_t address,
-                                  std::uint32_t length) {
+void Instruments::code_thrown_away() {
+  sites_.clear();
+  machine_.clock().code_thrown_away();
+}
+
+void Instruments::find_at_start(std::uint32_t address) {
   if (return_sites_.count(address) != 0) {
-    put(insn, {this, Kind::return_site, 0, address, length});
+    found_.push_back({this, Kind::return_site, 0, address, 0, 0});
   }
   const auto [first, last] = functions_.equal_range(address);
   for (auto it = first; it != last; ++it) {
-    put(insn, {this, Kind::function, it->second, address, length});
+    found_.push_back({this, Kind::function, it->second, address, 0, 0});
   }
 }
 
-void Instruments::put_instruction(qemu_plugin_insn* insn, std::uint32_t behind) {
+void Instruments::find_in(const qemu_plugin_insn* insn, std::uint32_t place) {
   const Code code = code_of(insn);
-  if (is_wfi(code)) put(insn, {this, Kind::sleep, 0, 0, behind});
+  if (is_wfi(code)) found_.push_back({this, Kind::sleep, 0, 0, place, 0});
   if (handler_mode_) return;  // where a handler leaves its thread is seen at its return
-  if (loads_sp(code)) put(insn, {this, Kind::stack_load, 0, 0, behind});
-  if (moves_to_sp(code)) put(insn, {this, Kind::stack_move, 0, 0, behind});
+  if (loads_sp(code)) found_.push_back({this, Kind::stack_load, 0, 0, place, 0});
+  if (moves_to_sp(code)) found_.push_back({this, Kind::stack_move, 0, 0, place, 0});
 }
 
 void Instruments::put(qemu_plugin_insn* insn, const Site& site) {
@@ -98,7 +108,7 @@ void Instruments::put(qemu_plugin_insn* insn, const Site& site) {
 }
 
 board::CoreState Instruments::core_at(const Site& site) const {
-  return machine_.core_at(machine_.timeline().at(site.behind));
+  return machine_.core_at(machine_.clock().at(site.time));
 }
 
 void Instruments::reached(const Site& site) {

@@ -2,7 +2,7 @@
 //
 // Which instructions of the guest are instrumented, and what happens there.
 //
-//   Every block       its length is added to the time line (in line, no call)
+//   Every block       its time is counted (core_clock.hpp), mostly without a call
 //   WFI               exact sleep (machine.hpp)
 //   Watched function  its first instruction; and the addresses to which it returns, learned at run
 //                     time: a new one throws all translated code away once, so that it is seen
@@ -26,7 +26,7 @@ class Instruments {
   explicit Instruments(Machine& machine);
 
   void translated(qemu_plugin_tb* block);
-  void code_thrown_away() { sites_.clear(); }
+  void code_thrown_away();
 
  private:
   enum class Kind : std::uint8_t { sleep, function, return_site, stack_load, stack_move };
@@ -35,12 +35,13 @@ class Instruments {
     Kind kind;
     std::uint16_t number;   // of the watched function
     std::uint32_t address;  // without the Thumb bit
-    std::uint32_t behind;   // instructions of the block from this one to its end
+    std::uint32_t place;    // in its block, in instructions
+    std::int64_t time;      // for CoreClock::at
   };
 
+  void find_at_start(std::uint32_t address);
+  void find_in(const qemu_plugin_insn* insn, std::uint32_t place);
   void put(qemu_plugin_insn* insn, const Site& site);
-  void put_block_start(qemu_plugin_insn* insn, std::uint32_t address, std::uint32_t length);
-  void put_instruction(qemu_plugin_insn* insn, std::uint32_t behind);
   void reached(const Site& site);
   void enter_function(const Site& site);
   board::CoreState core_at(const Site& site) const;
@@ -48,7 +49,8 @@ class Instruments {
   Machine& machine_;
   std::multimap<std::uint32_t, std::uint16_t> functions_;  // address, watch number
   std::set<std::uint32_t> return_sites_;
-  std::deque<Site> sites_;  // translated code points at them
+  std::vector<Site> found_;  // in the block that is being translated
+  std::deque<Site> sites_;   // translated code points at them
   bool handler_mode_ = false;
 };
 

@@ -8,20 +8,37 @@
 #include <cstring>
 #include <utility>
 
+#include "io_bridges/qemu/plugin/cycle_clock.hpp"
 #include "io_bridges/qemu/plugin/exception_hook.hpp"
+#include "io_bridges/qemu/plugin/fixed_rate.hpp"
 
 namespace whirl::qemu {
 namespace {
 
 constexpr int kSysTickException = 15;
 constexpr int kCoreRegisters = 16, kSp = 13, kLr = 14, kPc = 15, kXpsr = 25;
+constexpr std::uint32_t kExc_return = 0xFFFFFFE0u, kNo_floating = 1u << 4;
+constexpr std::uint32_t kFpccr = 0xF34;  // in the System Control Space
 constexpr int kRounds = 64;  // of a sleep before other work of the CPU's thread gets a turn
 
 }  // namespace
 
 Machine::Machine(const Api& api, board::Setup setup, io::Channel channel)
     : api_(api), board_(std::move(setup), std::move(channel), *this) {
-  timeline_.ns_per_instruction = board_.config().ns_per_instruction;
+  const auto& config = board_.config();
+  if (config.ns_per_instruction > 0) {
+    clock_ = std::make_unique<FixedRate>(config.ns_per_instruction);
+  } else {
+    clock_ = std::make_unique<CycleClock>(
+        api, board_.part().is_m4 ? cycles::Core::cortex_m4f : cycles::Core::cortex_m3,
+        [this] { clock_not_as_known(); });
+  }
+}
+
+void Machine::clock_not_as_known() {
+  board_.refuse({ErrorKind::host, "QEMU", "it does not count its instructions as known",
+                 std::string("use QEMU ") + tested_versions() +
+                     ", or a board file with a fixed timing (timing = \"8 ns\")"});
 }
 
 Machine::~Machine() = default;
@@ -51,6 +68,7 @@ Result<Done> Machine::build(const std::string& versions) {
     return whirl::Error{ErrorKind::internal, "QEMU", "the core's registers are not side by side",
                         ""};
   }
+  if (auto found = clock_->find_qemu(); !found) return found;
   if (const auto hooked = hook_exceptions(api_, cpu_, [this] { take_exception(); }); !hooked) {
     return hooked.error();
   }
@@ -152,10 +170,16 @@ board::CoreState Machine::core_at(io::Nanoseconds now) const {
 // Between two instructions, with all registers in place and QEMU's clock readable.
 void Machine::take_exception() {
   anchor();
-  const board::CoreState before = core_at(timeline_.anchor_ns);
+  const board::CoreState before = core_at(clock_->core_now());
+  const auto fpccr = [this] { return system_control_->word(kFpccr); };
+  const bool leaves = before.exception() != 0 && before.pc >= kExc_return;
+  std::uint32_t floating = leaves && (before.pc & kNo_floating) == 0 ? fpccr() : 0;
   api_.arm_v7m_cpu_do_interrupt(cpu_);
-  board_.exception(before, core_at(timeline_.anchor_ns),
-                   [this](int number) { return core_register(number); });
+  board::CoreState after = core_at(before.now);
+  if (!leaves && (after.lr & kNo_floating) == 0) floating = fpccr();
+  clock_->exception(before, after, floating);
+  after.now = clock_->core_now();
+  board_.exception(before, after, [this](int number) { return core_register(number); });
 }
 
 // QEMU's CPU keeps R0 to R15 side by side. Where, is found by writing a pattern the official way.
@@ -183,7 +207,6 @@ io::Nanoseconds Machine::slept_ns() const {
 }
 
 void Machine::on_timer() {
-  if (asleep_since_ns_ < 0 && timeline_.at(0) != now()) ++timeline_.ran_on;
   anchor();
   if (asleep_since_ns_ < 0) act_on_deferred();  // what hold() left
   board_.on_timer();
@@ -194,7 +217,8 @@ std::uint32_t Machine::accessing_pc() const {
 }
 
 void Machine::core_stopped(board::StoppedCore why) {
-  board_.core_stopped(why, timeline_.at(0), [this](int number) { return core_register(number); });
+  board_.core_stopped(why, clock_->core_now(),
+                      [this](int number) { return core_register(number); });
 }
 
 void Machine::end() {
@@ -230,9 +254,7 @@ void Machine::sleep() {
     if (!deferred_.empty() && !catch_up()) return hold();
   }
   if (!catch_up()) return hold();
-  slept_ns_ += sleep_now_ns_ - asleep_since_ns_;
-  asleep_since_ns_ = -1;
-  anchor();
+  wake();
   // Idle still: other work of this thread gets a turn, then the sleep goes on.
   if (api_.cpu_thread_is_idle(cpu_)) {
     before_sleep();
@@ -269,8 +291,16 @@ bool Machine::catch_up() {
 
 // The timer is set to where the board is already; when gdb lets go it fires, and the rest follows.
 void Machine::hold() {
-  slept_ns_ += sleep_now_ns_ - asleep_since_ns_;
+  wake();
+}
+
+void Machine::wake() {
+  slept_ns_ += clock_->slept(asleep_since_ns_, sleep_now_ns_);
   asleep_since_ns_ = -1;
+}
+
+void Machine::retime(const board::CoreTiming& timing) {
+  if (clock_->retime(timing)) throw_code_away();
 }
 
 void Machine::act_on_deferred() {

@@ -20,9 +20,9 @@
 #include <vector>
 
 #include "io_bridges/qemu/board/board.hpp"
+#include "io_bridges/qemu/plugin/core_clock.hpp"
 #include "io_bridges/qemu/plugin/qemu_api.hpp"
 #include "io_bridges/qemu/plugin/system_control.hpp"
-#include "io_bridges/qemu/plugin/timeline.hpp"
 
 namespace whirl::qemu {
 
@@ -48,9 +48,10 @@ class Machine final : public board::Emulator {
   [[noreturn]] void core_stopped(board::StoppedCore why);
   // The core reaches for what is no memory.
   void accessed(std::uint32_t address);
+  void waits_for_bus(std::uint32_t address, bool write) { clock_->accessed(address, write); }
 
   // For the instruments.
-  Timeline& timeline() { return timeline_; }
+  CoreClock& clock() { return *clock_; }
   void throw_code_away() { api_.tb_flush(cpu_); }
 
   io::Nanoseconds now() const override {
@@ -67,6 +68,9 @@ class Machine final : public board::Emulator {
   void write_cells(std::uint32_t address, const void* from, std::size_t size) override;
   std::uint32_t accessing_pc() const override;
   io::Nanoseconds slept_ns() const override;
+  double ahead_ns() const override { return asleep_since_ns_ < 0 ? clock_->ahead_ns() : 0.0; }
+  std::uint64_t core_cycles() const override { return clock_->core_cycles(); }
+  void retime(const board::CoreTiming& timing) override;
   [[noreturn]] void end() override;
 
  private:
@@ -78,7 +82,9 @@ class Machine final : public board::Emulator {
   };
   static std::uint64_t read_window(void* window, hwaddr offset, unsigned size);
   static void write_window(void* window, hwaddr offset, std::uint64_t value, unsigned size);
-  void anchor() { timeline_.anchor(now()); }
+  void anchor() { clock_->anchor(now()); }
+  [[noreturn]] void clock_not_as_known();
+  void wake();
   void on_timer();
   void take_exception();
   bool find_registers();
@@ -117,7 +123,7 @@ class Machine final : public board::Emulator {
   GByteArray* register_text_ = nullptr;
   void* parking_ = nullptr;  // bottom half of the main loop
   Timer timer_;
-  Timeline timeline_;
+  std::unique_ptr<CoreClock> clock_;
   const std::uint32_t* core_registers_ = nullptr;  // R0..R15 in QEMU's CPU; its env begins there
   io::Nanoseconds slept_ns_ = 0, asleep_since_ns_ = -1, sleep_now_ns_ = 0;
   std::chrono::steady_clock::time_point gave_way_{};  // host's clock: moves nothing in the guest

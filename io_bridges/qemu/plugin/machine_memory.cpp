@@ -61,13 +61,16 @@ void Machine::accessed(std::uint32_t address) {
 std::uint64_t Machine::read_window(void* window, hwaddr offset, unsigned size) {
   auto& [machine, block, base] = *static_cast<Window*>(window);
   machine->accessed(base + static_cast<std::uint32_t>(offset));
-  return block->read(static_cast<std::uint32_t>(offset), size);
+  const std::uint32_t value = block->read(static_cast<std::uint32_t>(offset), size);
+  machine->waits_for_bus(base, false);
+  return value;
 }
 
 void Machine::write_window(void* window, hwaddr offset, std::uint64_t value, unsigned size) {
   auto& [machine, block, base] = *static_cast<Window*>(window);
   machine->accessed(base + static_cast<std::uint32_t>(offset));
   block->write(static_cast<std::uint32_t>(offset), static_cast<std::uint32_t>(value), size);
+  machine->waits_for_bus(base, true);
 }
 
 MemoryRegion& Machine::new_region() {

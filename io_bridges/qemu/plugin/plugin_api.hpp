@@ -20,6 +20,8 @@ std::size_t qemu_plugin_insn_size(const qemu_plugin_insn*);
 std::uint64_t qemu_plugin_insn_vaddr(const qemu_plugin_insn*);
 void qemu_plugin_register_vcpu_insn_exec_cb(qemu_plugin_insn*, qemu_plugin_insn_callback, int flags,
                                             void* userdata);
+void qemu_plugin_register_vcpu_tb_exec_cb(qemu_plugin_tb*, qemu_plugin_insn_callback, int flags,
+                                          void* userdata);
 // operation 0: add `number` to the 64-bit word at `where`
 void qemu_plugin_register_vcpu_tb_exec_inline(qemu_plugin_tb*, int operation, void* where,
                                               std::uint64_t number);

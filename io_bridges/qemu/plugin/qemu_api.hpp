@@ -125,6 +125,8 @@ constexpr unsigned kWord = 2;     // MO_32, little endian
   F(object_get_typename, const char*, (const void*))                                               \
   F(object_type_get_instance_size, std::size_t, (const char*))                                     \
   F(tb_flush, void, (Cpu*))                                                                        \
+  F(curr_cflags, std::uint32_t, (Cpu*))                                                            \
+  F(cpu_loop_exit_noexc, void, (Cpu*))                                                             \
   F(qmp_query_version, VersionInfo*, (Error**))                                                    \
   F(g_byte_array_new, GByteArray*, (void))                                                         \
   F(g_byte_array_set_size, GByteArray*, (GByteArray*, unsigned))

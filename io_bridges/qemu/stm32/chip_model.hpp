@@ -16,6 +16,7 @@
 #include "io_bridges/devices/i2c_bus.hpp"
 #include "io_bridges/devices/spi_bus.hpp"
 #include "io_bridges/devices/wire.hpp"
+#include "io_bridges/qemu/cycles/flash_timing.hpp"
 #include "io_bridges/qemu/stm32/flash_array.hpp"
 #include "io_bridges/qemu/stm32/peripheral.hpp"
 #include "io_bridges/qemu/stm32/reset_cause.hpp"
@@ -76,6 +77,9 @@ class ChipModel {
   virtual const Clocks& clocks() const = 0;
   // Told after each change of a clock, for what is clocked outside of the chip model (SysTick).
   virtual void on_clock_change(std::function<void()> changed) = 0;
+  // The flash interface as it is set up now, and who is told when that changes.
+  virtual cycles::FlashTiming flash_timing() const = 0;
+  virtual void on_flash_timing_change(std::function<void()> changed) = 0;
   virtual double sysclk_Hz() const = 0;  // what the firmware has set up now
 };
 

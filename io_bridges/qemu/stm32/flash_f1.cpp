@@ -30,11 +30,21 @@ FlashF1::FlashF1(Chip chip, FlashArray& array, std::uint32_t bytes)
 
 void FlashF1::reset() {
   done_.cancel();
-  acr_ = 0x30;
+  set_acr(0x30);
   sr_ = ar_ = 0;
   cr_ = LOCK;
   keys_.reset();
   update();
+}
+
+cycles::FlashTiming FlashF1::timing() const {
+  constexpr std::uint32_t kPrftbe = 1u << 4;
+  return {static_cast<int>(acr_ & 7), 8, (acr_ & kPrftbe) != 0, false, false};
+}
+
+void FlashF1::set_acr(std::uint32_t value) {
+  acr_ = value;
+  if (timing_changed_) timing_changed_();
 }
 
 std::uint32_t FlashF1::read_word(std::uint32_t offset) {
@@ -57,8 +67,7 @@ std::uint32_t FlashF1::read_word(std::uint32_t offset) {
 void FlashF1::write_word(std::uint32_t offset, std::uint32_t value) {
   switch (offset) {
     case ACR:
-      acr_ = (value & 0x1F) | ((value & 0x10) << 1);  // PRFTBS follows PRFTBE
-      return;
+      return set_acr((value & 0x1F) | ((value & 0x10) << 1));  // PRFTBS follows PRFTBE
     case KEYR:
       if ((cr_ & LOCK) != 0 && keys_.open(value)) cr_ &= ~LOCK;
       return;

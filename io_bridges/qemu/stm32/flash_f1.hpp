@@ -6,6 +6,7 @@
 //   Bus fault a store of another width, or without PG: store() answers false
 //   Left out  option bytes (OBR and WRPR read as erased), the stall of fetches while BSY
 #pragma once
+#include "io_bridges/qemu/cycles/flash_timing.hpp"
 #include "io_bridges/qemu/stm32/flash_array.hpp"
 #include "io_bridges/qemu/stm32/flash_keys.hpp"
 #include "io_bridges/qemu/stm32/word_block.hpp"
@@ -18,6 +19,8 @@ class FlashF1 final : public WordBlock {
 
   bool store(std::uint32_t address, unsigned size, std::uint32_t value);
   void reset() override;
+  cycles::FlashTiming timing() const;
+  void on_timing_change(std::function<void()> changed) { timing_changed_ = std::move(changed); }
 
  private:
   static constexpr std::uint32_t kPage = 1024, kBase = 0x08000000;
@@ -29,6 +32,7 @@ class FlashF1 final : public WordBlock {
   void busy(Nanoseconds duration);
   void done();
   void update();
+  void set_acr(std::uint32_t value);
   void check_latency();
 
   Chip chip_;
@@ -37,6 +41,7 @@ class FlashF1 final : public WordBlock {
   io::Event done_;
   std::uint32_t acr_ = 0x30, sr_ = 0, cr_ = 0x80, ar_ = 0;
   FlashKeys keys_ = kProgramKeys;
+  std::function<void()> timing_changed_;
   bool latency_reported_ = false;
 };
 

@@ -60,12 +60,24 @@ FlashF4::FlashF4(Chip chip, FlashArray& array, std::uint32_t bytes)
 
 void FlashF4::reset() {
   done_.cancel();
-  acr_ = sr_ = 0;
+  sr_ = 0;
+  set_acr(0);
   cr_ = LOCK;
   optcr_ |= OPTLOCK;
   keys_.reset();
   option_keys_.reset();
   update();
+}
+
+cycles::FlashTiming FlashF4::timing() const {
+  constexpr std::uint32_t kPrften = 1u << 8, kIcen = 1u << 9, kDcen = 1u << 10;
+  return {static_cast<int>(acr_ & 7), 16, (acr_ & kPrften) != 0, (acr_ & kIcen) != 0,
+          (acr_ & kDcen) != 0};
+}
+
+void FlashF4::set_acr(std::uint32_t value) {
+  acr_ = value;
+  if (timing_changed_) timing_changed_();
 }
 
 std::uint32_t FlashF4::read_word(std::uint32_t offset) {
@@ -86,8 +98,7 @@ std::uint32_t FlashF4::read_word(std::uint32_t offset) {
 void FlashF4::write_word(std::uint32_t offset, std::uint32_t value) {
   switch (offset) {
     case ACR:
-      acr_ = value & 0x1F07;
-      return;
+      return set_acr(value & 0x1F07);
     case KEYR:
       if ((cr_ & LOCK) != 0 && keys_.open(value)) cr_ &= ~LOCK;
       return;

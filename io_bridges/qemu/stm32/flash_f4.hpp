@@ -6,6 +6,7 @@
 //   Findings  too few wait states for HCLK (at 2.7 to 3.6 V)
 //   Left out  the core stalls on a fetch while BSY on the part; here it runs on. RDP is stored
 #pragma once
+#include "io_bridges/qemu/cycles/flash_timing.hpp"
 #include "io_bridges/qemu/stm32/flash_array.hpp"
 #include "io_bridges/qemu/stm32/flash_keys.hpp"
 #include "io_bridges/qemu/stm32/word_block.hpp"
@@ -19,6 +20,8 @@ class FlashF4 final : public WordBlock {
   // The CPU (or DMA) stored into the array's addresses.
   void store(std::uint32_t address, unsigned size, std::uint32_t value);
   void reset() override;
+  cycles::FlashTiming timing() const;
+  void on_timing_change(std::function<void()> changed) { timing_changed_ = std::move(changed); }
 
  private:
   std::uint32_t read_word(std::uint32_t offset) override;
@@ -31,6 +34,7 @@ class FlashF4 final : public WordBlock {
   void fail(std::uint32_t error);
   void done();
   void update();
+  void set_acr(std::uint32_t value);
   void check_latency();
 
   Chip chip_;
@@ -39,6 +43,7 @@ class FlashF4 final : public WordBlock {
   io::Event done_;
   std::uint32_t acr_ = 0, sr_ = 0, cr_ = 0x80000000, optcr_ = 0x0FFFAAED;
   FlashKeys keys_ = kProgramKeys, option_keys_{0x08192A3B, 0x4C5D6E7F};
+  std::function<void()> timing_changed_;
   bool latency_reported_ = false;
 };
 

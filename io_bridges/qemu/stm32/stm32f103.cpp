@@ -29,6 +29,10 @@ class Stm32f103 final : F103Core, public Part {
  public:
   explicit Stm32f103(const ChipHost& host);
 
+  cycles::FlashTiming flash_timing() const override { return flash_.timing(); }
+  void on_flash_timing_change(std::function<void()> changed) override {
+    flash_.on_timing_change(std::move(changed));
+  }
   bool flash_store(std::uint32_t address, unsigned size, std::uint32_t value) override {
     return flash_.store(address, size, value);
   }

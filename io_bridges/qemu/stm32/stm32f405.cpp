@@ -51,6 +51,10 @@ class Stm32f405 final : F405Core, public Part {
     if (cause == ResetCause::power_on) backup_sram_.clear();
     Part::reset(cause);
   }
+  cycles::FlashTiming flash_timing() const override { return flash_.timing(); }
+  void on_flash_timing_change(std::function<void()> changed) override {
+    flash_.on_timing_change(std::move(changed));
+  }
   bool flash_store(std::uint32_t address, unsigned size, std::uint32_t value) override {
     flash_.store(address, size, value);
     return true;

@@ -13,11 +13,14 @@ std::string image(const std::string& name) {
 VirtualBoardOptions options_for(const BoardSetup& setup) {
   std::string watch;
   for (const std::string& name : setup.watch) watch += (watch.empty() ? "\"" : ",\"") + name + "\"";
+  // Most images here are counted by hand in instructions: 8 ns each, unless said.
+  const bool timed = setup.more.find("ns_per_instruction") != std::string::npos;
+  const std::string more = std::string(timed ? "" : R"(,"ns_per_instruction":8)") +
+                           (setup.more.empty() ? "" : "," + setup.more);
   VirtualBoardOptions options;
   options.board_json = R"({"board":"bench","hse_Hz":8000000,"mcu":")" + setup.mcu +
                        R"(","image":")" + setup.image + R"(","gdb_port":)" +
-                       std::to_string(setup.gdb_port) + R"(,"watch":[)" + watch + "]" +
-                       (setup.more.empty() ? "" : "," + setup.more) + "}";
+                       std::to_string(setup.gdb_port) + R"(,"watch":[)" + watch + "]" + more + "}";
   options.silence_s = setup.silence_s;
   return options;
 }

@@ -1,0 +1,31 @@
+// Cycles of a Cortex-M3 or M4F for a straight run of instructions with zero wait states.
+//
+//   Source    M3: DDI 0337 chapter 18; M4: DDI 0439 chapter 3.3 (pairing of loads, write buffer) and
+//             chapter 7 (FPU); where ARM gives a range, the row of kRanges says what is taken and why
+//   Unit      CPU cycles
+//   Accuracy  10 % on compiled code as a rule, 15 % as a bound to be told
+//   Left out  operands (a divide takes the middle of 2 to 12), unaligned accesses, costs that reach
+//             over the end of a basic block, DMA on the bus; an IT's skipped instructions cost as if
+//             they were executed
+#pragma once
+#include <vector>
+
+#include "io_bridges/qemu/cycles/instruction.hpp"
+
+namespace whirl::cycles {
+
+enum class Core : std::uint8_t { cortex_m3, cortex_m4f };
+
+// Exceptions: 12 cycles to the handler's first instruction at zero wait states, 6 from one handler to
+// the next, 10 back (DDI 0337 and 0439, 3.9; ARM's application note AN209 on latency).
+constexpr double kException_entry = 12, kTail_chain = 6, kException_return = 10;
+constexpr double kFloating_frame = 17;  // S0 to S15 and FPSCR: a word each
+
+// What a taken branch adds to its own cycle: the pipeline refills.
+double refill_cycles(const Instruction& i);
+
+// Cycles of each instruction, given those before it in `run`. A branch that depends on a condition is
+// counted as not taken; any other with its refill.
+std::vector<double> core_cycles(Core core, const std::vector<Instruction>& run);
+
+}  // namespace whirl::cycles

@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "io_bridges/qemu/plugin/cost_injection.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+#include "harness/base/check.hpp"
+#include "io_bridges/qemu/plugin/tcg.hpp"
+
+namespace whirl::qemu {
+namespace {
+
+using tcg::Argument;
+using tcg::Operation;
+
+constexpr std::uint32_t kCount_flags = 0x1FF;  // CF_COUNT_MASK
+constexpr std::string_view kLazy_save = "v7m_preserve_fp_state";
+
+// Where what is counted when: a place for each instruction, and one behind the last.
+std::vector<std::int64_t> places_of(const BlockCost& cost) {
+  const std::size_t length = cost.each.size();
+  std::vector<std::int64_t> places(length + 1, 0);
+  std::size_t place = 0;
+  for (std::size_t n = 0; n < length; ++n) {
+    const bool last = n + 1 == length;
+    // A block of one instruction is what QEMU does again; a branch has left before a place behind it.
+    if (cost.memory[n] && length > 1 && !(last && cost.ends_in_branch)) place = n + 1;
+    places[place] += cost.each[n] - kUnits_per_ns;
+  }
+  return places;
+}
+
+}  // namespace
+
+// Walks over the operations of one block.
+class CostInjection::Writer {
+ public:
+  Writer(CostInjection& owner, qemu_plugin_tb* block, const BlockCost& cost, bool keep_stalls)
+      : owner_(owner),
+        block_(block),
+        cost_(cost),
+        keep_stalls_(keep_stalls),
+        places_(places_of(cost)) {}
+
+  void write() {
+    const tcg::Numbers& op = tcg::numbers();
+    const std::vector<Operation*> operations = tcg::operations();
+    const auto first = std::find_if(operations.begin(), operations.end(), [&](const Operation* o) {
+      return static_cast<int>(o->number) == op.instruction;
+    });
+    // Inside an IT block the translator clears its state in memory at the block's start.
+    it_state_ = first == operations.end() ? 0 : static_cast<std::int32_t>((*first)->arguments[1]);
+    std::size_t begun = 0;
+    for (std::size_t k = 0; k < operations.size(); ++k) {
+      Operation& o = *operations[k];
+      const int number = static_cast<int>(o.number);
+      if (number == op.st16 && !stored_) {
+        take_off_budget(o);
+      } else if (number == op.st32 && begun == 0 && stored_ && it_store_ == nullptr) {
+        it_store_ = &o;
+      } else if (number == op.callback && begun == 0 && enough_ == nullptr && stored_) {
+        if (it_state_ == 0 || it_store_ != nullptr) guard(o);
+      } else if (number == op.callback_end && begun == 0 && enough_ != nullptr && !placed_) {
+        go_on(*operations[k + 1]);
+        placed_ = true;
+      } else if (number == op.instruction) {
+        if (begun > 0) owe(*operations[k + 1], places_[begun]);
+        ++begun;
+      } else if (tcg::helper_name(o) == kLazy_save) {
+        owe(o, cost_.lazy_frame);
+      } else if (begun == cost_.each.size() && !left_ &&
+                 (number == op.goto_block || number == op.exit_block ||
+                  number == op.goto_pointer)) {
+        leave(o);
+      }
+    }
+  }
+
+ private:
+  Argument debt_place() { return tcg::address(&owner_.state_.debt); }
+
+  void owe(Operation& place, std::int64_t amount) {
+    if (amount == 0) return;
+    const tcg::Numbers& op = tcg::numbers();
+    tcg::Ahead ahead(&place);
+    const Argument where = debt_place();
+    ahead.put(op.st64, ahead.op64(op.add64, ahead.op64(op.ld64, where), tcg::number64(amount)),
+              where);
+  }
+
+  // Adds what a line costs that is not among the last 64 fetched, and counts it as fetched.
+  Argument look_up(tcg::Ahead& ahead, Argument debt, const BlockCost::Line& line, Argument when) {
+    const tcg::Numbers& op = tcg::numbers();
+    State& state = owner_.state_;
+    const Argument where = tcg::address(&state.filled[line.number % kLines]);
+    const Argument count = tcg::address(&state.fills);
+    const Argument then = ahead.op64(op.ld64, where), now = ahead.op64(op.ld64, count);
+    const Argument age = ahead.op64(op.sub64, now, then);
+    const Argument spare = ahead.op64(op.sub64, tcg::number64(cycles::kCached_lines - 1), age);
+    Argument missed = ahead.op64(op.sar64, spare, tcg::number64(63));
+    if (when != 0) missed = ahead.op64(op.and64, missed, when);
+    const Argument next = ahead.op64(op.sub64, now, missed);
+    ahead.put(op.st64, next, count);
+    const Argument change = ahead.op64(op.and64, missed, ahead.op64(op.sub64, next, then));
+    ahead.put(op.st64, ahead.op64(op.add64, then, change), where);
+    return ahead.op64(op.add64, debt, ahead.op64(op.and64, missed, tcg::number64(line.missed)));
+  }
+
+  Argument add_fetches(tcg::Ahead& ahead, Argument debt, Argument entered) {
+    const tcg::Numbers& op = tcg::numbers();
+    const Argument before = debt;
+    if (cost_.entry != 0) {
+      const Argument entry = ahead.op64(op.and64, entered, tcg::number64(cost_.entry));
+      debt = ahead.op64(op.add64, debt, entry);
+    }
+    for (const BlockCost::Line& line : cost_.lines) {
+      debt = look_up(ahead, debt, line, &line == &cost_.lines.front() ? entered : 0);
+    }
+    if (keep_stalls_) {
+      ahead.put(op.st64, ahead.op64(op.sub64, debt, before), tcg::address(&owner_.state_.stalled));
+    }
+    return debt;
+  }
+
+  // `store` puts QEMU's budget back, already less the block's instructions: less the debt as well, but
+  // not below 0.
+  void take_off_budget(Operation& store) {
+    const tcg::Numbers& op = tcg::numbers();
+    owner_.find_budget(static_cast<std::intptr_t>(store.arguments[2]));
+    tcg::Ahead ahead(&store);
+    const Argument where = debt_place(), flag = tcg::address(&owner_.state_.entered);
+    Argument debt = ahead.op64(op.add64, ahead.op64(op.ld64, where), tcg::number64(places_[0]));
+    debt = add_fetches(ahead, debt, ahead.op64(op.ld64, flag));
+    const Argument ns = ahead.op64(op.sar64, debt, tcg::number64(kUnit_shift));
+    left_ns_ = store.arguments[0];  // a local of QEMU's: it lives on behind the next branch
+    const Argument left = ahead.op64(op.sub64, ahead.op64(op.widen, left_ns_), ns);
+    const Argument beyond =
+        ahead.op64(op.and64, ahead.op64(op.sar64, left, tcg::number64(63)), left);
+    const Argument kept = ahead.op64(op.sub64, left, beyond);
+    ahead.put(op.move32, left_ns_, kept);
+    const Argument rest = ahead.op64(op.and64, debt, tcg::number64(kUnits_per_ns - 1));
+    const Argument unpaid = ahead.op64(op.shl64, beyond, tcg::number64(kUnit_shift));
+    ahead.put(op.st64, ahead.op64(op.sub64, rest, unpaid), where);
+    ahead.put(op.st64, tcg::number64(0), flag);
+    stored_ = true;
+  }
+
+  // Around the block's public callback: past it when the budget lasts for all that is still to come.
+  void guard(Operation& place) {
+    const std::int64_t charged =
+        places_[0] + static_cast<std::int64_t>(cost_.each.size()) * kUnits_per_ns;
+    const std::int64_t later =
+        std::accumulate(cost_.each.begin(), cost_.each.end(), std::int64_t{0}) - charged;
+    // One more: a budget of 0 may be one that did not last.
+    const auto enough = static_cast<std::int32_t>((later >> kUnit_shift) + 1);
+    enough_ = tcg::Ahead(&place).branch_if_at_least(left_ns_, tcg::number32(enough));
+    set_it_state(place, it_state_);
+    owner_.blocks_.push_back(std::make_unique<Block>(Block{&owner_, charged, cost_.each}));
+    qemu_plugin_register_vcpu_tb_exec_cb(
+        block_,
+        [](unsigned, void* data) {
+          const Block& block = *static_cast<const Block*>(data);
+          block.owner->too_short(block);
+        },
+        0, owner_.blocks_.back().get());
+  }
+
+  // The callback came back: the block runs.
+  void go_on(Operation& place) {
+    set_it_state(place, 0);
+    tcg::Ahead(&place).here(enough_);
+  }
+
+  void set_it_state(Operation& place, std::int32_t state) {
+    if (it_state_ == 0) return;
+    tcg::Ahead(&place).put(tcg::numbers().st32, tcg::number32(state), it_store_->arguments[1],
+                           it_store_->arguments[2]);
+  }
+
+  // The first way out behind the last instruction is that of a taken branch, or of running on.
+  void leave(Operation& place) {
+    left_ = true;
+    owe(place, places_.back());
+    if (!cost_.ends_in_branch) return;
+    owe(place, cost_.taken);
+    tcg::Ahead(&place).put(tcg::numbers().st64, tcg::number64(-1),
+                           tcg::address(&owner_.state_.entered));
+  }
+
+  CostInjection& owner_;
+  qemu_plugin_tb* block_;
+  const BlockCost& cost_;
+  const bool keep_stalls_;
+  const std::vector<std::int64_t> places_;
+  Argument left_ns_ = 0;
+  std::int32_t it_state_ = 0;            // of the IT block that the block begins in
+  const Operation* it_store_ = nullptr;  // where the translator clears it
+  tcg::Label* enough_ = nullptr;
+  bool stored_ = false, placed_ = false, left_ = false;
+};
+
+Result<Done> CostInjection::find_qemu() {
+  if (auto found = tcg::find(); !found) return found;
+  return count_.find_timers();
+}
+
+void CostInjection::find_budget(std::intptr_t decrementer) {
+  if (count_.found()) return;
+  if (!count_.find_budget(api_.qemu_get_cpu(0), decrementer)) refuse_();
+}
+
+void CostInjection::forget_lines() {
+  std::fill(std::begin(state_.filled), std::end(state_.filled),
+            state_.fills - cycles::kCached_lines);
+}
+
+void CostInjection::put(qemu_plugin_tb* block, const BlockCost& cost, bool keep_stalls) {
+  Writer(*this, block, cost, keep_stalls).write();
+}
+
+std::int64_t CostInjection::ahead_at(const BlockCost& cost, std::size_t n) {
+  const std::vector<std::int64_t> places = places_of(cost);
+  const auto at = [](const std::vector<std::int64_t>& v, std::size_t count) {
+    return std::accumulate(v.begin(), v.begin() + static_cast<std::ptrdiff_t>(count),
+                           std::int64_t{0});
+  };
+  return at(places, n + 1) + static_cast<std::int64_t>(cost.each.size()) * kUnits_per_ns -
+         at(cost.each, n);
+}
+
+// Called, rarely, when the budget may not last for the whole block. Gives back what was taken off, and
+// has the block done again up to the instruction in which the deadline falls.
+void CostInjection::too_short(const Block& block) {
+  Cpu* cpu = api_.qemu_get_cpu(0);
+  const std::uint32_t flags = api_.curr_cflags(cpu);
+  if ((flags & kCount_flags) != 0) return;  // gdb steps
+  const std::int64_t had = (count_.left_ns() << kUnit_shift) - state_.debt + block.charged;
+  std::size_t fit = 0;
+  for (std::int64_t spent = 0; fit < block.each.size() && spent < had; ++fit)
+    spent += block.each[fit];
+  if (fit == block.each.size()) return;
+  const std::int64_t left = had <= 0 ? 0 : (had + kUnits_per_ns - 1) >> kUnit_shift;
+  count_.set_left_ns(left);
+  state_.debt = (left << kUnit_shift) - had;
+  if (fit > 0) count_.limit_next_block(flags | static_cast<std::uint32_t>(fit));
+  api_.cpu_loop_exit_noexc(cpu);
+}
+
+}  // namespace whirl::qemu

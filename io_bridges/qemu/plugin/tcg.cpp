@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "io_bridges/qemu/plugin/tcg.hpp"
+
+#include <dlfcn.h>
+
+#include <algorithm>
+#include <cstring>
+
+#include "io_bridges/qemu/plugin/qemu_api.hpp"
+
+namespace whirl::qemu::tcg {
+namespace {
+
+struct Definition {  // TCGOpDef
+  const char* name;
+  std::uint8_t counts[4], flags;
+  void* constraints;
+};
+struct HelperInfo {  // TCGHelperInfo
+  void* function;
+  const char* name;
+};
+constexpr int kMost_operations = 256;
+constexpr int kWord = 0, kDoubleword = 1;                  // TCGType
+constexpr Argument kSigned_at_least = 3;                   // TCG_COND_GE
+constexpr std::uint32_t kOne_reference = (1u << 16) | 1u;  // TCGLabel: present, refs
+
+struct Functions {
+  Operation* (*tcg_emit_op)(int) = nullptr;
+  void (*tcg_op_remove)(void*, Operation*) = nullptr;
+  Operation* (*tcg_op_insert_before)(void*, Operation*, int) = nullptr;
+  Argument (*tcg_temp_new_internal)(int type, bool local) = nullptr;
+  Argument (*tcg_constant_internal)(int type, std::int64_t) = nullptr;
+  Label* (*gen_new_label)() = nullptr;
+  const Definition* tcg_op_defs = nullptr;
+} functions;
+Numbers known;
+
+// The context of the thread that translates.
+void* context() {
+  thread_local void* const* place = static_cast<void* const*>(dlsym(RTLD_DEFAULT, "tcg_ctx"));
+  return *place;
+}
+
+struct Wanted {
+  int Numbers::*number;
+  const char* name;
+};
+constexpr Wanted kWanted[] = {{&Numbers::ld32, "ld_i32"},
+                              {&Numbers::st32, "st_i32"},
+                              {&Numbers::ld64, "ld_i64"},
+                              {&Numbers::st64, "st_i64"},
+                              {&Numbers::st16, "st16_i32"},
+                              {&Numbers::add64, "add_i64"},
+                              {&Numbers::sub64, "sub_i64"},
+                              {&Numbers::and64, "and_i64"},
+                              {&Numbers::sar64, "sar_i64"},
+                              {&Numbers::shl64, "shl_i64"},
+                              {&Numbers::widen, "ext_i32_i64"},
+                              {&Numbers::move32, "mov_i32"},
+                              {&Numbers::sub32, "sub_i32"},
+                              {&Numbers::add32, "add_i32"},
+                              {&Numbers::and32, "and_i32"},
+                              {&Numbers::sar32, "sar_i32"},
+                              {&Numbers::branch32, "brcond_i32"},
+                              {&Numbers::label, "set_label"},
+                              {&Numbers::instruction, "insn_start"},
+                              {&Numbers::goto_block, "goto_tb"},
+                              {&Numbers::exit_block, "exit_tb"},
+                              {&Numbers::goto_pointer, "goto_ptr"},
+                              {&Numbers::callback, "plugin_cb_start"},
+                              {&Numbers::callback_end, "plugin_cb_end"},
+                              {&Numbers::call, "call"}};
+
+whirl::Error lacking(const std::string& what) {
+  return {ErrorKind::host, "QEMU", "its translator has no " + what,
+          std::string("use QEMU ") + tested_versions() +
+              ", or a board file with a fixed timing (timing = \"8 ns\")"};
+}
+
+int number_of(const char* name) {
+  for (int n = 0; n < kMost_operations && functions.tcg_op_defs[n].name != nullptr; ++n) {
+    if (std::strcmp(functions.tcg_op_defs[n].name, name) == 0) return n;
+  }
+  return -1;
+}
+
+}  // namespace
+
+Result<Done> find() {
+  std::string missing;
+  const auto symbol = [&missing](const char* name, auto& into) {
+    into = reinterpret_cast<std::remove_reference_t<decltype(into)>>(dlsym(RTLD_DEFAULT, name));
+    if (into == nullptr && missing.empty()) missing = name;
+  };
+  symbol("tcg_emit_op", functions.tcg_emit_op);
+  symbol("tcg_op_remove", functions.tcg_op_remove);
+  symbol("tcg_op_insert_before", functions.tcg_op_insert_before);
+  symbol("tcg_temp_new_internal", functions.tcg_temp_new_internal);
+  symbol("tcg_constant_internal", functions.tcg_constant_internal);
+  symbol("gen_new_label", functions.gen_new_label);
+  symbol("tcg_op_defs", functions.tcg_op_defs);
+  if (missing.empty() && dlsym(RTLD_DEFAULT, "tcg_ctx") == nullptr) missing = "tcg_ctx";
+  if (!missing.empty()) return lacking(missing);
+  for (const Wanted& wanted : kWanted) {
+    known.*wanted.number = number_of(wanted.name);
+    if (known.*wanted.number < 0) return lacking(std::string("operation ") + wanted.name);
+  }
+  return Done{};
+}
+
+const Numbers& numbers() {
+  return known;
+}
+
+// The list has a head that we cannot name: from an operation emitted at its end we walk back.
+std::vector<Operation*> operations() {
+  struct Link {
+    void* next;
+    Link* previous;
+  };
+  std::vector<Operation*> list;
+  Operation* end = functions.tcg_emit_op(known.instruction);
+  for (Operation* at = end;;) {
+    const Link* link = reinterpret_cast<const Link*>(at->links);
+    at = static_cast<Operation*>(link->previous->previous->next);
+    if (at == nullptr) break;
+    list.push_back(at);
+  }
+  functions.tcg_op_remove(context(), end);
+  std::reverse(list.begin(), list.end());
+  return list;
+}
+
+Argument number32(std::int32_t value) {
+  return functions.tcg_constant_internal(kWord, value);
+}
+
+Argument number64(std::int64_t value) {
+  return functions.tcg_constant_internal(kDoubleword, value);
+}
+
+Argument address(const void* where) {
+  return number64(reinterpret_cast<std::int64_t>(where));
+}
+
+// Arguments of a call: outputs, inputs (their counts are the first two half-bytes of `counts`), function,
+// info.
+std::string_view helper_name(const Operation& operation) {
+  if (static_cast<int>(operation.number) != known.call) return {};
+  const unsigned outputs = operation.counts & 0xF, inputs = (operation.counts >> 4) & 0xF;
+  const unsigned place = outputs + inputs + 1;
+  if (place >= std::size(operation.arguments)) return {};
+  return reinterpret_cast<const HelperInfo*>(operation.arguments[place])->name;
+}
+
+Argument Ahead::op32(int number, Argument a, Argument b) {
+  const Argument result = functions.tcg_temp_new_internal(kWord, false);
+  put(number, result, a, b);
+  return result;
+}
+
+Argument Ahead::op64(int number, Argument a, Argument b) {
+  const Argument result = functions.tcg_temp_new_internal(kDoubleword, false);
+  put(number, result, a, b);
+  return result;
+}
+
+void Ahead::put(int number, Argument a, Argument b, Argument c) {
+  Operation* operation = functions.tcg_op_insert_before(context(), place_, number);
+  operation->arguments[0] = a;
+  operation->arguments[1] = b;
+  operation->arguments[2] = c;
+}
+
+Label* Ahead::branch_if_at_least(Argument a, Argument b) {
+  Label* label = functions.gen_new_label();
+  *reinterpret_cast<std::uint32_t*>(label) += kOne_reference;
+  Operation* branch = functions.tcg_op_insert_before(context(), place_, known.branch32);
+  branch->arguments[0] = a;
+  branch->arguments[1] = b;
+  branch->arguments[2] = kSigned_at_least;
+  branch->arguments[3] = reinterpret_cast<Argument>(label);
+  return label;
+}
+
+void Ahead::here(Label* label) {
+  put(known.label, reinterpret_cast<Argument>(label));
+}
+
+}  // namespace whirl::qemu::tcg

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+//
+// QEMU's translator from the inside: the operations of the block that is being translated, as a list
+// that can be added to.
+//
+//   When     in the plug-in's translation callback: the block's operations are complete, the public
+//            plug-in calls not yet put in
+//   Numbers  operations are known by name, so no enumeration of QEMU's is copied
+//   Source   QEMU 7.2: tcg/tcg.c, include/tcg/tcg.h, include/exec/gen-icount.h
+#pragma once
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "harness/base/result.hpp"
+
+namespace whirl::qemu::tcg {
+
+struct Label;
+using Argument = std::uintptr_t;  // a temporary, a label or a number
+
+struct Operation {
+  unsigned number : 8, counts : 24;
+  unsigned life;
+  void* links[2];
+  Argument arguments[10];
+};
+
+struct Numbers {
+  int ld32 = -1, st32 = -1, ld64 = -1, st64 = -1, st16 = -1, add64 = -1, sub64 = -1, and64 = -1,
+      sar64 = -1, shl64 = -1, widen = -1, move32 = -1, sub32 = -1, add32 = -1, and32 = -1,
+      sar32 = -1, branch32 = -1, label = -1, instruction = -1, goto_block = -1, exit_block = -1,
+      goto_pointer = -1, callback = -1, callback_end = -1, call = -1;
+};
+
+// Finds all of it, once; refused where this QEMU lacks something.
+Result<Done> find();
+const Numbers& numbers();
+
+std::vector<Operation*> operations();
+Argument number32(std::int32_t value);
+Argument number64(std::int64_t value);
+Argument address(const void* where);
+// The name of the helper function that a call operation calls; empty: not a call.
+std::string_view helper_name(const Operation& operation);
+
+// Puts operations in front of one that is there.
+class Ahead {
+ public:
+  explicit Ahead(Operation* place) : place_(place) {}
+  Argument op32(int number, Argument a, Argument b);  // a new 32-bit temporary holds the result
+  Argument op64(int number, Argument a, Argument b = 0);
+  void put(int number, Argument a, Argument b = 0, Argument c = 0);
+  Label* branch_if_at_least(Argument a, Argument b);  // signed, 32 bits
+  void here(Label* label);
+
+ private:
+  Operation* place_;
+};
+
+}  // namespace whirl::qemu::tcg

@@ -1,0 +1,103 @@
+// Time by cycles: what an image counts by CYCCNT, against counts by hand from ARM's tables; when
+// interrupts come; and that every run is the same.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <thread>
+
+#include "io_bridges/qemu/tests/board_run.hpp"
+
+namespace whirl::board_test {
+namespace {
+
+BoardSetup by_cycles(const std::string& name, std::vector<std::string> watch = {}) {
+  BoardSetup setup{image(name), std::move(watch)};
+  setup.more = R"("ns_per_instruction":0)";
+  return setup;
+}
+
+TEST(CycleClock, StraightCodeLoopsAndMemoryTakeTheCyclesOfArmsTables) {
+  const auto said = run_for(by_cycles("cycles1"), 2).said();
+  ASSERT_EQ(said.size(), 8u);
+  const auto more = [&](std::size_t n) { return said[n] - said[0]; };
+  EXPECT_EQ(said[0], 2u);  // the load of CYCCNT itself
+  EXPECT_EQ(more(1), 1u);
+  EXPECT_EQ(more(2), 100u);
+  // NOP, SUBS, taken BNE with a refill of 1.5 (1 to 3 by alignment); the last one is not taken.
+  EXPECT_NEAR(more(3), 1 + 1000 * (1 + 1 + 2.5) - 1.5, 1.0);
+  EXPECT_NEAR(more(4), 1 + 1000 * (2 + 1 + 2.5) - 1.5, 2.0);  // RAM
+  EXPECT_NEAR(more(5), more(4), 2.0);                         // a register of the core's own bus
+  EXPECT_NEAR(more(6), 5.0, 1.0);                             // MOV, CMP, folded ITE, two, NOP
+  EXPECT_GE(more(7), 2u + 2u);
+  EXPECT_LE(more(7), 2u + 12u);
+}
+
+struct Background {
+  const char* image;
+  double cycles;  // how late a tick may come: the longest instruction, and where it is cut
+};
+
+// The period is exact where nothing holds the core up, and a tick waits for the end of one instruction.
+TEST(CycleClock, TicksComeWithinOneInstructionOfTheirTime) {
+  for (const Background& b : {Background{"cycles2", 3},
+                              {"cycles3", 12},
+                              {"cycles4", 1},
+                              {"cycles5", 12},
+                              {"cycles6", 12},
+                              {"cycles7", 6}}) {
+    const auto said = run_for(by_cycles(b.image), 50).said();
+    ASSERT_GT(said.size(), 400u) << b.image;
+    std::int64_t sum = 0;
+    for (const std::uint32_t period : said) {
+      EXPECT_NEAR(period, 16800.0, b.cycles) << b.image;
+      sum += period;
+    }
+    EXPECT_NEAR(static_cast<double>(sum) / static_cast<double>(said.size()), 16800.0, 0.1)
+        << b.image;
+  }
+}
+
+TEST(CycleClock, TwentyRunsUnderLoadGiveTheSameBytes) {
+  std::atomic<bool> stop{false};
+  std::vector<std::thread> load;
+  load.reserve(3);
+  for (int i = 0; i < 3; ++i) {
+    load.emplace_back([&stop] {
+      while (!stop.load(std::memory_order_relaxed)) {
+      }
+    });
+  }
+  for (const char* name : {"sleeper", "cycles3", "cycles6"}) {
+    const std::string first = run_for(by_cycles(name), 50).digest;
+    EXPECT_NE(first, "");
+    for (int i = 0; i < 20; ++i) EXPECT_EQ(run_for(by_cycles(name), 50).digest, first) << name;
+  }
+  stop = true;
+  for (std::thread& thread : load) thread.join();
+}
+
+TEST(CycleClock, WatchingChangesNoMomentOfTheImageAndCountsEachCallOnce) {
+  const BoardRun plain = run_for(by_cycles("sleeper"), 350);
+  const BoardRun watched = run_for(by_cycles("sleeper", {"irq31_handler", "main"}), 350);
+  ASSERT_EQ(plain.said().size(), 3u);
+  EXPECT_EQ(plain.said(), watched.said());
+  for (const char* name : {"cycles2", "cycles3", "cycles5", "cycles7"}) {
+    const BoardRun run = run_for(by_cycles(name, {"systick_handler"}), 50);
+    EXPECT_NEAR(static_cast<double>(run.of(io::Kind::function_call).size()),
+                static_cast<double>(run.said().size()) + 1, 1)
+        << name;
+    EXPECT_EQ(run.said(), run_for(by_cycles(name), 50).said()) << name;
+  }
+}
+
+TEST(CycleClock, AComputingCoreIsBusyAlways) {
+  const BoardRun busy_run = run_for(by_cycles("busy"), 5);
+  ASSERT_EQ(busy_run.of(io::Kind::busy_time).size(), 5u);
+  for (const Message* busy : busy_run.of(io::Kind::busy_time)) {
+    EXPECT_EQ(busy->as<io::BusyTime>().busy_ns, 1'000'000);
+  }
+}
+
+}  // namespace
+}  // namespace whirl::board_test
