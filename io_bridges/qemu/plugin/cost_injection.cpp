@@ -56,8 +56,8 @@ class CostInjection::Writer {
       const int number = static_cast<int>(o.number);
       if (number == op.st16 && !stored_) {
         take_off_budget(o);
-      } else if (number == op.st32 && begun == 0 && stored_ && it_store_ == nullptr) {
-        it_store_ = &o;
+      } else if (number == op.st32 && begun == 0 && stored_ && enough_ == nullptr) {
+        it_store_ = ++stores_ == 2 ? &o : nullptr;
       } else if (number == op.callback && begun == 0 && enough_ == nullptr && stored_) {
         if (it_state_ == 0 || it_store_ != nullptr) guard(o);
       } else if (number == op.callback_end && begun == 0 && enough_ != nullptr && !placed_) {
@@ -194,7 +194,8 @@ class CostInjection::Writer {
   const std::vector<std::int64_t> places_;
   Argument left_ns_ = 0;
   std::int32_t it_state_ = 0;            // of the IT block that the block begins in
-  const Operation* it_store_ = nullptr;  // where the translator clears it
+  const Operation* it_store_ = nullptr;  // where the translator clears it: behind that of can_do_io
+  int stores_ = 0;
   tcg::Label* enough_ = nullptr;
   bool stored_ = false, placed_ = false, left_ = false;
 };

@@ -64,9 +64,12 @@ int main(void) {
                        : "r0", "r1", "r2", "r3", "r4", "r5", "r6", "r7", "r8");
 #elif HOW == 6
     for (volatile int i = 0; i < 100; ++i) word += TIME;
-#elif HOW == 7 /* IT blocks */
-    __asm volatile(".rept 40\n cmp r0, #3\n ite eq\n addeq r1, r0, #1\n addne r1, r0, #2\n .endr" ::
-                       : "r1", "cc");
+#elif HOW == 7 /* IT blocks, whose conditions must outlive any interrupt */
+    uint32_t sum = 0;
+    __asm volatile(
+        ".rept 40\n cmp %0, #40\n itee eq\n addeq %0, %0, #100\n addne %0, %0, #1\n nopne\n .endr"
+        : "+r"(sum)::"cc");
+    if (sum != 40) SAY = 0xBAD0000 | sum;
 #endif
   }
 }
