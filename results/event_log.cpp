@@ -65,6 +65,10 @@ bool EventLog::add(const io::Batch& batch) {
         break;
       case io::Kind::function_call: {
         const auto call = reader.as<io::FunctionCall>();
+        if (call.execution_ns < 0) {
+          open_calls_ns[header.port].push_back(call.entry_ns);
+          break;
+        }
         calls[header.port].push_back(
             {call.entry_ns, header.t_ns, call.execution_ns, call.latency_ns});
         break;

@@ -72,6 +72,7 @@ class EventLog {
   std::vector<BusRecord> bus;
   std::vector<UartRecord> uart;
   std::map<std::uint16_t, std::vector<CallRecord>> calls;            // by watch number
+  std::map<std::uint16_t, std::vector<std::int64_t>> open_calls_ns;  // entries: never returned
   std::map<std::uint16_t, std::vector<std::int64_t>> data_ready_ns;  // by device number
   std::map<std::uint32_t, std::int64_t> faults_applied_ns;           // first, by fault number
   std::vector<TextRecord> findings;

@@ -82,6 +82,12 @@ void judge_calls(Script& self, const Budget& b, std::int64_t from, std::int64_t 
       latency.push_back(call.latency_ns < 0 ? std::nan("") : seconds(call.latency_ns));
     }
   }
+  const auto open = self.stage().events.open_calls_ns.find(static_cast<std::uint16_t>(number));
+  if (open != self.stage().events.open_calls_ns.end()) {
+    for (const std::int64_t entry_ns : open->second) {
+      if (entry_ns >= from && entry_ns <= to) entries.push_back(entry_ns);
+    }
+  }
   if (b.jitter) {
     judge_spread(self, deviations(entries, from, to, b.period->value_SI), *b.jitter,
                  b.function + " period jitter", b.place, to);

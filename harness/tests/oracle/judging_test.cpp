@@ -43,6 +43,20 @@ TEST(Judging, ACallThatIsStillRunningAtTheEndOfAWindowHasCome) {
   EXPECT_TRUE(passes(s));
 }
 
+// The run ends with the window: the call that began at 99.9 ms never returns.
+TEST(Judging, ACallThatIsStillRunningAtTheEndOfTheRunHasComeButHasNoLength) {
+  Scenario s = playing(
+      "t:budget 'fw::task' { period = '5 ms', jitter = '1 us', response = '400 us', "
+      "during = '100 ms' } t:wait '100 ms'");
+  for (std::int64_t t = 4'900 * kUs; t < 99 * kMs; t += 5 * kMs) add_call(s, t, t + 300 * kUs);
+  EXPECT_FALSE(passes(s));
+  s.messages.push_back(
+      {100 * kMs, [](io::Batch& batch) {
+         batch.add(io::Kind::function_call, 1, 100 * kMs, io::FunctionCall{99'900 * kUs, -1, -1});
+       }});
+  EXPECT_TRUE(passes(s));
+}
+
 TEST(Judging, AnAnswerThatComesAtTheLimitIsInTime) {
   for (int limit : {43, 55, 60}) {
     Scenario s = playing("t:wait '65 ms' t:ask('hello', nil, '" + std::to_string(limit) +

@@ -37,6 +37,17 @@ void Watch::core_was_reset() {
   raised_ns_ = filled();
 }
 
+void Watch::run_ends(Nanoseconds now) {
+  for (const auto* contexts : {&tasks_, &handlers_}) {
+    for (const Context& context : *contexts) {
+      for (const Call& call : context.calls) {
+        happened_.add(io::Kind::function_call, call.number, now,
+                      io::FunctionCall{call.entry_ns, -1, context.latency_ns});
+      }
+    }
+  }
+}
+
 Watch::Context& Watch::running() {
   if (!handlers_.empty()) return handlers_.back();
   if (tasks_.size() <= stacks_.current()) tasks_.resize(stacks_.current() + 1);

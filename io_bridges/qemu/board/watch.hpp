@@ -48,6 +48,7 @@ class Watch {
 
   void line_changed(std::uint32_t exception, bool level, Nanoseconds now);
   void core_was_reset();
+  void run_ends(Nanoseconds now);  // tells the calls that have not returned
 
   const Stacks& stacks() const { return stacks_; }
 

@@ -101,6 +101,32 @@ TEST(Watch, ASwitchInThreadModeBelowTheFrameBelongsToTheTask) {
   EXPECT_EQ(core.watch.stacks().count(), 2u);
 }
 
+TEST(Watch, WhatHasNotReturnedIsToldAtTheEndWithoutALength) {
+  Core core;
+  core.call(1, kTask, 0x08000011);
+  core.take(15, kTask - 8);
+  core.call(2, kMain, 0xFFFFFFF9);
+  core.now = 50;
+  core.watch.run_ends(core.now);
+  EXPECT_EQ(core.calls(), (Calls{{1, -1}, {2, -1}}));
+}
+
+TEST(Watch, WhatTheCoreTakesToEnterAndLeaveIsNobodysTime) {
+  Core core;
+  core.call(1, kTask, 0x08000011);
+  core.now = 100;
+  const CoreState before = core.thread(kTask - 8);
+  core.now = 112;
+  core.watch.exception(before, core.handler(15, kToThread));
+  core.now = 150;
+  const CoreState leaving = core.returning(15);
+  core.now = 160;
+  core.watch.exception(leaving, core.thread(kTask - 8));
+  core.now = 200;
+  core.come_back(0x08000010, kTask);
+  EXPECT_EQ(core.calls(), (Calls{{1, 140}}));
+}
+
 TEST(Watch, ATailChainedExceptionIsNobodysTimeButItsOwn) {
   Core core;
   core.call(1, kTask, 0x08000011);
