@@ -5,6 +5,7 @@ install(TARGETS whirl RUNTIME DESTINATION bin)
 install(TARGETS whirl_board LIBRARY DESTINATION lib/whirl)
 install(DIRECTORY test_plans DESTINATION share/whirl)
 install(DIRECTORY plant/data DESTINATION share/whirl/plant)
+install(DIRECTORY io_bridges/qemu/data DESTINATION share/whirl/io_bridges/qemu)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/build/firmware/ DESTINATION share/whirl/images
         FILES_MATCHING PATTERN "*.elf" PATTERN CMakeFiles EXCLUDE
         REGEX "build/firmware/(firmware|images)$" EXCLUDE)

@@ -17,4 +17,12 @@ int sweep_command(const SweepOptions& options, const Composition& composition);
 // Exit code 1 if a figure is beyond its limit.
 int validate_command(const Composition& composition);
 
+struct TimingOptions {
+  bool wanted = false;
+  std::string file;  // lines that a board sent; empty: run both images on the virtual board
+};
+// What instructions cost on the board against the data sheets. Exit code 1 if a kernel is beyond 10 % of its
+// range or did not report.
+int timing_command(const TimingOptions& options, const Composition& composition);
+
 }  // namespace whirl::cli

@@ -30,6 +30,7 @@ constexpr const char* kExamples = R"(Examples:
   whirl list                                   what plans there are
   whirl sweep test_plans/vehicles/hp_quad.lua  motor, propeller and hover point in figures and curves
   whirl validate                               the plant over its reference points
+  whirl validate --timing                      cycles of instructions, against the data sheets
   whirl calibrate esc test_plans/calibrations/hk_10x4.5.lua
                                                constants of an ESC, its motor and its propeller
   whirl history hover                          how the margins went, run by run
@@ -94,7 +95,12 @@ int run_chosen(int argc, char** argv, Composition composition) {
   sweeps->add_option("--top-speed", sweep.top_speed, "end of the static sweep (default 6000 rpm)");
   sweeps->add_option("--voltage", sweep.voltage, "of the bus (default: the full pack): \"16.4 V\"");
 
+  TimingOptions timing;
   auto* validate = app.add_subcommand("validate", "the plant against its references");
+  auto* timed = validate->add_flag("--timing", timing.wanted,
+                                   "instead: what instructions cost on the virtual board");
+  validate->add_option("file", timing.file, "judge these lines of a timing image on a real board")
+      ->needs(timed);
 
   CalibrateOptions calibration;
   auto* calibrates = app.add_subcommand("calibrate", "bench procedures that find constants");
@@ -127,7 +133,9 @@ int run_chosen(int argc, char** argv, Composition composition) {
   if (*list) return list_command(options, composition);
   if (*past) return history_command(history, composition.results);
   if (*sweeps) return sweep_command(sweep, composition);
-  if (*validate) return validate_command(composition);
+  if (*validate) {
+    return timing.wanted ? timing_command(timing, composition) : validate_command(composition);
+  }
   if (*calibrates) {
     calibration.command = "whirl calibrate esc " + calibration.file +
                           (calibration.write.empty() ? "" : " --write " + calibration.write) +
