@@ -40,12 +40,15 @@ void run_kernels(std::span<const Kernel> kernels, std::string_view after = "") {
   }
 }
 
-void run_exceptions() {
+void run_exceptions(std::span<const ExceptionKernel> kernels, std::string_view after = "") {
   const std::uint32_t empty = empty_cycles();
-  for (const ExceptionKernel& it : exception_kernels()) {
+  for (const ExceptionKernel& it : kernels) {
     run(it, ram);
-    report({it.kernel.name}, it.kernel.iterations, less(run(it, ram), empty));
+    report({it.kernel.name, after}, it.kernel.iterations, less(run(it, ram), empty));
   }
+}
+
+void run_systick() {
   const Block background = straight_16(kTick_bytes);
   const std::uint32_t from = cycles();
   background(0);
@@ -127,7 +130,7 @@ void run_working_sets() {
       run_warm(fetch, bytes, {fetch.name, "_loop_", Digits(bytes), "_cache_only"});
     }
   }
-  for (const std::uint32_t bytes : {256u, 1024u, 4096u}) {
+  for (std::uint32_t bytes = 256; bytes <= kStraight_bytes; bytes *= 4) {
     for (const Fetch& fetch : kFetches) {
       run_cold(fetch, bytes, kMost_wait_states, FlashAid::all,
                {fetch.name, "_cold_", Digits(bytes)});
@@ -177,7 +180,8 @@ extern "C" void fw_main() {
   start_cycle_counter();
   set_flash(0, FlashAid::none);
   begin_report();
-  run_exceptions();  // before any float: frames are short then
+  run_exceptions(exception_kernels());  // before any float: frames are short then
+  run_systick();
   for (const auto kernels :
        {integer_kernels(), memory_kernels(), branch_kernels(), loop_kernels(), bus_kernels()}) {
     run_kernels(kernels);
@@ -185,7 +189,10 @@ extern "C" void fw_main() {
   divide_apb1_by_4(true);
   run_kernels(bus_kernels().first(2), "_apb1_by_4");
   divide_apb1_by_4(false);
-  run_kernels(float_kernels());
+  if (!float_kernels().empty()) {
+    run_kernels(float_kernels());
+    run_exceptions(exception_kernels().first(1), "_float_active");
+  }
   run_compiled();
   for (const Aid& aid : kAids) {
     if (kHas_flash_cache || aid.aid == FlashAid::none || aid.aid == FlashAid::prefetch) {

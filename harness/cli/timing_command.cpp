@@ -52,11 +52,22 @@ Result<std::string> run_image(const Subject& subject, const Composition& composi
   return timing::capture(*target.value(), subject.uart);
 }
 
+fs::path validation_folder(const std::string& results_folder) {
+  const fs::path folder = fs::path(results_folder) / "validation";
+  std::error_code status;  // a folder that is not there is told when a file is to be written
+  fs::create_directories(folder, status);
+  return folder;
+}
+
+// The lines are kept as they came, to be judged again, or beside those of a physical board.
 Result<std::vector<timing::Report>> measure(const Composition& composition) {
   std::vector<timing::Report> reports;
   for (const Subject& subject : kSubjects) {
     const auto text = run_image(subject, composition);
     if (!text) return text.error();
+    const fs::path kept =
+        validation_folder(composition.results) / (std::string(subject.image) + ".txt");
+    if (auto good = results::write_text(kept.string(), text.value()); !good) return good.error();
     auto read = timing::read_reports(text.value(), subject.image);
     if (!read) return read.error();
     for (timing::Report& report : read.value()) reports.push_back(std::move(report));
@@ -157,10 +168,7 @@ Result<std::string> write_page(const std::vector<Judged>& parts,
   for (const Judged& part : parts) {
     for (results::Chart& chart : charts_of(part)) charts.push_back(std::move(chart));
   }
-  const fs::path folder = fs::path(results_folder) / "validation";
-  std::error_code status;
-  fs::create_directories(folder, status);
-  const std::string path = (folder / "timing.html").string();
+  const std::string path = (validation_folder(results_folder) / "timing.html").string();
   const auto written = results::write_text(
       path,
       results::charts_html(
