@@ -21,6 +21,7 @@ struct Kernel {
 
 std::span<const Kernel> integer_kernels();
 std::span<const Kernel> memory_kernels();
+std::span<const Kernel> literal_kernels();
 std::span<const Kernel> branch_kernels();
 std::span<const Kernel> float_kernels();  // none on a part without an FPU
 std::span<const Kernel> loop_kernels();   // the first is `empty`

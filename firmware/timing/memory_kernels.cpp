@@ -33,21 +33,28 @@
   X(push_pop_4, 32, "", "push {r0, r1, r2, r3}\n pop {r0, r1, r2, r3}")                            \
   X(push_pop_8, 16, "", "push.w {r0, r1, r2, r3, r5, r10, r12, lr}\n"                              \
                         "pop.w {r0, r1, r2, r3, r5, r10, r12, lr}")                                \
+  X(ldrex_strex, 32, "", "ldrex r0, [r4]\n strex r1, r0, [r4]")
+#define FW_LITERAL_KERNELS(X)                                                                      \
   X(literal_row, 64, "", "ldr.w r0, =0x12345678")                                                  \
   X(literal_alone, 32, "", "ldr.w r0, =0x12345678\n adds.n r1, r1, #1\n adds.n r2, r2, #1\n"       \
-                           "adds.n r3, r3, #1")                                                    \
-  X(ldrex_strex, 32, "", "ldrex r0, [r4]\n strex r1, r0, [r4]")
+                           "adds.n r3, r3, #1")
 // clang-format on
 
 FW_MEMORY_KERNELS(FW_KERNEL_CODE)
+FW_LITERAL_KERNELS(FW_KERNEL_CODE)
 
 namespace fw::timing {
 namespace {
 constexpr Kernel kKernels[] = {FW_MEMORY_KERNELS(FW_KERNEL_ENTRY)};
-}
+constexpr Kernel kLiterals[] = {FW_LITERAL_KERNELS(FW_KERNEL_ENTRY)};
+}  // namespace
 
 std::span<const Kernel> memory_kernels() {
   return kKernels;
+}
+
+std::span<const Kernel> literal_kernels() {
+  return kLiterals;
 }
 
 }  // namespace fw::timing

@@ -24,6 +24,7 @@ using namespace f103;
 
 constexpr std::uint32_t kHsi_Hz = 8'000'000, kBaud = 115'200;
 constexpr std::uint32_t kTxe = bit(7), kTc = bit(6);  // USART_SR
+constexpr int kPrescaler_cycles = 16;                 // until a new divider acts, RCC_CFGR
 constexpr std::uint32_t kPpre1_msk = 7u << 8, kPpre1_div4 = 5u << 8;
 using Usart1Status = Reg32<USART1::base>;
 
@@ -58,6 +59,7 @@ void set_flash(std::uint32_t wait_states, FlashAid aid) {
 
 void divide_apb1_by_4(bool on) {
   RCC::CFGR::replace(kPpre1_msk, on ? kPpre1_div4 : 0);
+  for (int i = 0; i < kPrescaler_cycles; ++i) __asm volatile("nop");
 }
 
 }  // namespace fw::timing

@@ -12,6 +12,7 @@ using namespace hw;
 constexpr std::uint32_t kHsi_Hz = 16'000'000, kBaud = 115'200, kAfUsart2 = 7;
 constexpr std::uint32_t kTxe = bit(7), kTc = bit(6);         // USART_SR
 constexpr std::uint32_t kIcrst = bit(11), kDcrst = bit(12);  // FLASH_ACR
+constexpr int kPrescaler_cycles = 16;                        // until a new divider acts, RCC_CFGR
 constexpr std::uint32_t kPpre1_msk = 7u << 10, kPpre1_div4 = 5u << 10;
 
 }  // namespace
@@ -52,6 +53,7 @@ void set_flash(std::uint32_t wait_states, FlashAid aid) {
 
 void divide_apb1_by_4(bool on) {
   RCC::CFGR::replace(kPpre1_msk, on ? kPpre1_div4 : 0);
+  for (int i = 0; i < kPrescaler_cycles; ++i) __asm volatile("nop");
 }
 
 }  // namespace fw::timing
