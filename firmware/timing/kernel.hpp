@@ -1,7 +1,7 @@
 // A micro-kernel: a few instructions, repeated in a straight line between two reads of the cycle counter.
 //
-//   Frame     r4, r5, r6: 256 bytes of RAM each, apart; r7 = 0; r8: the counter. Free: r0 - r3, r10 - r12, lr
-//             and all of the FPU's upper half. The body starts 16-byte aligned
+//   Frame     r4, r5, r6: RAM, 256 bytes from one to the next; r7 = 0; r8: the counter's address. A body may
+//             use r0 - r3, r10 - r12, lr and s0 - s15, and starts 16-byte aligned
 //   Seams     two register moves on either side keep the counter's load from pairing with the body
 //   Result    cycles of all repetitions and of the seams; the kernel `empty` has only the seams
 //   Macros    an assembler needs its text as literals: one list of kernels makes both code and table

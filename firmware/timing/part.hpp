@@ -21,7 +21,7 @@ extern const std::string_view kPartName;
 extern const std::uint32_t kMost_wait_states;
 extern const bool kHas_flash_cache;
 // Memory that only the data bus reaches, so that fetching from it faults; nullptr: the part has none.
-extern std::uint16_t* const kNot_executable;
+std::uint16_t* not_executable();
 
 void start_part();
 void send(std::string_view text);  // returns when the last stop bit has gone out

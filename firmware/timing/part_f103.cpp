@@ -33,7 +33,10 @@ using Usart1Status = Reg32<USART1::base>;
 constinit const std::string_view kPartName = "stm32f103";
 constinit const std::uint32_t kMost_wait_states = 2;
 constinit const bool kHas_flash_cache = false;
-std::uint16_t* const kNot_executable = nullptr;
+
+std::uint16_t* not_executable() {
+  return nullptr;
+}
 
 void start_part() {
   RCC::APB2ENR::set(RCC::IOPAEN | RCC::USART1EN);

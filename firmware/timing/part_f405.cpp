@@ -20,8 +20,11 @@ constexpr std::uint32_t kPpre1_msk = 7u << 10, kPpre1_div4 = 5u << 10;
 constinit const std::string_view kPartName = "stm32f405";
 constinit const std::uint32_t kMost_wait_states = 5;
 constinit const bool kHas_flash_cache = true;
-// The start of CCM; the stack is at its end.
-std::uint16_t* const kNot_executable = reinterpret_cast<std::uint16_t*>(0x1000'0000);  // NOLINT
+
+std::uint16_t* not_executable() {
+  constexpr std::uint32_t kCcm = 0x1000'0000;  // the stack is at its end
+  return std::bit_cast<std::uint16_t*>(kCcm);
+}
 
 void start_part() {
   RCC::AHB1ENR::set(RCC::GPIOAEN | RCC::CCMDATARAMEN);
