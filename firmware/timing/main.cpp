@@ -38,6 +38,21 @@ void run_kernels(std::span<const Kernel> kernels, std::string_view after = "") {
   }
 }
 
+std::uint32_t cost_of(std::string_view kernel) {
+  for (const Kernel& it : integer_kernels()) {
+    if (kernel != it.name) continue;
+    it.code(ram);
+    return it.code(ram);
+  }
+  return 0;
+}
+
+// What operands make of an instruction that ends early where it can.
+void run_operands(std::string_view name, std::string_view large, std::string_view small) {
+  constexpr std::uint32_t kIterations = 64;  // of either kernel
+  report({name}, kIterations, less(cost_of(large), cost_of(small)));
+}
+
 // The serial line may be on this bus: its rate is right again when a row is sent.
 void run_on_slow_bus(std::span<const Kernel> kernels) {
   const std::uint32_t empty = empty_cycles();
@@ -205,6 +220,8 @@ extern "C" void fw_main() {
                              branch_kernels(), loop_kernels(), bus_kernels()}) {
     run_kernels(kernels);
   }
+  run_operands("udiv_large_over_small", "udiv_large", "udiv_small");
+  run_operands("umull_large_over_small", "umull_large", "umull_small");
   run_on_slow_bus(bus_kernels().first(2));
   if (!float_kernels().empty()) {
     run_kernels(float_kernels());
