@@ -110,7 +110,7 @@ struct CpuFault {
 };
 
 struct FunctionCall {
-  std::int64_t entry_ns = 0;      // Header::t_ns is the return
+  std::int64_t entry_ns = 0;  // Header::t_ns is the return
   // Without what preempted it; -1: the run ended before it returned.
   std::int64_t execution_ns = 0;
   // Of the interrupt whose handler called it: from the request to the handler's first instruction.
