@@ -3,6 +3,5 @@ return {
   board = "timing_f103",
   mcu = "stm32f103cb",
   hse = "8 MHz",
-  instruction = "16 ns",
   devices = { { name = "terminal", type = "serial", bus = "usart1", baud = "115200 baud" } },
 }

@@ -3,6 +3,5 @@ return {
   board = "timing_f405",
   mcu = "stm32f405rg",
   hse = "8 MHz",
-  instruction = "8 ns",
   devices = { { name = "terminal", type = "serial", bus = "usart2", baud = "115200 baud" } },
 }

@@ -66,6 +66,10 @@ bool is_single_load(const Instruction& i) {
   return i.kind == Class::load || i.kind == Class::fp_load;
 }
 
+bool is_single_store(const Instruction& i) {
+  return i.kind == Class::store || i.kind == Class::fp_store;
+}
+
 // What the instruction before it adds or saves.
 double beside(const Instruction& before, const Instruction& i, double cycles) {
   const bool needs_address = (before.writes & i.address_from) != 0;
@@ -77,7 +81,7 @@ double beside(const Instruction& before, const Instruction& i, double cycles) {
   // A result is not forwarded into an address.
   if (i.accesses_memory() && needs_address && !before.accesses_memory()) change += 1;
   if ((before.fp_writes & i.fp_reads) != 0 && !before.accesses_memory()) change += 1;
-  if (i.loads() && before.stores()) change += kLoad_after_store;
+  if (is_single_load(i) && is_single_store(before)) change += kLoad_after_store;
   if (i.folding_it && before.bytes == 2 && !before.accesses_memory()) change = -cycles;
   return change;
 }

@@ -14,8 +14,6 @@
 
 namespace whirl::cycles {
 
-enum class Core : std::uint8_t { cortex_m3, cortex_m4f };
-
 // Exceptions: 12 cycles to the handler's first instruction at zero wait states, 6 from one handler to
 // the next, 10 back (DDI 0337 and 0439, 3.9; ARM's application note AN209 on latency).
 constexpr double kException_entry = 12, kTail_chain = 6, kException_return = 10;

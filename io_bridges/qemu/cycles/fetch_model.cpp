@@ -9,17 +9,33 @@ constexpr std::uint32_t kEnd_of_flash = 0x10000000;
 constexpr double kShared_bus = 1;  // code and data of SRAM come over one bus
 
 // Code in SRAM is fetched over the system bus, where its loads and stores wait for it.
-Fetch sram_stalls(const std::vector<Instruction>& run) {
+Fetch sram_stalls(Core core, const std::vector<Instruction>& run,
+                  const std::vector<double>& cycles) {
+  constexpr std::uint32_t kWord = 4;
+  const double period = core == Core::cortex_m3 ? 2 : 1;
   Fetch fetch;
-  for (const Instruction& i : run) fetch.stalls.push_back(i.accesses_memory() ? kShared_bus : 0);
+  fetch.entry = (period - 1) / 2;  // by where in its word the target lies
+  std::uint32_t word = run.front().address / kWord;
+  double now = 0, next_ready = period;
+  for (std::size_t n = 0; n < run.size(); ++n) {
+    double stall = run[n].accesses_memory() ? kShared_bus : 0;
+    const std::uint32_t last = (run[n].address + run[n].bytes - 1) / kWord;
+    while (word < last) {
+      ++word;
+      stall += std::max(0.0, next_ready - now - stall);
+      next_ready = now + stall + period;
+    }
+    fetch.stalls.push_back(stall);
+    now += stall + cycles[n];
+  }
   return fetch;
 }
 
 }  // namespace
 
-Fetch fetch_stalls(const FlashTiming& flash, const std::vector<Instruction>& run,
-                   const std::vector<double>& core) {
-  if (run.front().address >= kEnd_of_flash) return sram_stalls(run);
+Fetch fetch_stalls(Core core, const FlashTiming& flash, const std::vector<Instruction>& run,
+                   const std::vector<double>& cycles) {
+  if (run.front().address >= kEnd_of_flash) return sram_stalls(core, run, cycles);
   Fetch fetch;
   fetch.stalls.assign(run.size(), 0);
   if (flash.wait_states == 0) return fetch;
@@ -49,7 +65,7 @@ Fetch fetch_stalls(const FlashTiming& flash, const std::vector<Instruction>& run
       fetch.stalls[n] += period - 1;
       now += period - 1;
     }
-    now += core[n];
+    now += cycles[n];
   }
   return fetch;
 }

@@ -1,7 +1,8 @@
 // What the memory that code lies in adds: wait states, prefetch, the line cache of the F405 (ART).
 //
 //   Source    RM0090 3.4.2 (ART: 64 lines of 128 bits, prefetch of the next line), PM0075 3.1 (F103:
-//             two prefetch buffers of 64 bits); DDI 0439 2.3.1 for code on the system bus
+//             two prefetch buffers of 64 bits); DDI 0337E 14.5.6: over the system bus, where SRAM is,
+//             an M3 fetches a word every other cycle, never back to back
 //   Method    a line arrives (wait states + 1) cycles after it was asked for; with prefetch the next
 //             one is asked for as execution enters a line. A stall is what execution still waits for
 //   ART       which lines it holds is known at run time only: `lines` says what would have to be
@@ -32,7 +33,7 @@ struct Fetch {
 };
 
 // Where code runs from: below 0x10000000 and from 0x08000000 flash, from 0x20000000 SRAM.
-Fetch fetch_stalls(const FlashTiming& flash, const std::vector<Instruction>& run,
-                   const std::vector<double>& core);
+Fetch fetch_stalls(Core core, const FlashTiming& flash, const std::vector<Instruction>& run,
+                   const std::vector<double>& cycles);
 
 }  // namespace whirl::cycles

@@ -7,6 +7,8 @@
 
 namespace whirl::cycles {
 
+enum class Core : std::uint8_t { cortex_m3, cortex_m4f };
+
 // The rows of ARM's timing tables (core_model.cpp has the cycles).
 enum class Class : std::uint8_t {
   plain,          // data processing, moves, hints

@@ -29,7 +29,7 @@ std::int64_t CycleClock::units(double cycles) const {
 
 BlockCost CycleClock::cost_of(const std::vector<cycles::Instruction>& run) const {
   const std::vector<double> core = cycles::core_cycles(core_, run);
-  const cycles::Fetch fetch = cycles::fetch_stalls(timing_.flash, run, core);
+  const cycles::Fetch fetch = cycles::fetch_stalls(core_, timing_.flash, run, core);
   BlockCost cost;
   double until = 0;  // rounded as a sum: no block's error grows with its length
   for (std::size_t n = 0; n < run.size(); ++n) {

@@ -103,7 +103,7 @@ TEST(CoreModel, AnItFoldsIntoANarrowPredecessor) {
 const FlashTiming kArt{5, 16, true, true, true}, kF1{2, 8, true, false, false};
 
 Fetch fetch(const FlashTiming& flash, const std::vector<Instruction>& run) {
-  return fetch_stalls(flash, run, core_cycles(Core::cortex_m3, run));
+  return fetch_stalls(Core::cortex_m3, flash, run, core_cycles(Core::cortex_m3, run));
 }
 
 TEST(FetchModel, WithoutWaitStatesNothingStalls) {
@@ -142,6 +142,13 @@ TEST(FetchModel, CodeInSramSharesItsBusWithItsData) {
   const Fetch f = fetch(kArt, run_of({kLdr_r1_r0, kNop}, kSram));
   EXPECT_EQ(f.stalls, (std::vector<double>{1, 0}));
   EXPECT_TRUE(f.lines.empty());
+  // An M3 has a word of code every other cycle: two narrow instructions keep up, wide ones wait.
+  const auto narrow = run_of({kNop, kNop, kNop, kNop, kNop, kNop}, kSram);
+  const auto wide = run_of({0xF1000001, 0xF1000001, 0xF1000001, 0xF1000001}, kSram);
+  EXPECT_EQ(sum(fetch(kArt, narrow).stalls), 0);
+  EXPECT_EQ(sum(fetch(kArt, wide).stalls), 3);
+  const auto m4_cycles = core_cycles(Core::cortex_m4f, wide);
+  EXPECT_EQ(sum(fetch_stalls(Core::cortex_m4f, kArt, wide, m4_cycles).stalls), 0);
 }
 
 }  // namespace
