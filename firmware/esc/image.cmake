@@ -5,16 +5,19 @@ add_executable(esc
   esc/image/main.cpp esc/image/startup.cpp esc/image/clock.cpp esc/image/bridge.cpp
   esc/image/sampling.cpp esc/image/motor_drive.cpp esc/image/i2c_slave.cpp esc/image/pulse_input.cpp esc/image/serial.cpp
   esc/image/commands.cpp esc/image/text_number.cpp esc/image/stream.cpp
-  esc/image/stream_frame.cpp esc/image/settings.cpp hal/fault_handler.cpp
+  esc/image/stream_frame.cpp esc/image/settings.cpp esc/image/float_arithmetic.cpp hal/fault_handler.cpp
   esc/core/commutation.cpp esc/core/core.cpp esc/core/filters.cpp esc/core/thrust_estimator.cpp
   esc/core/thrust_model.cpp)
 target_link_libraries(esc PRIVATE fw_language)
-target_compile_options(esc PRIVATE ${ESC_CPU})
+target_compile_options(esc PRIVATE ${ESC_CPU} -O2 -flto)
 # Tasks return to their handlers instead of ending the interrupt themselves: their returns can be timed.
 set_source_files_properties(esc/image/main.cpp PROPERTIES
                             COMPILE_OPTIONS -fno-optimize-sibling-calls)
+# What the compiler itself calls must be there when it has finished.
+set_source_files_properties(esc/image/float_arithmetic.cpp PROPERTIES COMPILE_OPTIONS -fno-lto)
 set(ESC_SCRIPT ${PROJECT_SOURCE_DIR}/firmware/esc/image/stm32f103cb.ld)
-target_link_options(esc PRIVATE ${ESC_CPU} -nostartfiles --specs=nano.specs -T${ESC_SCRIPT}
+target_link_options(esc PRIVATE ${ESC_CPU} -O2 -flto -nostartfiles --specs=nano.specs -T${ESC_SCRIPT}
+  -Wl,--wrap=__aeabi_fdiv,--wrap=__aeabi_fcmplt,--wrap=__aeabi_fcmpgt,--wrap=__aeabi_fcmple,--wrap=__aeabi_fcmpge
   -Wl,--gc-sections -Wl,--fatal-warnings -Wl,-Map=${CMAKE_BINARY_DIR}/esc.map)
 set_target_properties(esc PROPERTIES LINK_DEPENDS ${ESC_SCRIPT}
                       RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR})

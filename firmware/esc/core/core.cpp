@@ -85,11 +85,11 @@ float Core::speed_for(float value) const {
     case Mode::speed:
       return value;
     case Mode::thrust_by_speed:
-      return speed_for_thrust_radps(map, value, 1.0f);
+      return speed_for_thrust_radps(map, value, 1.0f, solved_radps_);
     case Mode::power:
-      return speed_for_power_radps(map, value, estimator_.power_ratio());
+      return speed_for_power_radps(map, value, estimator_.power_ratio(), solved_radps_);
     case Mode::thrust_by_power:
-      return speed_for_thrust_radps(map, value, estimator_.thrust_ratio());
+      return speed_for_thrust_radps(map, value, estimator_.thrust_ratio(), solved_radps_);
     case Mode::duty:
     case Mode::servo:
       return 0.0f;
@@ -100,6 +100,7 @@ float Core::speed_for(float value) const {
 void Core::enter(Phase phase) {
   if (phase == Phase::starting) {
     losses_ = 0;
+    solved_radps_ = 0.0f;
     speed_control_.restart();
     estimator_.restart(sensed_.speed_radps);
   }
@@ -159,7 +160,7 @@ Drive Core::regulate(float value) {
     const float held_V = speed_control_.update(kHeld_radps, latest_radps, bus_V, share).voltage_V;
     if (demand.voltage_V < held_V) demand = {held_V, true};
   } else {
-    wanted_radps_ = speed_for(value);
+    wanted_radps_ = solved_radps_ = speed_for(value);
     if (wanted_radps_ < kSlowest_radps) wanted_radps_ = kSlowest_radps;
     demand = speed_control_.update(wanted_radps_, latest_radps, bus_V, share);
   }

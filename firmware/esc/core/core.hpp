@@ -84,6 +84,7 @@ class Core {
   float measured_A_ = 0.0f;
   float bus_current_A_ = 0.0f;
   float wanted_radps_ = 0.0f;
+  float solved_radps_ = 0.0f;  // of the last period: where the next one begins
   std::uint16_t over_current_ms_ = 0;
   Phase phase_ = Phase::stopped;
   std::uint16_t phase_ms_ = 0;

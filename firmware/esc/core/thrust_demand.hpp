@@ -13,23 +13,53 @@
 
 namespace fw::esc {
 
-inline float speed_for_thrust_radps(const StaticMap& map, float thrust_N, float ratio) {
-  const float T = thrust_N / ratio;
-  float w = (-map.a1 + std::sqrt(map.a1 * map.a1 + 4.0f * map.a2 * T)) / (2.0f * map.a2);
-  for (int k = 0; k < 3; ++k) {  // Newton; a3 is a small correction
-    w -= (map.CT(w) * w * w - T) / ((3.0f * map.a3 * w + 2.0f * map.a2) * w + map.a1);
+// Newton's way to where `step(w)` is 0: at most two steps a control period from where the last one
+// ended, if that is near; else from `guess()`.
+template <typename Step, typename Guess>
+float solved_radps(float near_radps, Step step, Guess guess) {
+  constexpr float kNear = 0.2f,
+                  kThere = 1e-3f;  // of the speed; the error is about the square of it
+  float w = near_radps;
+  int steps = 2;
+  const float first = w > 0.0f ? step(w) : w;
+  if (w > 0.0f && std::fabs(first) < kNear * w) {
+    w -= first;
+    if (std::fabs(first) < kThere * w) return w;
+    --steps;
+  } else {
+    w = guess();
+    steps = 4;
+  }
+  for (int k = 0; k < steps; ++k) {
+    const float less = step(w);
+    w -= less;
+    if (std::fabs(less) < kThere * w) break;
   }
   return w;
 }
 
-inline float speed_for_power_radps(const StaticMap& map, float power_W, float ratio) {
+inline float speed_for_thrust_radps(const StaticMap& map, float thrust_N, float ratio,
+                                    float near_radps = 0.0f) {
+  const float T = thrust_N / ratio;
+  const auto step = [&](float w) {
+    return (((map.a3 * w + map.a2) * w + map.a1) * w - T) /
+           ((3.0f * map.a3 * w + 2.0f * map.a2) * w + map.a1);
+  };
+  const auto guess = [&] {  // a3 is a small correction
+    return (-map.a1 + std::sqrt(map.a1 * map.a1 + 4.0f * map.a2 * T)) / (2.0f * map.a2);
+  };
+  return solved_radps(near_radps, step, guess);
+}
+
+inline float speed_for_power_radps(const StaticMap& map, float power_W, float ratio,
+                                   float near_radps = 0.0f) {
   const float P = power_W / ratio;
-  float w = std::cbrt(P / map.q2);
-  for (int k = 0; k < 4; ++k) {  // Newton again
+  const auto step = [&](float w) {
     const float slope = (5.0f * map.q4 * w + 4.0f * map.q3) * w + 3.0f * map.q2;
-    w -= (map.CP(w) * w * w * w - P) / (slope * w * w);
-  }
-  return w;
+    const float square = w * w;
+    return (map.CP(w) * square * w - P) / (slope * square);
+  };
+  return solved_radps(near_radps, step, [&] { return std::cbrt(P / map.q2); });
 }
 
 }  // namespace fw::esc

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "firmware/esc/core/square_root.hpp"
+
 namespace fw::esc {
 
 RotorPoint at_inflow(const ThrustModel& m, float ls) {
@@ -10,7 +12,7 @@ RotorPoint at_inflow(const ThrustModel& m, float ls) {
   const float b = m.c4 * ls + m.c1;
   const float discriminant = b * b - 4.0f * m.c4 * m.c1 * (ls - m.c2);
   if (!(discriminant >= 0.0f)) return point;
-  point.li = (-b + std::sqrt(discriminant)) / (2.0f * m.c4);
+  point.li = (square_root(discriminant) - b) / (2.0f * m.c4);
   point.CT = m.c1 * (m.c2 - point.li - ls);
   point.kappa = m.d0 + m.d1 * point.CT;
   point.CP = m.c3 + point.CT * (point.kappa * point.li + ls) * m.c0;
@@ -37,6 +39,10 @@ ThrustSolver::ThrustSolver(const ThrustModel& model, const Bounds& bounds)
   std::uint8_t i = turn_;
   while (i < last_ && CP_[i + 1] < CP_[i]) ++i;
   last_ = i;
+  for (i = turn_; i < last_; ++i) {
+    slope_[i] = (CP_[i + 1] - CP_[i]) / (node_ls(i + 1) - node_ls(i));
+    leverage_[i] = (CT_[i + 1] / CT_[i] - 1.0f) / (CP_[i + 1] / CP_[i] - 1.0f);
+  }
 }
 
 ThrustEstimate ThrustSolver::solve(float CP_measured) {
@@ -57,14 +63,16 @@ ThrustEstimate ThrustSolver::search(int cell, float CP_measured) {
   ThrustEstimate result;
   float low = node_ls(cell), high = node_ls(cell + 1);
   float f_low = CP_measured - CP_[cell], f_high = CP_measured - CP_[cell + 1];
-  result.slope = (CP_[cell + 1] - CP_[cell]) / (high - low);
-  result.leverage = (CT_[cell + 1] / CT_[cell] - 1.0f) / (CP_[cell + 1] / CP_[cell] - 1.0f);
+  result.slope = slope_[cell];
+  result.leverage = leverage_[cell];
   if (std::fabs(result.leverage) > bounds_.most_leverage) {
     result.status = Estimate::not_observable;
     return result;
   }
   const auto secant = [&] { return low - f_low * (high - low) / (f_high - f_low); };
-  float x = ls_ > low && ls_ < high ? ls_ : secant();
+  // From the last solution along the slope: mostly there at once.
+  float x = ls_ + (CP_measured - CP_solved_) / result.slope;
+  if (!(x > low && x < high)) x = secant();
   for (int k = 1; k <= kMaxIterations; ++k) {
     const RotorPoint point = at_inflow(model_, x);
     const float f = CP_measured - point.CP;
@@ -73,6 +81,7 @@ ThrustEstimate ThrustSolver::search(int cell, float CP_measured) {
       result.status = Estimate::converged;
       result.CT = point.CT;
       result.ls = ls_ = x;
+      CP_solved_ = point.CP;
       return result;
     }
     const bool lower = f < 0.0f;  // more inflow is needed than x

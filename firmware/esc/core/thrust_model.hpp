@@ -61,7 +61,7 @@ class ThrustSolver {
 
   // One call per control period; keeps the solution as the next start. CP_measured in W/(rad/s)^3.
   ThrustEstimate solve(float CP_measured);
-  void restart(float ls = 0.0f) { ls_ = ls; }
+  void restart() { ls_ = CP_solved_ = 0.0f; }
 
   // Power falls with inflow from here on, and rises (or is undefined) before: where two inflows meet.
   float turning_inflow() const { return node_ls(turn_); }
@@ -77,11 +77,12 @@ class ThrustSolver {
 
   ThrustModel model_;
   Bounds bounds_;
-  std::array<float, kCells + 1> CP_{}, CT_{};  // at the nodes
-  std::uint8_t first_ = 0;                     // lowest node with a real solution
-  std::uint8_t turn_ = 0;                      // node with the largest CP
-  std::uint8_t last_ = 0;                      // CP falls from turn_ to here
-  float ls_ = 0.0f;
+  std::array<float, kCells + 1> CP_{}, CT_{};       // at the nodes
+  std::array<float, kCells> slope_{}, leverage_{};  // of the cells behind them
+  std::uint8_t first_ = 0;                          // lowest node with a real solution
+  std::uint8_t turn_ = 0;                           // node with the largest CP
+  std::uint8_t last_ = 0;                           // CP falls from turn_ to here
+  float ls_ = 0.0f, CP_solved_ = 0.0f;              // the last solution
 };
 
 }  // namespace fw::esc
