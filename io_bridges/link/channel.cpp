@@ -2,7 +2,9 @@
 
 #include <fcntl.h>
 #include <linux/futex.h>
+#include <sched.h>
 #include <sys/mman.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
 #include <unistd.h>
@@ -21,7 +23,6 @@ namespace whirl::io {
 namespace {
 
 constexpr std::uint64_t kMagic = 0x31306b6e696c6877;  // "whlink01"
-constexpr int kSpins = 400;                           // about 10 us before the kernel is asked
 
 void futex(std::atomic<std::uint32_t>& word, int operation, std::uint32_t value,
            const timespec* timeout) {
@@ -33,6 +34,16 @@ void relax() {
 #if defined(__x86_64__)
   __builtin_ia32_pause();
 #endif
+}
+
+int own_cores() {
+  cpu_set_t cores;
+  return sched_getaffinity(0, sizeof cores, &cores) == 0 ? CPU_COUNT(&cores) : 1;
+}
+
+long preemptions() {
+  rusage use{};
+  return getrusage(RUSAGE_THREAD, &use) == 0 ? use.ru_nivcsw : 0;
 }
 
 void copy_text(char* to, std::size_t room, const std::string& text) {
@@ -105,14 +116,15 @@ Result<Channel> Channel::attach(Side side, int fd) {
 }
 
 Channel::Channel(Side side, int fd, void* memory, std::size_t size)
-    : side_(side), fd_(fd), page_(static_cast<Page*>(memory)), size_(size) {}
+    : side_(side), fd_(fd), page_(static_cast<Page*>(memory)), size_(size), spin_(own_cores()) {}
 
 Channel::Channel(Channel&& other) noexcept
     : side_(other.side_),
       fd_(other.fd_),
       page_(other.page_),
       size_(other.size_),
-      seen_(other.seen_) {
+      seen_(other.seen_),
+      spin_(other.spin_) {
   other.fd_ = -1;
   other.page_ = nullptr;
 }
@@ -154,13 +166,16 @@ Result<Done> Channel::post(std::int64_t t_ns, std::span<const std::uint8_t> byte
 
 bool Channel::wait(int timeout_ms) {
   Mailbox& box = incoming();
-  for (int i = 0; i < kSpins; ++i) {
+  const int turns = timeout_ms == 0 ? SpinPolicy::kLeast : spin_.turns();
+  for (int i = 0; i < turns; ++i) {
     if (box.sequence.load(std::memory_order_acquire) != seen_) {
       ++seen_;
+      if (i > SpinPolicy::kLeast) spin_.waited(preemptions());
       return true;
     }
     relax();
   }
+  spin_.waited(preemptions());
   box.sleeping.store(1, std::memory_order_seq_cst);
   const bool came = sleep_until(box, timeout_ms);
   box.sleeping.store(0, std::memory_order_relaxed);

@@ -14,6 +14,7 @@
 #include <string>
 
 #include "harness/base/result.hpp"
+#include "io_bridges/link/spin_policy.hpp"
 
 namespace whirl::io {
 
@@ -71,6 +72,7 @@ class Channel {
   Page* page_ = nullptr;
   std::size_t size_ = 0;
   std::uint32_t seen_ = 0;
+  SpinPolicy spin_;
 };
 
 }  // namespace whirl::io
