@@ -22,6 +22,7 @@ struct Expectation {
   std::optional<double> high;  // in `unit`
   std::string unit;            // as written in the plan: "ms"; "" for a bare number
   double margin = 0.0;         // to the nearer limit, negative when failed, in `unit`
+  bool marginal = false;       // met, but by less than the measurement is accurate
   std::string place;           // "hover.lua:31"
   double t_s = 0.0;            // when it was judged, or the worst value happened
   std::string note;            // "never reached", "2 of 1000 periods late"

@@ -30,6 +30,7 @@ ordered_json expectation(const Expectation& e) {
           {"limit", limit_of(e)},
           {"unit", e.unit},
           {"margin", number(e.margin)},
+          {"marginal", e.marginal},
           {"place", e.place},
           {"t_s", e.t_s},
           {"note", e.note},

@@ -30,6 +30,8 @@ struct Board {
   std::string boot_image;      // of a boot loader that is flashed beside the image; empty: none
   std::uint32_t start = 0;     // of the vector table at reset; 0: the start of flash
   int ns_per_instruction = 0;  // 0: time passes by the cycles of the core
+  // Of a time that code takes, as a share of it; a fixed rate states none.
+  double timing_accuracy() const { return ns_per_instruction == 0 ? 0.1 : 0.0; }
   std::vector<BoardDevice> devices;
   std::vector<std::string> watch;
   std::string pins_json;

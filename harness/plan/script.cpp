@@ -203,7 +203,7 @@ void Script::add(results::Expectation e) {
 
 void Script::judge(const Measurement& m, How how, std::optional<Limit> low,
                    std::optional<Limit> high, const std::string& place, double t_s,
-                   const std::string& note, const std::string& unfilled) {
+                   const std::string& note, const std::string& unfilled, double accuracy) {
   results::Expectation e;
   e.name = m.name;
   e.how = words(how);
@@ -217,6 +217,8 @@ void Script::judge(const Measurement& m, How how, std::optional<Limit> low,
   if (high) e.high = in_unit(high->value_SI, e.unit);
   // A margin is a difference: an offset of the unit (degC) must not enter twice.
   e.margin = in_unit(margin_of(m.value_SI, low, high), e.unit) - in_unit(0.0, e.unit);
+  e.marginal =
+      e.verdict == results::Verdict::pass && high && m.value_SI > high->value_SI * (1.0 - accuracy);
   e.place = place;
   e.t_s = t_s;
   e.signals = m.signals;
@@ -231,10 +233,11 @@ void Script::judge(const Measurement& m, How how, std::optional<Limit> low,
 }
 
 void Script::judge_in_window(const Measurement& m, Figure figure, const Limit& high,
-                             const std::string& place, double t_s, const std::string& note) {
+                             const std::string& place, double t_s, const std::string& note,
+                             double accuracy) {
   Measurement known = m;
   if (figure == Figure::of_all && !unfilled_.empty()) known.value_SI = std::nan("");
-  judge(known, How::at_most, std::nullopt, high, place, t_s, note, unfilled_);
+  judge(known, How::at_most, std::nullopt, high, place, t_s, note, unfilled_, accuracy);
 }
 
 void Script::set_step(const std::string& name) {

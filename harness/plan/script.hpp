@@ -99,12 +99,14 @@ class Script {
   bool condition(lua_State* L, int ref);  // raises what the function raised
   void judge(const Measurement& measured, How how, std::optional<Limit> low,
              std::optional<Limit> high, const std::string& place, double t_s,
-             const std::string& note = {}, const std::string& unfilled = {});
+             const std::string& note = {}, const std::string& unfilled = {}, double accuracy = 0.0);
   // The same within a window that was not watched to its end: a limit kept until then shows nothing.
   // `of_all`: of a mean or a count over all of it, not even a limit broken until then does.
   enum class Figure { extreme, of_all };
+  // `accuracy` of the measured value, as a share of it: who meets the limit by less is marginal.
   void judge_in_window(const Measurement& measured, Figure figure, const Limit& high,
-                       const std::string& place, double t_s, const std::string& note);
+                       const std::string& place, double t_s, const std::string& note,
+                       double accuracy = 0.0);
   void add(results::Expectation expectation);  // makes its name unique
   // The plan has taken in something of the run: a signal, an answer, a window.
   void look() { looked_ = true; }

@@ -57,6 +57,27 @@ TEST(Judging, ACallThatIsStillRunningAtTheEndOfTheRunHasComeButHasNoLength) {
   EXPECT_TRUE(passes(s));
 }
 
+// Executions of 95 us. The clock of cycles is good for 10 %.
+TEST(Judging, ALimitThatIsMetByLessThanTheClockIsAccurateIsMarginal) {
+  const auto judged = [](const std::string& budget) {
+    Scenario s = playing("t:budget 'fw::task' { " + budget + ", during = '50 ms' } t:wait '60 ms'");
+    for (std::int64_t t = 1 * kMs; t < 60 * kMs; t += kMs) add_call(s, t, t + 100 * kUs, 95 * kUs);
+    return only(s);
+  };
+  const auto near = judged("execution = '100 us'");
+  EXPECT_EQ(near.verdict, results::Verdict::pass);
+  EXPECT_TRUE(near.marginal);
+  const auto far = judged("execution = '106 us'");
+  EXPECT_EQ(far.verdict, results::Verdict::pass);
+  EXPECT_FALSE(far.marginal);
+  const auto asked = judged("execution = '100 us', margin = '10 %'");
+  EXPECT_EQ(asked.verdict, results::Verdict::fail);
+  EXPECT_FALSE(asked.marginal);
+  EXPECT_NEAR(*asked.high, 90.0, 1e-9);
+  EXPECT_NE(asked.note.find("100 us less 10 %"), std::string::npos) << asked.note;
+  EXPECT_EQ(judged("execution = '106 us', margin = '10 %'").verdict, results::Verdict::pass);
+}
+
 TEST(Judging, AnAnswerThatComesAtTheLimitIsInTime) {
   for (int limit : {43, 55, 60}) {
     Scenario s = playing("t:wait '65 ms' t:ask('hello', nil, '" + std::to_string(limit) +

@@ -42,6 +42,7 @@ BlockCost CycleClock::cost_of(const std::vector<cycles::Instruction>& run) const
   cost.ends_in_branch = last.flow != cycles::Flow::next;
   if (last.flow == cycles::Flow::conditional) cost.taken = units(cycles::refill_cycles(last));
   cost.entry = units(fetch.entry);
+  cost.lines.reserve(fetch.lines.size());
   for (const cycles::LineUse& use : fetch.lines) {
     cost.lines.push_back({use.line, units(use.cycles)});
   }

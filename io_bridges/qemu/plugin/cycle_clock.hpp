@@ -25,7 +25,7 @@ namespace whirl::qemu {
 class CycleClock final : public CoreClock {
  public:
   CycleClock(const Api& api, cycles::Core core, std::function<void()> refuse)
-      : api_(api), core_(core), refuse_(refuse), code_(api, refuse) {}
+      : core_(core), refuse_(refuse), code_(api, std::move(refuse)) {}
 
   Result<Done> find_qemu() override { return code_.find_qemu(); }
   std::vector<std::int64_t> translated(qemu_plugin_tb* block,
@@ -49,7 +49,6 @@ class CycleClock final : public CoreClock {
   double cycles_since_edge() const;
   void take_edge(double cycles);
 
-  const Api& api_;
   const cycles::Core core_;
   std::function<void()> refuse_;
   CostInjection code_;

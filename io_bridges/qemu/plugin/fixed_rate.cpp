@@ -8,6 +8,7 @@ std::vector<std::int64_t> FixedRate::translated(qemu_plugin_tb* block,
   const std::size_t length = qemu_plugin_tb_n_insns(block);
   qemu_plugin_register_vcpu_tb_exec_inline(block, 0, &instructions_, length);
   std::vector<std::int64_t> behind;
+  behind.reserve(sites.size());
   for (const std::uint32_t site : sites) behind.push_back(static_cast<std::int64_t>(length - site));
   return behind;
 }
