@@ -83,8 +83,10 @@ int exit_code_of(Blame blame) {
 }
 
 const Reason* deciding(const std::vector<Reason>& reasons) {
+  enum class Weight { not_shown, cause, firmware };
   const auto weight = [](const Reason& r) {
-    return r.blame == Blame::firmware ? 2 : r.blame == Blame::not_shown ? 0 : 1;
+    if (r.blame == Blame::firmware) return Weight::firmware;
+    return r.blame == Blame::not_shown ? Weight::not_shown : Weight::cause;
   };
   const auto first =
       std::max_element(reasons.begin(), reasons.end(),

@@ -12,8 +12,7 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr std::int64_t kReference_ns = 200'000'000;
 
 std::span<const double> after(const Record& record) {
-  return record.command < record.values.size() ? record.values.subspan(record.command)
-                                               : std::span<const double>{};
+  return record.values.subspan(std::min(record.command, record.values.size()));
 }
 
 double mean_of(std::span<const double> values) {
@@ -27,6 +26,7 @@ struct Change {
   double from = kNaN;
   double to = kNaN;
   double size() const { return to - from; }
+  bool rises() const { return size() > 0.0; }
   // Nothing that rounding of the means could make is a change.
   bool exists() const { return std::abs(size()) > 1e-9 * std::max(std::abs(from), std::abs(to)); }
 };
@@ -38,7 +38,7 @@ bool has_nan(std::span<const double> values) {
 Change change_of(const Record& record) {
   const auto window = static_cast<std::size_t>(kReference_ns / record.step_ns);
   const auto tail = after(record);
-  if (record.command < window || tail.size() < window || window == 0 || has_nan(tail)) return {};
+  if (record.command < window || tail.size() < window || has_nan(tail)) return {};
   return {mean_of(record.values.subspan(record.command - window, window)),
           mean_of(tail.last(window))};
 }
@@ -46,7 +46,7 @@ Change change_of(const Record& record) {
 // First time after the command at which the change is done to the given share; NaN if never.
 double crossing_s(const Record& record, const Change& change, double share) {
   const double level = change.from + share * change.size();
-  const double sign = change.size() > 0.0 ? 1.0 : -1.0;
+  const double sign = change.rises() ? 1.0 : -1.0;
   const auto tail = after(record);
   const double step_s = static_cast<double>(record.step_ns) * 1e-9;
   for (std::size_t i = 0; i < tail.size(); ++i) {
@@ -58,9 +58,9 @@ double crossing_s(const Record& record, const Change& change, double share) {
   return kNaN;
 }
 
-double transition_s(const Record& record, double sign) {
+double transition_s(const Record& record, bool rising) {
   const Change change = change_of(record);
-  if (!change.exists() || !(sign * change.size() > 0.0)) return kNaN;
+  if (!change.exists() || change.rises() != rising) return kNaN;
   return crossing_s(record, change, 0.9) - crossing_s(record, change, 0.1);
 }
 
@@ -73,11 +73,11 @@ double extreme(std::span<const double> values, bool largest) {
 }  // namespace
 
 double rise_time_s(const Record& record) {
-  return transition_s(record, 1.0);
+  return transition_s(record, true);
 }
 
 double fall_time_s(const Record& record) {
-  return transition_s(record, -1.0);
+  return transition_s(record, false);
 }
 
 double response_time_s(const Record& record) {
@@ -88,9 +88,8 @@ double response_time_s(const Record& record) {
 double overshoot_ratio(const Record& record) {
   const Change change = change_of(record);
   if (!change.exists()) return kNaN;
-  const double beyond =
-      change.size() > 0.0 ? maximum(record) - change.to : change.to - minimum(record);
-  return std::isnan(beyond) ? kNaN : std::max(0.0, beyond / std::abs(change.size()));
+  const double beyond = change.rises() ? maximum(record) - change.to : change.to - minimum(record);
+  return std::max(0.0, beyond / std::abs(change.size()));
 }
 
 double change(const Record& record) {
@@ -100,7 +99,7 @@ double change(const Record& record) {
 
 double settled_s(const Record& record, double target, double band) {
   const auto tail = after(record);
-  if (tail.empty() || has_nan(tail) || std::isnan(target) || std::isnan(band)) return kNaN;
+  if (tail.empty() || has_nan(tail)) return kNaN;
   const double step_s = static_cast<double>(record.step_ns) * 1e-9;
   for (std::size_t i = tail.size(); i-- > 0;) {
     if (std::abs(tail[i] - target) <= band) continue;

@@ -42,14 +42,12 @@ std::optional<std::int64_t> sample_behind(std::span<const std::int64_t> data_rea
 
 Distribution distribution(std::span<const double> values) {
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-  if (values.empty()) return {0, kNaN, kNaN, kNaN, kNaN, kNaN};
-  Distribution d{values.size(), 0, 0, 0, 0, 0};
-  for (double v : values) d.mean += v / static_cast<double>(values.size());
-  d.min = quantile(values, 0.0);
-  d.max = quantile(values, 1.0);
-  d.p50 = quantile(values, 0.5);
-  d.p99 = quantile(values, 0.99);
-  return d;
+  if (values.empty()) return {{}, kNaN, kNaN, kNaN, kNaN, kNaN};
+  double mean = 0.0;
+  for (double v : values) mean += v / static_cast<double>(values.size());
+  return {values.size(),         mean,
+          quantile(values, 0.0), quantile(values, 1.0),
+          quantile(values, 0.5), quantile(values, 0.99)};
 }
 
 std::vector<double> periods_s(std::span<const std::int64_t> times_ns) {
@@ -62,7 +60,6 @@ std::vector<double> periods_s(std::span<const std::int64_t> times_ns) {
 
 std::vector<double> deviations_s(std::span<const double> periods, double nominal_s) {
   std::vector<double> deviations;
-  deviations.reserve(periods.size());
   for (double period : periods) deviations.push_back(std::abs(period - nominal_s));
   return deviations;
 }

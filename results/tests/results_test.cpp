@@ -13,36 +13,12 @@
 #include "harness/base/text.hpp"
 #include "results/charts.hpp"
 #include "results/folder.hpp"
+#include "results/tests/sample.hpp"
 
 namespace whirl::results {
 namespace {
 
 namespace fs = std::filesystem;
-
-Report sample() {
-  Report r;
-  r.plan = "hover <1> & \"quoted\"";
-  r.file = "hover.lua";
-  r.seed = 7;
-  r.digest = "0123456789abcdef";
-  r.virtual_s = 10.0;
-  Expectation good;
-  good.name = "height";
-  good.verdict = Verdict::pass;
-  good.how = "at most";
-  good.measured = 3.0;
-  good.high = 5.0;
-  good.unit = "cm";
-  good.margin = 2.0;
-  Expectation bad = good;
-  bad.name = "tilt \x01";
-  bad.verdict = Verdict::fail;
-  bad.measured = std::nan("");
-  bad.note = "nothing to measure";
-  r.expectations = {good, bad};
-  conclude(r);
-  return r;
-}
 
 std::string contents(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
@@ -56,85 +32,6 @@ TruthLog truth() {
     log.append(row);
   }
   return log;
-}
-
-TEST(Verdicts, PrecedenceIsInternalBadInputFailedInconclusivePass) {
-  const int order[] = {0, 3, 1, 2, 4};
-  for (int i = 0; i < 5; ++i) {
-    for (int k = 0; k < 5; ++k) {
-      EXPECT_EQ(worse_exit_code(order[i], order[k]), order[std::max(i, k)]);
-    }
-  }
-  EXPECT_EQ(worse_exit_code(0, 139), 4);  // an unknown code is nobody's pass
-}
-
-// The table of verdict.hpp, typed again.
-TEST(Verdicts, WhoIsAtFaultDecidesVerdictAndExitCode) {
-  struct Row {
-    Blame blame;
-    Verdict verdict;
-    int code;
-  };
-  const Row kTable[] = {{Blame::firmware, Verdict::fail, 1},
-                        {Blame::user, Verdict::error, 2},
-                        {Blame::host, Verdict::inconclusive, 3},
-                        {Blame::not_shown, Verdict::inconclusive, 3},
-                        {Blame::harness, Verdict::error, 4}};
-  for (const Row& row : kTable) {
-    Report r = sample();
-    r.expectations.pop_back();
-    r.reasons = {{row.blame, "why"}};
-    conclude(r);
-    EXPECT_EQ(r.verdict, row.verdict) << name(row.blame);
-    EXPECT_EQ(exit_code(r), row.code) << name(row.blame);
-    EXPECT_EQ(r.reason, "why");
-  }
-}
-
-TEST(Verdicts, WhatWasSeenOfTheFirmwareStaysWhateverFollows) {
-  for (Blame later : {Blame::user, Blame::host, Blame::not_shown, Blame::harness}) {
-    for (bool before : {false, true}) {
-      Report r = sample();
-      r.expectations.pop_back();
-      r.reasons = {{Blame::firmware, "HardFault"}};
-      r.reasons.insert(before ? r.reasons.begin() : r.reasons.end(), Reason{later, "also"});
-      conclude(r);
-      EXPECT_EQ(exit_code(r), 1) << name(later);
-      EXPECT_EQ(r.reason, "HardFault");
-    }
-    Report r = sample();  // has a failed expectation
-    r.reasons = {{later, "also"}};
-    conclude(r);
-    EXPECT_EQ(exit_code(r), 1) << name(later);
-  }
-}
-
-TEST(Verdicts, OfLesserReasonsTheFirstStaysAndWhatWasNotShownGivesWay) {
-  const Blame kCauses[] = {Blame::user, Blame::host, Blame::harness};
-  for (Blame first : kCauses) {
-    for (Blame second : kCauses) {
-      Report r = sample();
-      r.expectations.pop_back();
-      r.reasons = {{Blame::not_shown, "0"}, {first, "1"}, {second, "2"}};
-      conclude(r);
-      EXPECT_EQ(r.reason, "1");
-      EXPECT_EQ(r.blame, first);
-    }
-  }
-}
-
-TEST(Verdicts, AnExpectationThatWasNotShownIsNoPass) {
-  Report r = sample();
-  r.expectations.pop_back();
-  r.expectations[0].verdict = Verdict::inconclusive;
-  conclude(r);
-  EXPECT_EQ(exit_code(r), 3);
-}
-
-TEST(Verdicts, NothingExpectedIsBadInput) {
-  Report r;
-  conclude(r);
-  EXPECT_EQ(exit_code(r), 2);
 }
 
 TEST(Junit, HasOneCasePerExpectationAndCountsThatAgree) {

@@ -140,5 +140,107 @@ TEST(Response, QuantilesOfTheFirstHundredIntegers) {
   EXPECT_TRUE(std::isnan(quantile({}, 0.5)));
 }
 
+// Without a single value there is no metric, wherever the command is said to lie.
+TEST(Response, NothingAfterTheCommandIsNothingToMeasure) {
+  const std::vector<double> v(300, 1.0);
+  for (std::size_t command : {v.size(), v.size() + 1}) {
+    const Record none{v, 1'000'000, command};
+    for (double m : {rise_time_s(none), response_time_s(none), overshoot_ratio(none), change(none),
+                     settled_s(none, 1.0, 9.0), mean(none), final_mean(none), minimum(none),
+                     maximum(none), rms_about(none, 0.0)}) {
+      EXPECT_TRUE(std::isnan(m));
+    }
+  }
+}
+
+TEST(Response, FinalIsTheMeanOfTheLastTwoHundredMilliseconds) {
+  const auto v = answer(0.0, 1.0, [](double t) {
+    return t < 0.7995 ? 5.0 : t < 0.8995 ? 1.0 : 3.0;
+  });
+  EXPECT_EQ(final_mean(record(v)), 2.0);
+  const std::size_t last_200 = v.size() - 200;
+  EXPECT_EQ(final_mean({v, 1'000'000, last_200}), 2.0);
+  EXPECT_TRUE(std::isnan(final_mean({v, 1'000'000, last_200 + 1})));
+  EXPECT_EQ(change({v, 1'000'000, last_200}), 2.0 - 5.0);
+  EXPECT_TRUE(std::isnan(change({v, 1'000'000, last_200 + 1})));
+  EXPECT_EQ(final_mean({v, 2'000'000, kBefore}), 3.0);  // of steps twice as long, half as many
+}
+
+TEST(Response, AReferenceIsOfTheTwoHundredMillisecondsBeforeTheCommand) {
+  auto v = answer(1.0, 1.0, [](double) { return 9.0; });
+  for (std::size_t i = 0; i < kBefore - 200; ++i) v[i] = 1e6;
+  EXPECT_EQ(change(record(v)), 8.0);
+  v[kBefore - 200] = 201.0;
+  EXPECT_TRUE(near(change(record(v)), 7.0, round_off(8, 9.0)));
+}
+
+// A step longer than the reference leaves no value in it.
+TEST(Response, StepsLongerThanTheReferenceGiveNoChange) {
+  const auto v = answer(0.0, 1.0, [](double) { return 1.0; });
+  EXPECT_TRUE(std::isnan(change({v, 200'000'001, kBefore})));
+  EXPECT_EQ(change({v, 200'000'000, kBefore}), 1.0);
+}
+
+TEST(Response, AChangeIsMoreThanABillionthOfTheValues) {
+  const auto change_to = [](double from, double to) {
+    return change(record(answer(from, 1.0, [=](double) { return to; })));
+  };
+  EXPECT_TRUE(std::isnan(change_to(1.0, 1.0 + 0.995e-9)));
+  EXPECT_TRUE(near(change_to(1.0, 1.0 + 1.005e-9), 1.005e-9, round_off(400, 1.0)));
+  EXPECT_TRUE(near(change_to(-1.0 - 1.005e-9, -1.0), 1.005e-9, round_off(400, 1.0)));
+  EXPECT_TRUE(std::isnan(change_to(0.0, 0.0)));
+  EXPECT_TRUE(std::isnan(response_time_s(record(answer(0.0, 1.0, [](double) { return 0.0; })))));
+  EXPECT_TRUE(near(change_to(0.0, 1e-12), 1e-12, round_off(400, 1e-12)));  // from nothing
+}
+
+TEST(Response, SmallChangesRiseAndFallLikeLargeOnes) {
+  for (double size : {0.25, 0.5, 8.0}) {
+    const auto ramp = [=](double t) { return size * std::min(t / 0.125, 1.0); };
+    const auto up = answer(0.0, 1.0, ramp);
+    const auto down = answer(size, 1.0, [=](double t) { return size - ramp(t); });
+    EXPECT_TRUE(near(rise_time_s(record(up)), 0.1, round_off(256, 1.0))) << size;
+    EXPECT_TRUE(near(fall_time_s(record(down)), 0.1, round_off(256, 1.0))) << size;
+    EXPECT_TRUE(near(response_time_s(record(down)), 0.1125, round_off(256, 1.0))) << size;
+    EXPECT_TRUE(std::isnan(fall_time_s(record(up)))) << size;
+    EXPECT_TRUE(std::isnan(rise_time_s(record(down)))) << size;
+  }
+}
+
+TEST(Response, WhatIsThereAtTheCommandTookNoTime) {
+  const auto v = answer(0.0, 1.0, [](double) { return 5.0; });
+  EXPECT_EQ(response_time_s(record(v)), 0.0);
+  EXPECT_EQ(rise_time_s(record(v)), 0.0);
+}
+
+// 0.9 of the way from 0 to 10, and it rests there.
+TEST(Response, AValueOnTheLevelHasReachedIt) {
+  const auto v = answer(0.0, 1.0, [](double t) { return t < 0.1 ? 0.0 : t < 0.3 ? 9.0 : 10.0; });
+  EXPECT_TRUE(near(response_time_s(record(v)), 0.1, round_off(4, 1.0)));
+}
+
+// 0.3 and 0.2 of the change beyond where it ends, upwards and downwards.
+TEST(Response, OvershootIsAShareOfTheChangeInItsDirection) {
+  const auto up = answer(1.0, 1.0, [](double t) { return t < 0.1 ? 5.0 + 1.2 : 5.0; });
+  EXPECT_TRUE(near(overshoot_ratio(record(up)), 0.3, round_off(64, 1.0)));
+  const auto down = answer(5.0, 1.0, [](double t) { return t < 0.1 ? 1.0 - 0.8 : 1.0; });
+  EXPECT_TRUE(near(overshoot_ratio(record(down)), 0.2, round_off(64, 1.0)));
+}
+
+TEST(Response, TheEdgeOfABandBelongsToIt) {
+  const auto v = answer(0.0, 1.0, [](double t) { return t < 0.1 ? 0.0 : t < 0.3 ? 1.5 : 1.0; });
+  EXPECT_TRUE(near(settled_s(record(v), 1.0, 0.5), 0.1, round_off(4, 1.0)));
+  EXPECT_EQ(settled_s(record(v), 1.0, 1.0), 0.0);
+  const auto late = answer(0.0, 1.0, [](double t) { return t < 0.9985 ? 0.0 : 1.0; });
+  EXPECT_TRUE(near(settled_s(record(late), 1.0, 0.5), 0.999, round_off(4, 1.0)));
+  EXPECT_TRUE(std::isnan(settled_s(record(v), 1.0, kNaN)));
+}
+
+TEST(Response, OfOneValueEveryQuantileIsThatValue) {
+  for (double p : {0.0, 0.5, 1.0}) EXPECT_EQ(quantile(std::vector<double>{7.0}, p), 7.0);
+  EXPECT_EQ(quantile(std::vector<double>{3.0, 1.0}, 0.0), 1.0);
+  EXPECT_EQ(quantile(std::vector<double>{3.0, 1.0}, 1.0), 3.0);
+  EXPECT_EQ(quantile(std::vector<double>{3.0, 1.0}, 0.25), 1.5);
+}
+
 }  // namespace
 }  // namespace whirl::metrics

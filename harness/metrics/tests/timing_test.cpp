@@ -65,5 +65,48 @@ TEST(Timing, WritesBeforeTheFirstSampleAreCountedNotGuessed) {
   EXPECT_EQ(trace.samples.size(), 1u);
 }
 
+TEST(Timing, ADistributionIsItsCountMeanEndsAndQuantiles) {
+  std::vector<double> values;
+  for (int i = 200; i >= 0; --i) values.push_back(i < 100 ? i : i + 3.0);
+  const Distribution d = distribution(values);
+  EXPECT_EQ(d.count, 201u);
+  EXPECT_TRUE(near(d.mean, 100.0 + 3.0 * 101 / 201, round_off(300, 100.0)));
+  EXPECT_EQ(d.min, 0.0);
+  EXPECT_EQ(d.p50, 103.0);
+  EXPECT_TRUE(near(d.p99, 201.0, round_off(8, 200.0)));
+  EXPECT_EQ(d.max, 203.0);
+  const Distribution none = distribution({});
+  EXPECT_EQ(none.count, 0u);
+  for (double x : {none.mean, none.min, none.max, none.p50, none.p99}) EXPECT_TRUE(std::isnan(x));
+}
+
+TEST(Timing, ADeviationHasNoSign) {
+  const double periods[] = {0.5, 2.0};
+  EXPECT_EQ(deviations_s(periods, 1.5), (std::vector<double>{1.0, 0.5}));
+}
+
+// What happened at the very moment has happened: the sample at a task's entry, the end of the task before
+// at the entry of the next one, the entry of the last one at the write.
+TEST(Timing, WhatHappensAtOneMomentIsInTimeForEachOther) {
+  const std::int64_t ready[] = {0, 1'000};
+  const std::vector<Span> tasks[] = {{{0, 500}, {1'000, 2'000}}, {{2'000, 9'000}}};
+  const Span writes[] = {{2'000, 3'000}};
+  const auto trace = trace_latency(ready, tasks, writes);
+  ASSERT_EQ(trace.samples.size(), 1u);
+  EXPECT_EQ(trace.samples[0].write_ns, 3'000);
+  EXPECT_TRUE(near(trace.samples[0].latency_s, 2e-6, round_off(4, 1e-6)));
+  EXPECT_EQ(trace.untraced, 0u);
+}
+
+TEST(Timing, AWriteThatNoCallOrNoSampleLedToIsUntraced) {
+  const std::int64_t ready[] = {1'000};
+  const std::vector<Span> early[] = {{{999, 1'100}}}, never[] = {{}};
+  const Span write[] = {{5'000, 6'000}};
+  EXPECT_EQ(trace_latency(ready, early, write).untraced, 1u);
+  EXPECT_EQ(trace_latency(ready, never, write).untraced, 1u);
+  EXPECT_EQ(trace_latency({}, {}, write).untraced, 1u);
+  EXPECT_EQ(trace_latency(ready, {}, write).samples.size(), 1u);
+}
+
 }  // namespace
 }  // namespace whirl::metrics
