@@ -58,15 +58,14 @@ void Watch::run_until(Nanoseconds now) {
   running().ran_ns += now - std::exchange(counted_until_ns_, now);
 }
 
-// Where thread mode is; if it loaded its stack pointer on the way, the time since then is of the
-// stack that it loaded.
+// Where thread mode is; if it loaded its stack pointer on the way, the time since then is of the stack
+// that it loaded. What ran until the load has been counted with it.
 void Watch::see(const CoreState& core) {
   if (handlers_.empty()) {
     const Load load = std::exchange(load_, Load::none);
     if (load == Load::none) {
       stacks_.ran_on(core.sp);
     } else {
-      run_until(loaded_ns_);
       stacks_.loaded(core.sp, load == Load::from_memory);
     }
   }
@@ -108,7 +107,6 @@ void Watch::return_site(std::uint32_t address, const CoreState& core) {
 void Watch::stack_pointer_loads(const CoreState& core, bool may_be_new) {
   see(core);
   load_ = may_be_new ? Load::from_memory : Load::by_move;
-  loaded_ns_ = core.now;
   ++loads_;
 }
 

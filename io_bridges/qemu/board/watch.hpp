@@ -83,7 +83,6 @@ class Watch {
   std::vector<Context> handlers_;  // active exceptions, the running one last
   Nanoseconds counted_until_ns_ = 0;
   Load load_ = Load::none;  // of the stack pointer, not yet seen where to
-  Nanoseconds loaded_ns_ = 0;
   std::uint64_t loads_ = 0;
   std::array<Nanoseconds, kExceptions> raised_ns_ = filled();
   static std::array<Nanoseconds, kExceptions> filled();
