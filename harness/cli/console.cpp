@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <sstream>
@@ -87,8 +88,13 @@ bool is_terminal() {
 
 ProgressSink progress_line(const std::string& plan) {
   if (!is_terminal()) return nullptr;
-  return [plan](const Progress& p) {
-    const double factor = p.host_s > 0.0 ? p.t_s / p.host_s : 0.0;
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point begin = Clock::now();
+  return [plan, begin, shown = begin](const Progress& p) mutable {
+    const Clock::time_point now = Clock::now();
+    if (now - shown < std::chrono::milliseconds(100)) return;
+    shown = now;
+    const double factor = p.t_s / std::chrono::duration<double>(now - begin).count();
     std::fprintf(stderr, "\r\033[K%s  %.1f s  %.1fx  %s%s%s", plan.c_str(), p.t_s, factor,
                  p.world.status().c_str(), p.step.empty() ? "" : "  ",
                  printable_line(p.step).c_str());

@@ -95,16 +95,16 @@ json read_pins(const lua::Table& file) {
 }
 
 void refuse_doubles(const lua::Table& file, const Board& board) {
-  for (std::size_t i = 0; i < board.devices.size(); ++i) {
-    for (std::size_t k = 0; k < i; ++k) {
-      const BoardDevice &a = board.devices[k], &b = board.devices[i];
+  for (const BoardDevice& b : board.devices) {
+    for (const BoardDevice& a : board.devices) {
+      if (&a == &b) break;  // each pair once
       if (a.name == b.name) file.refuse("devices", "two devices are called '" + a.name + "'");
       for (const std::string* pin : {&a.cs, &a.interrupt, &a.bus}) {
         if (drives(b, *pin) && drives(a, *pin)) {
           file.refuse("devices", a.name + " and " + b.name + " are on one pin, " + *pin);
         }
       }
-      if (a.address >= 0 && a.bus == b.bus && a.address == b.address) {
+      if (a.address != -1 && a.bus == b.bus && a.address == b.address) {
         file.refuse("devices", a.name + " and " + b.name + " share one address on " + a.bus);
       }
     }

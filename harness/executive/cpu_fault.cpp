@@ -28,7 +28,7 @@ const char* exception_name(std::uint32_t exception) {
 
 std::string hex(std::uint32_t x) {
   char text[16];
-  std::snprintf(text, sizeof text, "0x%08X", x);
+  std::snprintf(text, sizeof text, "0x%08x", x);
   return text;
 }
 
@@ -65,9 +65,7 @@ results::CpuFaultRow describe(const results::CpuFaultRecord& fault) {
   row.backtrace = fault.backtrace;
   const std::string innermost = fault.backtrace.substr(0, fault.backtrace.find('\n'));
   row.where = innermost.empty() ? hex(f.pc) : innermost;
-  if (row.where.find(hex(f.pc).substr(2)) == std::string::npos && !innermost.empty()) {
-    row.where += " at " + hex(f.pc);
-  }
+  if (row.where.find(hex(f.pc)) == std::string::npos) row.where += " at " + hex(f.pc);
   for (int i = 0; i < 13; ++i) {
     row.registers += "r" + std::to_string(i) + (i < 10 ? "   " : "  ") + hex(f.r[i]) + "\n";
   }

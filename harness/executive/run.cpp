@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdio>
 #include <optional>
 
 #include "harness/base/digest.hpp"
@@ -17,6 +18,7 @@ namespace whirl {
 namespace {
 
 constexpr std::int64_t kStep_ns = 1'000'000;
+constexpr std::int64_t kProgress_ns = 10 * kStep_ns;
 
 // Adds the host time of its scope to a figure. For reports only.
 class Stopwatch {
@@ -110,16 +112,9 @@ class Run {
   }
 
   void loop(const ProgressSink& progress) {
-    const auto begin = Stopwatch::Clock::now();
-    auto last_shown = begin;
     while (act() && step()) {
-      if (!progress || stage_.now_ns % (10 * kStep_ns) != 0) continue;
-      const auto now = Stopwatch::Clock::now();
-      if (now - last_shown < std::chrono::milliseconds(100)) continue;
-      last_shown = now;
-      progress({static_cast<double>(stage_.now_ns) * 1e-9,
-                std::chrono::duration<double>(now - begin).count(), script_.step_name(),
-                parts_.world});
+      if (!progress || stage_.now_ns % kProgress_ns != 0) continue;
+      progress({static_cast<double>(stage_.now_ns) * 1e-9, script_.step_name(), parts_.world});
     }
   }
 
@@ -165,7 +160,6 @@ class Run {
   // known of what came behind.
   bool ended_by(const Error& error) {
     file_batch(happened_);
-    firmware_is_well();
     return interrupted_by() != 0 ? interrupted() : end_for(error);
   }
 
@@ -253,7 +247,8 @@ class Run {
   }
 
   bool time_out() {
-    const std::string limit = std::to_string(parts_.plan.timeout_ns / 1'000'000'000) + " s";
+    char limit[40];
+    std::snprintf(limit, sizeof limit, "%g s", static_cast<double>(parts_.plan.timeout_ns) * 1e-9);
     const std::string where =
         script_.step_name().empty() ? "" : " in step '" + script_.step_name() + "'";
     must_hold("plan ends before its timeout", "still waiting" + where);

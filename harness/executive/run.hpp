@@ -36,12 +36,11 @@ struct RunRecord {
 };
 
 struct Progress {
-  double t_s = 0;
-  double host_s = 0;
+  double t_s = 0;  // virtual
   const std::string& step;
   const World& world;
 };
-using ProgressSink = std::function<void(const Progress&)>;  // about ten times a host second
+using ProgressSink = std::function<void(const Progress&)>;  // every 10 ms of virtual time
 
 RunRecord execute(const RunParts& parts, const ProgressSink& progress = nullptr);
 

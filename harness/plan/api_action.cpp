@@ -1,4 +1,6 @@
 // t:command, t:gust, t:fault: what a plan does to the world and to the board.
+#include <algorithm>
+
 #include "harness/plan/bus_name.hpp"
 #include "harness/plan/raise.hpp"
 #include "harness/plan/values.hpp"
@@ -24,10 +26,9 @@ int gust(lua_State* L) {
   return 0;
 }
 
-int named_bus(const lua::Table& wish, const std::string& key, const std::string& bus) {
+int named_bus(lua_State* L, const std::string& bus) {
   if (const auto number = bus_number(bus)) return *number;
-  wish.refuse(key, "'" + bus + "' is no bus", "write it as \"i2c3\", \"spi1\" or \"usart2\"");
-  return -1;
+  raise(L, "'" + bus + "' is no bus", "write it as \"i2c3\", \"spi1\" or \"usart2\"");
 }
 
 void place_fault(lua_State* L, const lua::Table& wish, const Board& board, FaultSpec& fault) {
@@ -35,10 +36,10 @@ void place_fault(lua_State* L, const lua::Table& wish, const Board& board, Fault
     fault.device = wish.text("device");
     const BoardDevice* device = board.find(fault.device);
     if (device == nullptr) raise(L, "unknown device '" + fault.device + "' on " + board.name);
-    fault.bus = named_bus(wish, "device", device->bus);
-    fault.address = device->address >= 0 ? device->address : board.number(fault.device);
+    fault.bus = named_bus(L, device->bus);
+    fault.address = device->address != -1 ? device->address : board.number(fault.device);
   }
-  if (wish.has("bus")) fault.bus = named_bus(wish, "bus", wish.text("bus"));
+  if (wish.has("bus")) fault.bus = named_bus(L, wish.text("bus"));
   if (wish.has("address")) fault.address = static_cast<int>(wish.integer("address", 0, 0x7F));
   if (wish.has("function")) {
     const std::string function = wish.text("function");
@@ -54,10 +55,7 @@ constexpr const char* kAxes[] = {"accel_x", "accel_y", "accel_z", "gyro_x", "gyr
 
 int axis_number(const lua::Table& wish) {
   const std::string word = wish.choice("axis", {std::begin(kAxes), std::end(kAxes)});
-  for (int i = 0; i < 6; ++i) {
-    if (word == kAxes[i]) return i;
-  }
-  return 0;
+  return static_cast<int>(std::find(std::begin(kAxes), std::end(kAxes), word) - std::begin(kAxes));
 }
 
 // t:fault { kind = "i2c_nack", device = "esc2", start = "0 s", duration = "100 ms", value = 1 }

@@ -11,6 +11,7 @@ namespace {
 
 constexpr const char* kRecord = "record";
 constexpr std::int64_t kBefore_ns = 200'000'000;  // the reference of a change
+constexpr double kRows_per_instruction = 4.0;     // what a metric's walk over its rows costs a plan
 
 // Where in the truth a record lies, with its reference before it.
 struct Rows {
@@ -21,8 +22,7 @@ Rows rows_of(const Stage& stage, const RecordInfo& info) {
   const auto& truth = stage.truth;
   const std::size_t command = truth.row_at(info.from_ns);
   const auto before = static_cast<std::size_t>(kBefore_ns / truth.step_ns());
-  const std::size_t last = std::min(truth.row_at(info.to_ns) + 1, truth.rows());
-  return {command > before ? command - before : 0, std::min(command, last), last};
+  return {command - std::min(command, before), command, truth.row_at(info.to_ns) + 1};
 }
 
 metrics::Record view(const Stage& stage, const RecordInfo& info, std::size_t column) {
@@ -36,7 +36,7 @@ const RecordInfo& record_of(lua_State* L) {
   Script& self = Script::of(L);
   const RecordInfo& info = self.records[check_handle(L, 1, kRecord)];
   const std::int64_t rows = (info.to_ns - info.from_ns) / self.stage().truth.step_ns();
-  lua::Sandbox::spend(L, static_cast<double>(rows) / 4.0);
+  lua::Sandbox::spend(L, static_cast<double>(rows) / kRows_per_instruction);
   return info;
 }
 
@@ -58,7 +58,6 @@ Chosen choose(lua_State* L) {
     if (columns[column].name == wanted) return {&info, column, 3, wanted};
   }
   raise(L, "signal '" + wanted + "' is not in this record");
-  return {};
 }
 
 int push(lua_State* L, const Chosen& c, double value, Dimension dimension, const char* what,
@@ -134,13 +133,17 @@ int p99(lua_State* L) {
 struct Errors {
   std::vector<double> values;  // from the reference rows on
   std::size_t command = 0;
+  std::int64_t step_ns = 0;
   Dimension dimension = Dimension::none;
   std::vector<std::string> signals;
+
+  metrics::Record record() const { return {values, step_ns, command}; }
 };
 
 void add_squares(Errors& errors, const metrics::Record& record, double reference) {
   errors.values.resize(record.values.size(), 0.0);
   errors.command = record.command;
+  errors.step_ns = record.step_ns;
   for (std::size_t i = 0; i < record.values.size(); ++i) {
     const double e = record.values[i] - reference;
     errors.values[i] += e * e;
@@ -193,13 +196,11 @@ int push_errors(lua_State* L, const Errors& e, double value, Dimension dimension
 
 int rms_error(lua_State* L) {
   const Errors e = errors_about(L, reference_index(L));
-  return push_errors(L, e, metrics::rms_about({e.values, 1'000'000, e.command}, 0.0), e.dimension,
-                     " RMS error");
+  return push_errors(L, e, metrics::rms_about(e.record(), 0.0), e.dimension, " RMS error");
 }
 int max_error(lua_State* L) {
   const Errors e = errors_about(L, reference_index(L));
-  return push_errors(L, e, metrics::maximum({e.values, 1'000'000, e.command}), e.dimension,
-                     " max error");
+  return push_errors(L, e, metrics::maximum(e.record()), e.dimension, " max error");
 }
 
 // RMS about zero.
@@ -216,12 +217,11 @@ int settled(lua_State* L) {
   Script& self = Script::of(L);
   const RecordInfo& info = record_of(L);
   const int band = info.columns.size() == 1 || lua_istable(L, 3) ? 2 : 3;
-  const std::int64_t step_ns = self.stage().truth.step_ns();
   if (!lua_isnoneornil(L, band + 1)) {
     const Errors e = errors_about(L, band + 1);
     const double width = check_limit(L, band, e.dimension).value_SI;
-    return push_errors(L, e, metrics::settled_s({e.values, step_ns, e.command}, 0.0, width),
-                       Dimension::time, " settling time");
+    return push_errors(L, e, metrics::settled_s(e.record(), 0.0, width), Dimension::time,
+                       " settling time");
   }
   const Chosen c = choose(L);
   const metrics::Record record = view(self.stage(), info, c.column);
@@ -251,7 +251,7 @@ int recorded(lua_State* L, int, lua_KContext number) {
   RecordInfo& info = self.records[static_cast<std::size_t>(number)];
   info.to_ns = self.stage().now_ns;
   const std::int64_t wire_ns = self.stage().world.command_on_wire_ns();
-  info.wire_ns = wire_ns >= info.from_ns && wire_ns <= info.to_ns ? wire_ns : info.from_ns;
+  info.wire_ns = wire_ns <= info.to_ns ? std::max(wire_ns, info.from_ns) : info.from_ns;
   push_handle(L, kRecord, static_cast<std::size_t>(number));
   return 1;
 }

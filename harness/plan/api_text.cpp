@@ -14,7 +14,7 @@ constexpr int kLine = 2, kPattern = 3, kLimit = 4, kPlace = 5, kHeard = 6, kSinc
 // A condition for Script::wait_until: more has been heard than the upvalue says.
 int heard_more(lua_State* L) {
   const auto before = static_cast<std::size_t>(lua_tointeger(L, lua_upvalueindex(1)));
-  lua_pushboolean(L, Script::of(L).stage().world.heard().size() > before ? 1 : 0);
+  lua_pushboolean(L, static_cast<int>(Script::of(L).stage().world.heard().size() > before));
   return 1;
 }
 

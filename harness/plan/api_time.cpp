@@ -32,7 +32,7 @@ int wait_until(lua_State* L) {
   const std::int64_t end = self.stage().now_ns + check_duration_ns(L, 3);
   self.wait_until(end, keep_condition(L, 2));
   return lua_yieldk(L, 0, 0, [](lua_State* l, int, lua_KContext) {
-    lua_pushboolean(l, Script::of(l).condition_met() ? 1 : 0);
+    lua_pushboolean(l, static_cast<int>(Script::of(l).condition_met()));
     return 1;
   });
 }
@@ -57,7 +57,7 @@ int within(lua_State* L) {
     script.judge({took_s, Dimension::time, name}, How::at_most, std::nullopt,
                  check_limit(l, 2, Dimension::time), place, seconds(now),
                  met ? "" : "never came true");
-    lua_pushboolean(l, met ? 1 : 0);
+    lua_pushboolean(l, static_cast<int>(met));
     return 1;
   });
 }

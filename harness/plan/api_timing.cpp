@@ -201,6 +201,11 @@ void judge_bus(Script& self, const BusWish& w, std::int64_t from, std::int64_t t
                        std::to_string(starts.size()) + " transactions");
 }
 
+int numbered_bus(lua_State* L, const BoardDevice& device) {
+  if (const auto number = bus_number(device.bus)) return *number;
+  raise(L, device.name + " is on '" + device.bus + "', which is no bus");
+}
+
 // t:bus { device = "esc1", direction = "write", period = "20 ms", tolerance = "0.5 ms" }
 // bytes = n judges the transactions of that length only: a driver may check a register in between.
 int bus(lua_State* L) {
@@ -216,9 +221,7 @@ int bus(lua_State* L) {
   w.spi = device->bus.starts_with("spi");
   if (!w.spi && !device->bus.starts_with("i2c"))
     raise(L, name + " is on " + device->bus + ", not I2C or SPI");
-  const auto number = bus_number(device->bus);
-  if (!number) raise(L, name + " is on '" + device->bus + "', which is no bus");
-  w.bus = *number;
+  w.bus = numbered_bus(L, *device);
   w.address = w.spi ? board.number(name) : device->address;
   if (wish.has("direction")) {
     w.any_direction = false;
@@ -238,20 +241,23 @@ int bus(lua_State* L) {
   return 0;
 }
 
+struct Actuator {
+  int bus = 0, address = 0;
+};
+
 struct LatencyWish {
   std::string name, place;
   std::uint16_t sensor = 0;
   std::vector<std::uint16_t> through;
-  std::vector<const BoardDevice*> actuators;
+  std::vector<Actuator> actuators;
   Limit limit;
 };
 
-std::vector<metrics::Span> writes_to(const Stage& stage, const BoardDevice& device,
+std::vector<metrics::Span> writes_to(const Stage& stage, const Actuator& actuator,
                                      std::int64_t from, std::int64_t to) {
   std::vector<metrics::Span> writes;
-  const int bus = bus_number(device.bus).value_or(-1);
   for (const auto& r : stage.events.bus) {
-    if (r.spi || r.read || r.bus != bus || r.address != device.address) continue;
+    if (r.spi || r.read || r.bus != actuator.bus || r.address != actuator.address) continue;
     if (r.start_ns >= from && r.stop_ns <= to) writes.push_back({r.start_ns, r.stop_ns});
   }
   return writes;
@@ -269,10 +275,10 @@ void judge_latency(Script& self, const LatencyWish& w, std::int64_t from, std::i
   const auto ready = events.data_ready_ns.find(w.sensor);
   results::Histogram histogram{w.name, "s", {}, w.limit.value_SI};
   std::size_t untraced = 0;
-  for (const BoardDevice* device : w.actuators) {
+  for (const Actuator& actuator : w.actuators) {
     const auto trace = metrics::trace_latency(
         ready == events.data_ready_ns.end() ? std::span<const std::int64_t>{} : ready->second,
-        tasks, writes_to(self.stage(), *device, from, to));
+        tasks, writes_to(self.stage(), actuator, from, to));
     for (const auto& sample : trace.samples) histogram.samples.push_back(sample.latency_s);
     untraced += trace.untraced;
   }
@@ -305,7 +311,8 @@ int latency(lua_State* L) {
   }
   for (const BoardDevice& device : board.devices) {
     const bool meant = device.name == to || (to == "esc" && device.motor > 0);
-    if (meant && device.bus.starts_with("i2c")) w.actuators.push_back(&device);
+    if (!meant || !device.bus.starts_with("i2c")) continue;
+    w.actuators.push_back({numbered_bus(L, device), device.address});
   }
   if (w.actuators.empty()) raise(L, "no I2C device '" + to + "' on " + board.name);
   w.limit.value_SI = wish.quantity("at_most", Dimension::time, lua::above(0.0));

@@ -75,9 +75,9 @@ int PlanFile::take(lua_State* L) {
   lua_setfield(L, 1, "run");
   const std::string place = place_of(L);
   const auto tree = lua::tree_from_stack(L, 1, self->path_, "", place);
-  if (!tree) return raise(L, tree.error());
+  if (!tree) raise(L, tree.error());
   auto plan = read_plan({tree.value(), &tree.value()->root}, name, self->path_, place);
-  if (!plan) return raise(L, plan.error());
+  if (!plan) raise(L, plan.error());
   for (const Plan& other : self->plans_) {
     if (other.name == name) return luaL_error(L, "two plans are called \"%s\"", name.c_str());
   }

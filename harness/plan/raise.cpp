@@ -1,5 +1,6 @@
 #include "harness/plan/raise.hpp"
 
+#include <cstdlib>
 #include <lua.hpp>
 
 namespace whirl::plan {
@@ -15,16 +16,17 @@ std::string place_of(lua_State* L) {
   return {};
 }
 
-int raise(lua_State* L, const Error& error) {
+void raise(lua_State* L, const Error& error) {
   Error placed = error;
   if (placed.place.empty()) placed.place = place_of(L);
   const std::string message = placed.message();
   lua_pushlstring(L, message.data(), message.size());
-  return lua_error(L);
+  lua_error(L);
+  std::abort();  // Lua declares it as if it returned
 }
 
-int raise(lua_State* L, const std::string& what, const std::string& cure) {
-  return raise(L, Error{ErrorKind::bad_input, "", what, cure});
+void raise(lua_State* L, const std::string& what, const std::string& cure) {
+  raise(L, Error{ErrorKind::bad_input, "", what, cure});
 }
 
 }  // namespace whirl::plan

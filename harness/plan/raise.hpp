@@ -9,8 +9,8 @@ struct lua_State;
 namespace whirl::plan {
 
 std::string place_of(lua_State* L);  // "hover.lua:12", of the plan's innermost line
-// Raises; never returns (the int is for `return raise(...)`). A place that the error brings wins.
-int raise(lua_State* L, const Error& error);
-int raise(lua_State* L, const std::string& what, const std::string& cure = {});
+// A place that the error brings wins.
+[[noreturn]] void raise(lua_State* L, const Error& error);
+[[noreturn]] void raise(lua_State* L, const std::string& what, const std::string& cure = {});
 
 }  // namespace whirl::plan

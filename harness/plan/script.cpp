@@ -26,10 +26,10 @@ int read_signal(lua_State* L) {
       return 1;
     }
     if (c.name == wanted) {
-      return raise(L, "signal '" + wanted + "' is written with its unit here", "write s." + full);
+      raise(L, "signal '" + wanted + "' is written with its unit here", "write s." + full);
     }
   }
-  return raise(L, "unknown signal '" + wanted + "'");
+  raise(L, "unknown signal '" + wanted + "'");
 }
 
 void push_signals(lua_State* L) {
@@ -138,7 +138,6 @@ std::size_t Script::column(lua_State* L, const std::string& signal) {
     known += (i == 0 ? "" : ", ") + columns[i].name;
   }
   raise(L, "unknown signal '" + signal + "'", "known: " + known);
-  return 0;
 }
 
 Dimension Script::dimension(std::size_t column) const {
@@ -168,15 +167,11 @@ Result<Script::State> Script::advance() {
   const auto met = file_.sandbox().protect(0, [this](lua_State* l) { check_conditions(l); });
   if (!met) return met.error();
   if (stage_.now_ns < wake_ns_ && !condition_met_) return State::waiting;
-  wake_condition_ = -1;
   file_.sandbox().refill(thread_);
   int results = 0;
   const int status = lua_resume(thread_, L, started_ ? 0 : 1, &results);
   started_ = true;
-  if (status == LUA_YIELD) {
-    lua_pop(thread_, results);
-    return State::waiting;
-  }
+  if (status == LUA_YIELD) return State::waiting;  // no call of ours yields a value
   if (status == LUA_OK) return State::done;
   return lua::Sandbox::raised(thread_, status);
 }
@@ -185,10 +180,10 @@ void Script::check_conditions(lua_State* L) {
   const std::int64_t now = stage_.now_ns;
   if (wake_condition_ != -1 && !condition_met_) condition_met_ = condition(L, wake_condition_);
   for (Guard& guard : guards) {
-    if (guard.condition_ref == -1 || now < guard.from_ns || now > guard.to_ns) continue;
+    if (guard.condition_ref == -1 || now > guard.to_ns) continue;
     ++guard.evaluated;
     if (condition(L, guard.condition_ref)) continue;
-    if (guard.first_ns < 0) guard.first_ns = now;
+    if (!guard.first_ns) guard.first_ns = now;
     guard.violated_ns += stage_.truth.step_ns();
   }
 }
@@ -255,11 +250,11 @@ void Script::judge_guard(const Guard& guard, bool completed) {
   if (guard.condition_ref != -1) {
     if (guard.evaluated == 0) not_whole = "was never evaluated";
     const std::string note =
-        guard.first_ns < 0 ? ""
-                           : "first violated at " + std::to_string(seconds(guard.first_ns)) + " s";
+        guard.first_ns ? "first violated at " + std::to_string(seconds(*guard.first_ns)) + " s"
+                       : "";
     judge({seconds(guard.violated_ns), Dimension::time, guard.name + " (time violated)"},
           How::at_most, std::nullopt, Limit{0.0, "s"}, guard.place,
-          seconds(std::max<std::int64_t>(guard.first_ns, 0)), note, not_whole);
+          seconds(guard.first_ns.value_or(0)), note, not_whole);
     return;
   }
   look();
@@ -267,7 +262,7 @@ void Script::judge_guard(const Guard& guard, bool completed) {
   double worst = std::numeric_limits<double>::quiet_NaN();
   double worst_margin = std::numeric_limits<double>::infinity();
   std::size_t at = truth.row_at(guard.from_ns);
-  for (std::size_t row = at; row < truth.rows() && row <= truth.row_at(end); ++row) {
+  for (std::size_t row = at; row <= truth.row_at(end); ++row) {
     const double x = truth.values(*guard.column)[row];
     const double margin = margin_of(x, guard.low, guard.high);
     if (margin >= worst_margin) continue;  // a NaN is taken, and ends the search
@@ -295,8 +290,7 @@ void Script::list_faults() {
     const FaultSpec& fault = faults[i];
     results::FaultRow row{
         fault.kind, fault_targets[i], seconds(fault.start_ns),
-        fault.end_ns == kForever ? std::numeric_limits<double>::infinity() : seconds(fault.end_ns),
-        -1.0};
+        fault.end_ns == kForever ? std::numeric_limits<double>::infinity() : seconds(fault.end_ns)};
     const auto it = stage_.events.faults_applied_ns.find(fault.number);
     const auto mine = stage_.world.applied_faults();
     if (it != stage_.events.faults_applied_ns.end()) {

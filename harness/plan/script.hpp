@@ -70,7 +70,7 @@ struct Guard {  // t:always
   std::optional<Limit> low, high;
   std::int64_t evaluated = 0;    // of a condition: how often,
   std::int64_t violated_ns = 0;  // how long it did not hold, and since when
-  std::int64_t first_ns = -1;
+  std::optional<std::int64_t> first_ns;
 };
 
 struct PendingExpectation {

@@ -38,7 +38,7 @@ void declare_measurement(lua_State* L) {
 void push_measurement(lua_State* L, const Measurement& m) {
   auto& all = Script::of(L).measurements;
   if (all.size() >= kMost_measurements) raise(L, "more than a million measurements");
-  lua_createtable(L, 0, 3);
+  lua_newtable(L);
   lua_pushnumber(L, m.value_SI);
   lua_setfield(L, -2, "value");
   lua_pushlstring(L, m.name.data(), m.name.size());

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "harness/base/near.hpp"
 #include "harness/base/scratch_folder.hpp"
 
 namespace whirl {
@@ -98,8 +99,102 @@ TEST(BoardFile, BytesThatAreNoUtf8AreRefused) {
             std::string::npos);
   EXPECT_NE(complaint("pins = { { name = \"p\\x80\", pin = \"PB1\" } }").find("UTF-8"),
             std::string::npos);
+  for (const char* key : {"board", "mcu"}) {
+    EXPECT_NE(complaint(std::string(key) + " = \"b\\xFF\"").find("UTF-8"), std::string::npos)
+        << key;
+  }
   const std::string text = board_json(read("").value(), {.image = "a\xFF.elf"});
   EXPECT_TRUE(nlohmann::json::accept(text));
+}
+
+// A limit is met, and what lies just beyond it is refused by its key.
+TEST(BoardFile, EachLimitBelongsToItsRange) {
+  struct Edge {
+    std::string key, inside, outside;
+  };
+  const Edge kEdges[] = {
+      {"lse", "'0 Hz'", "'-0.5 Hz'"},         {"hse_start", "'1 us'", "'0.995 us'"},
+      {"hse_start", "'1 s'", "'1.005 s'"},    {"start", "0", "-1"},
+      {"start", "0xFFFFFFFF", "0x100000000"}, {"instruction", "'1 ns'", "'0.995 ns'"},
+      {"instruction", "'1 us'", "'1.005 us'"}};
+  for (const Edge& edge : kEdges) {
+    EXPECT_EQ(complaint(edge.key + " = " + edge.inside), "");
+    EXPECT_NE(complaint(edge.key + " = " + edge.outside).find(edge.key), std::string::npos)
+        << edge.key << " = " << edge.outside;
+  }
+  const Edge kOfDevices[] = {{"baud", "'50 baud'", "'49.9 baud'"},
+                             {"baud", "'12e6 baud'", "'12.1e6 baud'"},
+                             {"address", "0x08", "0x07"},
+                             {"address", "0x77", "0x78"},
+                             {"motor", "1", "0"},
+                             {"motor", "4", "5"}};
+  for (const Edge& edge : kOfDevices) {
+    const auto with = [&](const std::string& value) {
+      return complaint("devices = { { name = 'd', type = 't', bus = 'i2c1', " + edge.key + " = " +
+                       value + " } }");
+    };
+    EXPECT_EQ(with(edge.inside), "");
+    EXPECT_NE(with(edge.outside).find(edge.key), std::string::npos) << edge.outside;
+  }
+}
+
+TEST(BoardFile, WhatItSaysInSIIsExact) {
+  EXPECT_EQ(read("").value().start, 0u);
+  EXPECT_EQ(read("start = 0xFFFFFFFF").value().start, 0xFFFFFFFFu);
+  EXPECT_EQ(read("instruction = '1 us'").value().ns_per_instruction, 1000);
+  EXPECT_EQ(read("instruction = '7.6 ns'").value().ns_per_instruction, 8);  // the nearest whole one
+  EXPECT_EQ(read("lse = '0.5 Hz'").value().lse_Hz, 0.5);
+  EXPECT_TRUE(near(read("hse_start = '5 us'").value().hse_start_s, 5e-6, round_off(2, 5e-6)));
+  EXPECT_EQ(json_of(read("hse_start = '5 us'").value())["hse_start_ns"], 5'000);
+}
+
+TEST(BoardFile, ParametersKeepTheirShape) {
+  const Board board = read(R"(devices = { { name = "d", type = "t", bus = "pins", params =
+      { one = { 5 }, none = {}, off = false, inner = { time = "2 ms" } } } })")
+                          .value();
+  EXPECT_EQ(json_of(board)["devices"][0]["params"],
+            (nlohmann::json{{"one", nlohmann::json::array({5.0})},
+                            {"none", nlohmann::json::object()},
+                            {"off", false},
+                            {"inner", {{"time", 0.002}}}}));
+}
+
+TEST(BoardFile, APinIsOneDevicesHoweverTheyNameIt) {
+  const std::string sensor =
+      R"({ name = "a", type = "mpu6000", bus = "spi1", cs = "PB0", int = "PC5" })";
+  const std::string level = R"({ name = "a", type = "volts", bus = "PA0" })";
+  struct Pair {
+    std::string first, second, pin;
+  };
+  const Pair kPairs[] = {
+      {level, R"({ name = "b", type = "volts", bus = "PA0" })", "PA0"},
+      {level, R"({ name = "b", type = "pulse_source", bus = "PA0" })", "PA0"},
+      {level, R"({ name = "b", type = "jumper", bus = "pins", cs = "PA1", int = "PA0" })", "PA0"},
+      {sensor, R"({ name = "b", type = "mpu6000", bus = "spi1", cs = "PC5", int = "PC4" })", "PC5"},
+      {sensor, R"({ name = "b", type = "mpu6000", bus = "spi1", cs = "PB1", int = "PC5" })", "PC5"},
+      {sensor, R"({ name = "b", type = "mpu6000", bus = "spi1", cs = "PB1", int = "PB0" })", "PB0"},
+      {sensor, R"({ name = "b", type = "jumper", bus = "pins", cs = "PA1", int = "PB0" })", "PB0"},
+  };
+  for (const auto& [first, second, pin] : kPairs) {
+    for (const std::string& both : {first + ", " + second, second + ", " + first}) {
+      EXPECT_NE(complaint("devices = { " + both + " }").find("are on one pin, " + pin),
+                std::string::npos)
+          << both;
+    }
+  }
+  // Two that no pin joins, and the third pair of three.
+  EXPECT_EQ(
+      complaint("devices = { " + level + R"(, { name = "b", type = "volts", bus = "PA1" } })"), "");
+  EXPECT_NE(complaint(R"(devices = { { name = "x", type = "t", bus = "pins" },
+      { name = "y", type = "t", bus = "pins" }, { name = "y", type = "t", bus = "pins" } })")
+                .find("two devices are called 'y'"),
+            std::string::npos);
+}
+
+TEST(BoardFile, AResistorPullsUpOrDown) {
+  EXPECT_EQ(complaint(R"(pins = { { name = "c", pin = "PB8", pull = "down" } })"), "");
+  EXPECT_NE(complaint(R"(pins = { { name = "c", pin = "PB8", pull = "sideways" } })").find("pull"),
+            std::string::npos);
 }
 
 }  // namespace

@@ -21,5 +21,20 @@ TEST(ClockLog, EachChangeIsARowAtItsTime) {
   EXPECT_EQ(report.log[2].t_s, 0.003);
 }
 
+TEST(ClockLog, WhatWasLoggedAtTheSameTimeStaysBeforeIt) {
+  results::EventLog events;
+  io::Batch batch;
+  batch.add(io::Kind::clock_setup, 0, 1'000'000, io::ClockSetup{8e6, 8e6, 8e6, 8e6});
+  ASSERT_TRUE(events.add(batch));
+  results::Report report;
+  report.log.push_back({0.001, "plan", "first"});
+  report.log.push_back({0.001, "plan", "second"});
+  log_clocks(events, report);
+  ASSERT_EQ(report.log.size(), 3u);
+  EXPECT_EQ(report.log[0].text, "first");
+  EXPECT_EQ(report.log[1].text, "second");
+  EXPECT_EQ(report.log[2].who, "RCC");
+}
+
 }  // namespace
 }  // namespace whirl

@@ -113,13 +113,18 @@ class PlayedTarget final : public Target {
     if (now && ending == Ending::switches_off) return TargetState::ended;
     return TargetState::running;
   }
-  void stop(io::Batch& rest) override { rest.clear(); }
-  std::vector<std::pair<std::string, std::string>> versions() const override { return {}; }
+  void stop(io::Batch& rest) override {
+    if (scenario_.last_words) scenario_.last_words(rest);
+  }
+  std::vector<std::pair<std::string, std::string>> versions() const override {
+    return {{"target", "played"}};
+  }
 
  private:
   void add_fault(io::Batch& happened) const {
     io::CpuFault fault;
     fault.exception = 3;
+    fault.pc = 0x08001234;
     const std::string trace = "fw::wrong+0x4 at 0x08001234";
     happened.add(io::Kind::cpu_fault, 0, until_ns_ - 1, fault, trace.data(),
                  static_cast<std::uint32_t>(trace.size()));
@@ -163,6 +168,14 @@ Board board_of(const Scenario& scenario) {
     device.address = address++;
     board.devices.push_back(device);
   }
+  for (const OtherDevice& other : scenario.other_devices) {
+    BoardDevice device;
+    device.name = other.name;
+    device.bus = other.bus;
+    device.address = other.address;
+    device.motor = other.motor;
+    board.devices.push_back(device);
+  }
   board.watch = scenario.functions;
   return board;
 }
@@ -197,9 +210,10 @@ std::string plan_text(const Scenario& s) {
          " run = function(t)\n" + s.lua + "end }\n";
 }
 
-results::Report run_scenario(const Scenario& scenario, const std::string& file) {
+results::Report run_scenario(const Scenario& scenario, const std::string& file,
+                             const ProgressSink& progress) {
   std::ofstream(file, std::ios::binary | std::ios::trunc) << plan_text(scenario);
-  auto loaded = plan::PlanFile::load(file);
+  auto loaded = plan::PlanFile::load(file, scenario.limits);
   if (!loaded) {
     results::Report report;
     report.reason = loaded.error().message();
@@ -208,8 +222,8 @@ results::Report run_scenario(const Scenario& scenario, const std::string& file) 
   const Board board = board_of(scenario);
   PlayedWorld world(scenario);
   PlayedTarget target(scenario);
-  return execute({*loaded.value(), loaded.value()->plans().front(), board, world, target, 1})
-      .report;
+  const RunParts parts{*loaded.value(), loaded.value()->plans().front(), board, world, target, 1};
+  return execute(parts, progress).report;
 }
 
 std::string complaint(const Outcome& right, const results::Report& report) {

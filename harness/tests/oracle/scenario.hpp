@@ -16,6 +16,7 @@
 
 #include "harness/base/random.hpp"
 #include "harness/base/units.hpp"
+#include "harness/lua/sandbox.hpp"
 #include "io_bridges/link/messages.hpp"
 
 namespace whirl::oracle {
@@ -117,6 +118,11 @@ struct Message {
   std::function<void(io::Batch&)> add;
 };
 
+struct OtherDevice {
+  std::string name, bus;
+  int address = -1, motor = 0;
+};
+
 struct Line {  // said by the firmware, so long after it was asked
   int after_ms = 0;
   std::string text;
@@ -133,14 +139,17 @@ struct Scenario {
   std::map<int, std::int64_t> wires_ns;  // by the ms of a command: when its last bit had passed
   std::map<std::string, Line> answers;   // by the line that is asked
   std::vector<std::string> functions{"fw::none"}, i2c_devices{"esc0"}, spi_devices{"imu"};
+  std::vector<OtherDevice> other_devices;    // behind those
   std::map<std::string, bool> world_faults;  // by kind: is it applied?
   std::vector<std::pair<std::string, bool>> board_faults;
   std::function<void(const io::FaultCommand&)> on_fault;  // told of what reaches the board
-  bool looks = false;          // the plan reads a signal, an answer or a window
-  bool authors_fault = false;  // a limit is missing, a fault reaches nobody
+  std::function<void(io::Batch&)> last_words;  // what the target tells when it is stopped
+  bool looks = false;                          // the plan reads a signal, an answer or a window
+  bool authors_fault = false;                  // a limit is missing, a fault reaches nobody
   Ending ending = Ending::returns;
   int ending_ms = 0;  // of those that come from outside
   int timeout_ms = 0;
+  lua::Limits limits;  // of the plan's Lua
 
   void say(const std::string& line) { lua += "  " + line + "\n"; }
   void wait(int ms);

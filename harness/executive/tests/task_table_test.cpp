@@ -1,0 +1,45 @@
+#include "harness/executive/task_table.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "harness/base/near.hpp"
+
+namespace whirl {
+namespace {
+
+// Of the second of three functions: two calls 2 ms apart and a third 4 ms later. The first was called by
+// an interrupt that waited 3 us, the second by one that did not wait, the third by none.
+TEST(TaskTable, HasARowForEachWatchedFunctionWithWhatItsCallsTook) {
+  results::EventLog events;
+  events.calls[1] = {{1'000'000, 1'000'300, 100, 3'000},
+                     {3'000'000, 3'000'500, 200, 0},
+                     {7'000'000, 7'000'900, 400, -1}};
+  const auto rows = task_table({"none", "some", "other"}, events);
+  ASSERT_EQ(rows.size(), 3u);
+  EXPECT_EQ(rows[0].name, "none");
+  EXPECT_EQ(rows[0].calls, 0u);
+  EXPECT_TRUE(std::isnan(rows[0].period_max_s));
+  EXPECT_TRUE(std::isnan(rows[0].latency_max_s));
+  EXPECT_EQ(rows[2].name, "other");
+  EXPECT_EQ(rows[2].calls, 0u);
+  const results::TaskRow& some = rows[1];
+  const Tolerance tol = round_off(16, 1e-3);
+  EXPECT_EQ(some.name, "some");
+  EXPECT_EQ(some.calls, 3u);
+  EXPECT_TRUE(near(some.period_mean_s, 3e-3, tol));
+  EXPECT_TRUE(near(some.period_max_s, 4e-3, tol));
+  EXPECT_TRUE(near(some.execution_p50_s, 200e-9, tol));
+  EXPECT_TRUE(
+      near(some.execution_p99_s, 396e-9, tol));  // 1.98 of the way from the first to the third
+  EXPECT_TRUE(near(some.execution_max_s, 400e-9, tol));
+  EXPECT_TRUE(near(some.response_p99_s, 892e-9, tol));
+  EXPECT_TRUE(near(some.response_max_s, 900e-9, tol));
+  EXPECT_TRUE(near(some.latency_max_s, 3e-6, tol));
+  events.calls[1].erase(events.calls[1].begin());
+  EXPECT_EQ(task_table({"none", "some"}, events)[1].latency_max_s, 0.0);
+}
+
+}  // namespace
+}  // namespace whirl

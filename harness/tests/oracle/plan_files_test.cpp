@@ -1,0 +1,107 @@
+// What a plan's file declares: its keys and their defaults, and what is refused.
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "harness/base/scratch_folder.hpp"
+#include "harness/plan/plan_file.hpp"
+
+namespace whirl::plan {
+namespace {
+
+struct Loaded {
+  std::vector<Plan> plans;
+  std::string error;
+};
+
+Loaded load(const std::string& text) {
+  const ScratchFolder folder;
+  const std::string path = folder.file("p.lua");
+  std::ofstream(path, std::ios::binary) << text;
+  const auto file = PlanFile::load(path);
+  return file ? Loaded{file.value()->plans(), ""} : Loaded{{}, file.error().message()};
+}
+
+std::string with(const std::string& keys, const std::string& name = "p") {
+  return "plan '" + name + "' { image = 'i', run = function(t) end, " + keys + " }";
+}
+
+TEST(PlanFile, WhatIsNotSaidHasItsDefault) {
+  const Loaded loaded = load("\n" + with("vehicle = 'v'"));
+  ASSERT_EQ(loaded.plans.size(), 1u) << loaded.error;
+  const Plan& plan = loaded.plans[0];
+  EXPECT_EQ(plan.name, "p");
+  EXPECT_EQ(plan.image, "i");
+  EXPECT_EQ(plan.board, "px4fmu_v1");
+  EXPECT_EQ(plan.vehicle, "v");
+  EXPECT_FALSE(plan.stand);
+  EXPECT_FALSE(plan.world);
+  EXPECT_EQ(plan.seed, 1u);
+  EXPECT_EQ(plan.timeout_ns, 120'000'000'000);
+  EXPECT_FALSE(plan.may_reset);
+  EXPECT_TRUE(plan.tags.empty());
+  EXPECT_TRUE(plan.watch.empty());
+  EXPECT_NE(plan.file.find("p.lua"), std::string::npos);
+  EXPECT_EQ(plan.place, "p.lua:2");
+  EXPECT_FALSE(plan.has_tag("quick"));
+}
+
+TEST(PlanFile, WhatIsSaidIsTaken) {
+  const Loaded loaded = load(with("stand = { prop = 'x' }, world = {}, board = 'b', seed = 0, "
+                                  "timeout = '1500 ms', may_reset "
+                                  "= true, tags = { 'quick', 'slow' }, watch = { 'f', 'g' }") +
+                             "\n" + with("vehicle = 'v', seed = 7", "q"));
+  ASSERT_EQ(loaded.plans.size(), 2u) << loaded.error;
+  const Plan& plan = loaded.plans[0];
+  EXPECT_TRUE(plan.stand);
+  EXPECT_TRUE(plan.world);
+  EXPECT_EQ(plan.board, "b");
+  EXPECT_EQ(plan.seed, 0u);
+  EXPECT_EQ(plan.timeout_ns, 1'500'000'000);
+  EXPECT_TRUE(plan.may_reset);
+  EXPECT_TRUE(plan.has_tag("quick"));
+  EXPECT_TRUE(plan.has_tag("slow"));
+  EXPECT_FALSE(plan.has_tag("slower"));
+  EXPECT_EQ(plan.watch, (std::vector<std::string>{"f", "g"}));
+  EXPECT_EQ(loaded.plans[1].name, "q");
+  EXPECT_EQ(loaded.plans[1].seed, 7u);
+  EXPECT_EQ(loaded.plans[1].place, "p.lua:2");
+  EXPECT_NE(loaded.plans[0].run_ref, loaded.plans[1].run_ref);
+}
+
+TEST(PlanFile, NamesHaveUpToTwoHundredBytes) {
+  const std::string longest(200, 'x');
+  ASSERT_EQ(load(with("vehicle = 'v'", longest)).plans.size(), 1u);
+  EXPECT_EQ(load(with("vehicle = 'v'", longest)).plans[0].name, longest);
+  EXPECT_NE(load(with("vehicle = 'v'", longest + "x")).error.find("is longer than 200 bytes"),
+            std::string::npos);
+}
+
+TEST(PlanFile, RefusesWhatIsNoPlan) {
+  const std::pair<std::string, const char*> kAll[] = {
+      {"plan(5)", "p.lua:1: write it as: plan \"name\" { ... }"},
+      {"plan('a', {})", "p.lua:1: write it as: plan \"name\" { ... }"},
+      {"plan()", "p.lua:1: write it as: plan \"name\" { ... }"},
+      {"plan 'a' (5)", "p.lua:1: plan \"a\": a table { ... } is wanted"},
+      {"plan 'a' {}", "p.lua:1: plan \"a\": run = function(t) ... end is missing"},
+      {"plan 'a' { run = 5 }", "p.lua:1: plan \"a\": run = function(t) ... end is missing"},
+      {"plan 'a'", "declares no plan"},
+      {"", "declares no plan (write: plan \"name\" { ... })"},
+      {with("vehicle = 'v'") + with("vehicle = 'v'"), "p.lua:1: two plans are called \"p\""},
+      {with("stand = {}, vehicle = 'v'"), "a plan has a vehicle or a stand, one of the two"},
+      {with(""), "a plan has a vehicle or a stand, one of the two"},
+      {with("vehicle = 'v', seed = -1"), "seed"},
+      {with("vehicle = 'v', timeout = '5 N'"), "'5 N' is a force, not a time"},
+      {with("vehicle = 'v', colour = 1"), "unknown key 'colour'"},
+      {"plan 'a' { vehicle = 'v', run = function(t) end }", "image"},
+  };
+  for (const auto& [text, words] : kAll) {
+    const Loaded loaded = load(text);
+    EXPECT_TRUE(loaded.plans.empty()) << text;
+    EXPECT_NE(loaded.error.find(words), std::string::npos) << text << ": " << loaded.error;
+    EXPECT_NE(loaded.error.find("p.lua"), std::string::npos) << loaded.error;
+  }
+}
+
+}  // namespace
+}  // namespace whirl::plan
