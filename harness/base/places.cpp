@@ -53,12 +53,15 @@ Result<Places> find_places(const std::string& program, const std::string& wanted
   return places;
 }
 
+std::string own_program() {
+  std::error_code ignored;
+  return fs::read_symlink("/proc/self/exe", ignored).string();
+}
+
 const Result<Places>& places() {
   static const Result<Places> mine = [] {
-    std::error_code ignored;
     const char* wanted = std::getenv("WHIRL_ROOT");
-    return find_places(fs::read_symlink("/proc/self/exe", ignored).string(),
-                       wanted == nullptr ? "" : wanted);
+    return find_places(own_program(), wanted == nullptr ? "" : wanted);
   }();
   return mine;
 }

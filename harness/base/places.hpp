@@ -20,7 +20,8 @@ struct Places {
 
 // `wanted_root`: instead of looking for it; empty: look.
 Result<Places> find_places(const std::string& program, const std::string& wanted_root);
-// Of this process: /proc/self/exe and WHIRL_ROOT.
+std::string own_program();  // the path of this process's program
+// Of this process: its program and WHIRL_ROOT.
 const Result<Places>& places();
 
 std::vector<std::string> image_folders(const std::string& root);

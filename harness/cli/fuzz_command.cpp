@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <climits>
 #include <cstdio>
 #include <cstring>
 #include <functional>
@@ -17,6 +16,7 @@
 #include "harness/cli/parser_fuzzers.hpp"
 #include "harness/target/fuzz_image.hpp"
 #include "harness/target/virtual_board.hpp"
+#include "results/verdict.hpp"
 
 namespace whirl::cli {
 namespace {
@@ -145,15 +145,9 @@ Result<Done> fuzz_parsers(const Wish& wish) {
   }
 }
 
-std::string beside_whirl(const std::string& program) {
-  char self[PATH_MAX];
-  const ssize_t size = readlink("/proc/self/exe", self, sizeof self);
-  const std::string path(self, size < 0 ? 0 : static_cast<std::size_t>(size));
-  return path.substr(0, path.rfind('/') + 1) + program;
-}
-
 Result<Done> run_program(const Fuzzer& fuzzer, const Wish& wish) {
-  const std::string path = beside_whirl(fuzzer.program);
+  const std::string self = own_program();
+  const std::string path = self.substr(0, self.rfind('/') + 1) + fuzzer.program;
   if (access(path.c_str(), X_OK) != 0) {
     return Error{ErrorKind::host, path, "is not there",
                  std::string("build the target ") + fuzzer.program};
@@ -208,7 +202,7 @@ int fuzz_command(const FuzzOptions& options) {
     if (!wanted(options, fuzzer.name)) continue;
     std::printf("%s: %s\n", fuzzer.name, fuzzer.what);
     const auto found = fuzzer.run != nullptr ? fuzzer.run(wish) : run_program(fuzzer, wish);
-    if (!found) worst = std::max(worst, complain(found.error()));
+    if (!found) worst = results::worse_exit_code(worst, complain(found.error()));
   }
   return worst;
 }
