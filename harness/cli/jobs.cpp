@@ -14,6 +14,7 @@
 
 #include "harness/base/argv.hpp"
 #include "harness/base/interruption.hpp"
+#include "harness/base/outside_signal.hpp"
 #include "harness/cli/console.hpp"
 
 namespace whirl::cli {
@@ -73,9 +74,8 @@ void print_all(int from) {
 
 int code_of(int status, const PlanChoice& plan) {
   if (WIFEXITED(status)) return WEXITSTATUS(status);
-  // Nothing in whirl sends these: somebody else ended the process (the kernel, short of memory).
   const int signal = WTERMSIG(status);
-  const bool from_outside = signal == SIGKILL || signal == SIGTERM || signal == SIGXCPU;
+  const bool from_outside = is_from_outside(signal);
   std::printf("%s %s\n       its process was ended by signal %d (%s)\n",
               from_outside ? "INCONCLUSIVE" : "ERROR", plan.name.c_str(), signal,
               strsignal(signal));

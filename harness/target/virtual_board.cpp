@@ -13,10 +13,10 @@
 #include <chrono>
 #include <cstdio>
 #include <cstring>
-#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "harness/base/interruption.hpp"
+#include "harness/base/outside_signal.hpp"
 #include "harness/base/places.hpp"
 #include "io_bridges/link/channel.hpp"
 #include "io_bridges/qemu/board/parts.hpp"
@@ -58,13 +58,6 @@ std::string last_lines(const std::string& text, int lines) {
   return text.substr(from == 0 ? 0 : from + 1);
 }
 
-// Signals that come from outside: a user, the kernel (out of memory, out of backing store), a limit.
-bool from_outside(int signal) {
-  static constexpr int kOutside[] = {SIGKILL, SIGTERM, SIGINT,  SIGHUP,  SIGQUIT,
-                                     SIGBUS,  SIGXCPU, SIGXFSZ, SIGUSR1, SIGUSR2};
-  return std::find(std::begin(kOutside), std::end(kOutside), signal) != std::end(kOutside);
-}
-
 // QEMU has gone without a word through the link: whose doing was it?
 Error why_it_ended(int status, const std::string& qemu, const std::string& words) {
   const auto said = [&](const char* text) { return words.find(text) != std::string::npos; };
@@ -72,7 +65,7 @@ Error why_it_ended(int status, const std::string& qemu, const std::string& words
   if (WIFSIGNALED(status)) {
     const int signal = WTERMSIG(status);
     const std::string what = std::string("QEMU was ended by signal ") + strsignal(signal) + tail;
-    if (!from_outside(signal)) return {ErrorKind::internal, "virtual board", what, ""};
+    if (!is_from_outside(signal)) return {ErrorKind::internal, "virtual board", what, ""};
     return {ErrorKind::host, "virtual board", what,
             "did somebody end it, or the kernel for want of memory?"};
   }
