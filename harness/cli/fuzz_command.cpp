@@ -22,6 +22,7 @@ namespace whirl::cli {
 namespace {
 
 constexpr std::uint64_t kOwn_night = 0;  // seeds not given
+constexpr std::uint64_t kImages_per_line = 100;
 
 struct Wish {
   bool smoke;
@@ -80,6 +81,13 @@ struct Ends {
   std::uint64_t ran = 0, stopped = 0;
 };
 
+void print_ends(const Ends& ends) {
+  std::printf("  images: %llu ran to their end, %llu were stopped by their own fault\n",
+              static_cast<unsigned long long>(ends.ran),
+              static_cast<unsigned long long>(ends.stopped));
+  std::fflush(stdout);  // who watches a night waits for these lines
+}
+
 // Any way in which firmware can end is good.
 Result<Done> run_image(std::uint64_t seed, Ends& ends) {
   constexpr std::int64_t kStep_ns = 1'000'000;
@@ -112,7 +120,9 @@ Result<Done> fuzz_images(const Wish& wish) {
   const std::uint64_t seeds = wish.seeds != kOwn_night ? wish.seeds : wish.smoke ? 12 : 20'000;
   Ends ends;
   std::string bad;
-  for (std::uint64_t seed = wish.first; seed < wish.first + seeds; ++seed) {
+  for (std::uint64_t done = 0; done < seeds; ++done) {
+    if (done > 0 && done % kImages_per_line == 0) print_ends(ends);
+    const std::uint64_t seed = wish.first + done;
     const auto good = run_image(seed, ends);
     if (good) continue;
     if (good.error().kind == ErrorKind::host) return good.error();
@@ -120,9 +130,7 @@ Result<Done> fuzz_images(const Wish& wish) {
                 good.error().message().c_str());
     bad += " " + std::to_string(seed);
   }
-  std::printf("  images: %llu ran to their end, %llu were stopped by their own fault\n",
-              static_cast<unsigned long long>(ends.ran),
-              static_cast<unsigned long long>(ends.stopped));
+  print_ends(ends);
   if (bad.empty()) return Done{};
   return Error{ErrorKind::internal, "images", "bad seeds:" + bad,
                "whirl fuzz images --seeds 1 --first SEED"};
