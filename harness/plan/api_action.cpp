@@ -27,8 +27,9 @@ int gust(lua_State* L) {
 }
 
 int named_bus(lua_State* L, const std::string& bus) {
-  if (const auto number = bus_number(bus)) return *number;
-  raise(L, "'" + bus + "' is no bus", "write it as \"i2c3\", \"spi1\" or \"usart2\"");
+  const auto number = bus_number(bus);
+  if (!number) raise(L, "'" + bus + "' is no bus", "write it as \"i2c3\", \"spi1\" or \"usart2\"");
+  return *number;
 }
 
 void place_fault(lua_State* L, const lua::Table& wish, const Board& board, FaultSpec& fault) {

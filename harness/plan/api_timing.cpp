@@ -202,8 +202,9 @@ void judge_bus(Script& self, const BusWish& w, std::int64_t from, std::int64_t t
 }
 
 int numbered_bus(lua_State* L, const BoardDevice& device) {
-  if (const auto number = bus_number(device.bus)) return *number;
-  raise(L, device.name + " is on '" + device.bus + "', which is no bus");
+  const auto number = bus_number(device.bus);
+  if (!number) raise(L, device.name + " is on '" + device.bus + "', which is no bus");
+  return *number;
 }
 
 // t:bus { device = "esc1", direction = "write", period = "20 ms", tolerance = "0.5 ms" }

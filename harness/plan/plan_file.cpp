@@ -93,7 +93,6 @@ Result<std::unique_ptr<PlanFile>> PlanFile::load(const std::string& path, lua::L
       file->sandbox_.protect(0, [](lua_State* L) { lua_register(L, "plan", declare); });
   if (!registered) return registered.error();
   if (auto ran = file->sandbox_.run_file(path); !ran) return ran.error();
-  lua_settop(file->sandbox_.state(), 0);
   if (file->plans_.empty()) {
     return Error{ErrorKind::bad_input, path, "declares no plan", "write: plan \"name\" { ... }"};
   }
