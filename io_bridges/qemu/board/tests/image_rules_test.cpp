@@ -1,74 +1,13 @@
-// ELF files written here byte by byte: what is taken, what is refused, and why.
+// ELF files written byte by byte: what is taken, what is refused, and why.
 #include "io_bridges/qemu/board/image.hpp"
 
-#include <elf.h>
 #include <gtest/gtest.h>
 
-#include <cstring>
-#include <fstream>
-
-#include "harness/base/scratch_folder.hpp"
+#include "io_bridges/qemu/board/tests/elf_writer.hpp"
 
 namespace whirl::board {
 namespace {
 
-using Words = std::vector<std::uint32_t>;
-
-struct Load {
-  std::uint32_t address;
-  Words words;
-};
-
-struct Elf {
-  std::vector<Load> loads = {{0x08000000, {0x20005000, 0x08000101}}};
-  std::uint32_t entry = 0x08000101;
-  std::string attributes;   // of .ARM.attributes; empty: none
-  std::size_t cut_off = 0;  // bytes at the end that are missing
-
-  std::string bytes() const {
-    const std::size_t headers = sizeof(Elf32_Ehdr) + loads.size() * sizeof(Elf32_Phdr);
-    std::string body;
-    std::vector<Elf32_Phdr> programs;
-    for (const Load& load : loads) {
-      Elf32_Phdr p{};
-      p.p_type = PT_LOAD;
-      p.p_offset = static_cast<Elf32_Off>(headers + body.size());
-      p.p_paddr = p.p_vaddr = load.address;
-      p.p_filesz = p.p_memsz = static_cast<Elf32_Word>(4 * load.words.size());
-      programs.push_back(p);
-      body.append(reinterpret_cast<const char*>(load.words.data()), p.p_filesz);
-    }
-    Elf32_Shdr section{};
-    section.sh_type = 0x70000003;
-    section.sh_offset = static_cast<Elf32_Off>(headers + body.size());
-    section.sh_size = static_cast<Elf32_Word>(attributes.size());
-    body += attributes;
-    Elf32_Ehdr head{};
-    std::memcpy(head.e_ident, ELFMAG, SELFMAG);
-    head.e_ident[EI_CLASS] = ELFCLASS32;
-    head.e_ident[EI_DATA] = ELFDATA2LSB;
-    head.e_type = ET_EXEC;
-    head.e_machine = EM_ARM;
-    head.e_entry = entry;
-    head.e_phoff = sizeof head;
-    head.e_phnum = static_cast<Elf32_Half>(loads.size());
-    head.e_shoff = static_cast<Elf32_Off>(headers + body.size());
-    head.e_shnum = 1;
-    std::string file(reinterpret_cast<const char*>(&head), sizeof head);
-    file.append(reinterpret_cast<const char*>(programs.data()),
-                programs.size() * sizeof programs[0]);
-    file += body;
-    file.append(reinterpret_cast<const char*>(&section), sizeof section);
-    return file.substr(0, file.size() - cut_off);
-  }
-};
-
-Result<Image> load(const Elf& elf, const char* mcu = "stm32f405rg") {
-  const ScratchFolder folder;
-  const std::string path = folder.file("x.elf");
-  std::ofstream(path, std::ios::binary) << elf.bytes();
-  return load_image(path, *find_part(mcu));
-}
 std::string refusal(const Elf& elf, const char* mcu = "stm32f405rg") {
   const auto image = load(elf, mcu);
   return image ? "" : image.error().message();
