@@ -54,8 +54,12 @@ class World {
   virtual Result<Done> command(const lua::Table& wish, std::int64_t now_ns) = 0;
   virtual Result<Done> gust(const lua::Table& wish, std::int64_t now_ns) = 0;
 
-  // Text lines for t:ask: one to the firmware, and all that came from it so far. False: no such line.
-  virtual bool say(const std::string& /*line*/) { return false; }
+  // Text lines for t:ask: one to the firmware, and all that came from it so far.
+  // Errors  bad_input: no such line here; the question before is not answered yet, and its late answer
+  //         could not be told from that to this one
+  virtual Result<Done> say(const std::string& /*line*/) {
+    return Error{ErrorKind::bad_input, "", "nobody listens to lines here", "t:ask is for stands"};
+  }
   virtual const std::vector<std::string>& heard() const {
     static const std::vector<std::string> nothing;
     return nothing;

@@ -58,7 +58,7 @@ int ask(lua_State* L) {
   }
   const std::int64_t limit_ns = check_duration_ns(L, kLimit);
   const std::size_t before = stage.world.heard().size();
-  if (!stage.world.say(line)) raise(L, "nobody listens to lines here", "t:ask is for stands");
+  if (auto said = stage.world.say(line); !said) raise(L, said.error());
   lua_pushstring(L, place_of(L).c_str());
   lua_pushinteger(L, static_cast<lua_Integer>(before));
   lua_pushinteger(L, stage.now_ns);

@@ -24,6 +24,19 @@ void EscLine::say(const std::string& line) {
   echo_ = line;
 }
 
+Result<Done> EscLine::ask(const std::string& line) {
+  if (!open_question_.empty()) {
+    return Error{ErrorKind::bad_input, "",
+                 "'" + open_question_ +
+                     "' is not answered yet: what it says late could not be told " +
+                     "from the answer to '" + line + "'",
+                 "give the first one a longer limit"};
+  }
+  open_question_ = line;
+  say(line);
+  return Done{};
+}
+
 // A terminal may echo what it was told, behind its prompt: that is no answer.
 void EscLine::hear(const std::string& line) {
   const std::size_t text = line.find_first_not_of("#$%>: ");
@@ -31,7 +44,9 @@ void EscLine::hear(const std::string& line) {
     echo_.clear();
     return;
   }
+  if (!to_send_.empty()) return;  // it cannot be about what has not been sent
   heard_.push_back(line);
+  open_question_.clear();
 }
 
 void EscLine::send(std::int64_t t_ns, io::Batch& sensed) {

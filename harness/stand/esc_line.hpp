@@ -21,7 +21,11 @@ class EscLine {
   EscLine& operator=(const EscLine&) = delete;
 
   void say(const std::string& line);
-  const std::vector<std::string>& heard() const { return heard_; }  // lines, in order, no echoes
+  // A line whose first line of answer is waited for. Refused while one before it is not answered: the
+  // protocol names no question in its answers.
+  Result<Done> ask(const std::string& line);
+  // In order; no echoes, and nothing that came between a line's say() and its sending.
+  const std::vector<std::string>& heard() const { return heard_; }
   void send(std::int64_t t_ns, io::Batch& sensed);
   void take(const io::Reader& message);  // ignores other ports
 
@@ -41,6 +45,7 @@ class EscLine {
   io::EscStreamDecoder decoder_;
   std::vector<std::string> heard_;
   std::string echo_;  // the line that a terminal which echoes would send back next; empty: none
+  std::string open_question_;  // empty: none
   std::optional<io::EscSample> sample_;
   std::int64_t sample_ns_ = 0, period_ns_ = 0, now_ns_ = 0;
 };

@@ -44,7 +44,7 @@ class StandWorld : public World {
   bool take_fault(const FaultSpec& fault) override;
   std::vector<std::uint32_t> applied_faults() const override;
   std::string status() const override;
-  bool say(const std::string& line) override { return line_.say(line), true; }
+  Result<Done> say(const std::string& line) override { return line_.ask(line); }
   const std::vector<std::string>& heard() const override { return line_.heard(); }
 
  private:

@@ -289,10 +289,42 @@ TEST(Stand, TheEchoOfALineIsNoAnswer) {
     b.run_until(until_ms * kMs, 0.0);
   };
   ASSERT_TRUE(b.world.say("get kt"));
+  b.run_until(1 * kMs, 0.0);
   hear("> get kt\r\nkt 1e-2\r\n", 10);
   EXPECT_EQ(b.world.heard(), (std::vector<std::string>{"kt 1e-2"}));
   hear("get kt\r\n", 20);  // said by itself, later: no echo any more
   EXPECT_EQ(b.world.heard().size(), 2u);
+}
+
+TEST(Stand, WhatComesBeforeAQuestionIsSentIsNoAnswerToIt) {
+  Bench b;
+  const auto hear = [&b](const std::string& text) {
+    for (const char c : text) b.serial.push_back(static_cast<std::uint8_t>(c));
+  };
+  b.run_until(5 * kMs, 0.0);
+  ASSERT_TRUE(b.world.say("get kt"));
+  hear("of before\r\n");  // arrives with the step that sends the question
+  b.run_until(6 * kMs, 0.0);
+  EXPECT_TRUE(b.world.heard().empty());
+  hear("kt 1e-2\r\n");
+  b.run_until(7 * kMs, 0.0);
+  EXPECT_EQ(b.world.heard(), std::vector<std::string>{"kt 1e-2"});
+}
+
+TEST(Stand, ALateAnswerIsNotTakenForThatToTheNextQuestion) {
+  Bench b;
+  ASSERT_TRUE(b.world.say("get kt"));
+  b.run_until(10 * kMs, 0.0);
+  const auto refused = b.world.say("get kv");
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().what,
+            "'get kt' is not answered yet: what it says late could not be told from the answer to "
+            "'get kv'");
+  b.run_until(11 * kMs, 0.0);
+  EXPECT_EQ(b.typed, "get kt\r\n");
+  for (const char c : std::string("kt 1e-2\r\n")) b.serial.push_back(static_cast<std::uint8_t>(c));
+  b.run_until(12 * kMs, 0.0);
+  EXPECT_TRUE(b.world.say("get kv"));  // now it is answered
 }
 
 TEST(Stand, MistakesAreNamed) {

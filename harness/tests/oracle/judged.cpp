@@ -41,11 +41,11 @@ class PlayedWorld final : public World {
     return wish.finish();
   }
   Result<Done> gust(const lua::Table& wish, std::int64_t) override { return wish.finish(); }
-  bool say(const std::string& line) override {
+  Result<Done> say(const std::string& line) override {
     const auto answer = scenario_.answers.find(line);
-    if (answer == scenario_.answers.end()) return true;
+    if (answer == scenario_.answers.end()) return Done{};
     coming_.emplace_back(now_ms_ + answer->second.after_ms, answer->second.text);
-    return true;
+    return Done{};
   }
   const std::vector<std::string>& heard() const override { return heard_; }
   std::int64_t command_on_wire_ns() const override { return wire_ns_; }
