@@ -11,6 +11,7 @@ namespace whirl::plan {
 namespace {
 
 constexpr const char* kOwnerKey = "whirl.script";
+constexpr std::int64_t kMs_ns = 1'000'000;
 
 // s in function(s): the signals at this step, by column name with unit ("height_m").
 int read_signal(lua_State* L) {
@@ -99,9 +100,9 @@ std::string unfilled(std::int64_t from_ns, std::int64_t to_ns, std::int64_t now_
   if (now_ns <= from_ns || to_ns <= from_ns) return "was never watched: its time is empty";
   if (to_ns == kForever && completed) return "";
   if (to_ns <= now_ns) return "";
-  const std::string watched = std::to_string((now_ns - from_ns) / 1'000'000) + " ms";
+  const std::string watched = std::to_string((now_ns - from_ns) / kMs_ns) + " ms";
   if (to_ns == kForever) return "the run was cut off after " + watched + " of watching";
-  return "only " + watched + " of " + std::to_string((to_ns - from_ns) / 1'000'000) +
+  return "only " + watched + " of " + std::to_string((to_ns - from_ns) / kMs_ns) +
          " ms were watched when the run ended";
 }
 

@@ -197,6 +197,8 @@ TEST(Program, BadPlansAreOneClearLineAndExitCodeTwo) {
       {"unknown fault", plan_text("t:fault { kind = \"gremlins\" }"),
        "unknown kind of fault 'gremlins'"},
       {"not watched", plan_text("t:budget(\"fw::x\") { execution = \"1 ms\" }"), "is not watched"},
+      {"nobody listens", plan_text("t:ask 'x'"),
+       "p.lua:3: nobody listens to lines here (t:ask is for stands)"},
       {"no plan", "local x = 1", "declares no plan"},
       {"lua error", plan_text("local x = nil + 1"), "attempt to perform arithmetic"},
   };

@@ -206,7 +206,8 @@ bool agrees(const Told& right, const results::Expectation& got, std::ostringstre
 
 std::string plan_text(const Scenario& s) {
   return "plan 'p' { image = 'x', vehicle = 'x', timeout = '" + std::to_string(s.timeout_ms) +
-         " ms'," + (s.ending == Ending::watchdog_allowed ? " may_reset = true," : "") +
+         " ms', tags = { 'played' }," +
+         (s.ending == Ending::watchdog_allowed ? " may_reset = true," : "") +
          " run = function(t)\n" + s.lua + "end }\n";
 }
 

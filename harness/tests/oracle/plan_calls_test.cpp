@@ -25,6 +25,8 @@ TEST(PlanCalls, RefuseWhatTheyCannotUse) {
       {"t:step(1)", "a step's name is wanted"},
       {"t:expect('x')", "a measurement or a number is wanted, not a string"},
       {"t:expect({ value = 1 }):at_most(2)", "a measurement or a number is wanted, not a table"},
+      {"t:wait_until(function(s) t:expect(s) return true end, '5 ms')",
+       "a measurement or a number is wanted, not a table"},
       {"t:expect(1, 2)", "a name is wanted"},
       {"t:expect(t:value 'x'):at_most(3)", "a length as a text is wanted, not a number"},
       {"t:expect(t:value 'x'):at_most '3 N'", "'3 N' is a force, not a length"},

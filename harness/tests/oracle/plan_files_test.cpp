@@ -93,6 +93,7 @@ TEST(PlanFile, RefusesWhatIsNoPlan) {
       {with("vehicle = 'v', seed = -1"), "seed"},
       {with("vehicle = 'v', timeout = '5 N'"), "'5 N' is a force, not a time"},
       {with("vehicle = 'v', colour = 1"), "unknown key 'colour'"},
+      {"local x = {} x.x = x " + with("vehicle = 'v', x = x"), "nested too deep"},
       {"plan 'a' { vehicle = 'v', run = function(t) end }", "image"},
   };
   for (const auto& [text, words] : kAll) {

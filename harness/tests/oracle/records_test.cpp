@@ -141,6 +141,19 @@ TEST(Records, ReferToTheTwoHundredMillisecondsBeforeThem) {
   EXPECT_TRUE(near(change(299), 100.0 / (1.0 - 8.0 / 200), stated(0.1, "one of 9 m in it")));
 }
 
+// Each walk over a thousand rows costs a plan 250 instructions.
+TEST(Records, CostAPlanWhatTheirRowsCost) {
+  const auto reason = [](int means) {
+    Scenario s =
+        with_two_signals("local r = t:record('x', '1 s') for i = 1, " + std::to_string(means) +
+                         " do r:mean() end t:wait '1 ms' " + "t:expect(r:mean()):at_most '9 m'");
+    s.limits.instructions = 100'000;
+    return report_of(s).reason;
+  };
+  EXPECT_EQ(reason(200), "");
+  EXPECT_NE(reason(420).find("endless loop?"), std::string::npos) << reason(420);
+}
+
 TEST(Values, HaveTheirNameTheirTextAndTheirTime) {
   const results::Report report = report_of(with_two_signals(
       "t:wait '7 ms' local m = t:value 'x' t:log(m) t:log(m.name) t:log(m.value) t:log(t:now()) "
@@ -204,6 +217,13 @@ TEST(Calls, ThatOnlyActGiveNothing) {
     ASSERT_FALSE(report.log.empty()) << call << ": " << report.reason;
     EXPECT_EQ(report.log.back().text, "0") << call;
   }
+}
+
+TEST(Calls, AFullLogStillGivesNothing) {
+  EXPECT_EQ(only(with_two_signals("for i = 1, 5001 do t:log(i) end "
+                                  "t:expect(select('#', t:log 'more')):equal(0)"))
+                .verdict,
+            results::Verdict::pass);
 }
 
 TEST(Calls, ThatAnswerGiveOneValue) {

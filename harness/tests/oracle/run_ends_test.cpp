@@ -237,6 +237,7 @@ TEST(RunEnds, AReportSaysWhatRan) {
   const results::Report report = report_of(with_two_signals(kLooks));
   EXPECT_EQ(report.plan, "p");
   EXPECT_NE(report.file.find("plan.lua"), std::string::npos);
+  EXPECT_EQ(report.tags, std::vector<std::string>{"played"});
   EXPECT_EQ(report.seed, 1u);
   EXPECT_EQ(report.timing_profile, "8 ns per instruction, crystal ready after 0.2 ms");
   ASSERT_EQ(report.versions.size(), 1u);

@@ -274,6 +274,18 @@ TEST(Windows, ALatencyGoesThroughTheTasksThatAreNamed) {
   EXPECT_TRUE(near(only(s).measured, 5.0, round_off(8, 10)));  // from 1 ms, not from 3 ms
 }
 
+TEST(Windows, ATaskThatNeverRanLedToNoWrite) {
+  Scenario s = with_two_signals(
+      "t:latency { from = 'imu', through = { 'fw::none' }, to = 'esc1', at_most = '9 ms' } t:wait "
+      "'20 "
+      "ms'");
+  s.messages.push_back(
+      {1 * kMs, [](io::Batch& batch) { batch.add(io::Kind::data_ready, 0, 1 * kMs, nullptr, 0); }});
+  add_transfer(s, 4 * kMs, 6 * kMs, {0, 0x2A, 0, 1, 3});
+  EXPECT_EQ(only(s).note, "nothing to measure; 1 writes cannot be traced to a sample");
+  EXPECT_EQ(only(s).verdict, results::Verdict::fail);
+}
+
 struct Refused {
   const char *lua, *words;
 };

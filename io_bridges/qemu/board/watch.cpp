@@ -25,7 +25,7 @@ std::uint32_t frame_of(const CoreState& before, const CoreState& after) {
 
 std::array<Nanoseconds, Watch::kExceptions> Watch::filled() {
   std::array<Nanoseconds, kExceptions> values{};
-  values.fill(-1);
+  values.fill(kNever);
   return values;
 }
 
@@ -33,7 +33,6 @@ void Watch::core_was_reset() {
   tasks_.clear();
   handlers_.clear();
   stacks_.reset();
-  load_ = Load::none;
   raised_ns_ = filled();
 }
 
@@ -113,7 +112,7 @@ void Watch::stack_pointer_loads(const CoreState& core, bool may_be_new) {
 bool Watch::exception(const CoreState& before, const CoreState& after) {
   see(before);
   counted_until_ns_ = after.now;
-  if (before.exception() != 0 && before.pc >= (kExcReturn & ~1u)) {
+  if (before.exception() != 0 && before.pc >= kExcReturn) {
     leave(before.now);
     return arrive(after);
   }
@@ -124,7 +123,9 @@ bool Watch::exception(const CoreState& before, const CoreState& after) {
 }
 
 void Watch::enter(const CoreState& core) {
-  handlers_.push_back({core.exception(), 0, take_latency(core), {}});
+  Context& entered = handlers_.emplace_back();
+  entered.exception = core.exception();
+  entered.latency_ns = take_latency(core);
 }
 
 void Watch::leave(Nanoseconds now) {
@@ -150,17 +151,17 @@ bool Watch::arrive(const CoreState& after) {
 
 Nanoseconds Watch::take_latency(const CoreState& core) {
   const std::uint32_t exception = core.exception();
-  if (exception >= kExceptions || raised_ns_[exception] < 0) return -1;
+  if (exception >= kExceptions || raised_ns_[exception] < 0) return kNever;
   Nanoseconds& raised_ns = raised_ns_[exception];
   happened_.add(io::Kind::interrupt_latency, static_cast<std::uint16_t>(exception), core.now,
                 io::InterruptLatency{raised_ns});
-  return core.now - std::exchange(raised_ns, -1);
+  return core.now - std::exchange(raised_ns, kNever);
 }
 
 void Watch::line_changed(std::uint32_t exception, bool level, Nanoseconds now) {
   if (exception >= kExceptions) return;
   Nanoseconds& raised_ns = raised_ns_[exception];
-  if (!level) raised_ns = -1;  // served by polling, or the handler is already running
+  if (!level) raised_ns = kNever;  // served by polling, or the handler is already running
   if (level && raised_ns < 0) raised_ns = now;
 }
 

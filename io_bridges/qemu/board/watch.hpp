@@ -54,6 +54,7 @@ class Watch {
 
  private:
   static constexpr std::size_t kExceptions = 256, kDeepest = 64;
+  static constexpr Nanoseconds kNever = -1;
   struct Call {
     std::uint16_t number = 0;
     std::uint32_t return_address = 0, sp = 0;
@@ -63,7 +64,7 @@ class Watch {
   struct Context {
     std::uint32_t exception = 0;
     Nanoseconds ran_ns = 0;
-    Nanoseconds latency_ns = -1;  // of its entry; -1: not known
+    Nanoseconds latency_ns = kNever;  // of its entry; kNever: not known
     std::vector<Call> calls;
   };
   enum class Load : std::uint8_t { none, by_move, from_memory };
@@ -74,7 +75,7 @@ class Watch {
   void enter(const CoreState& core);
   void leave(Nanoseconds now);
   bool arrive(const CoreState& after);
-  Nanoseconds take_latency(const CoreState& core);  // and tells it; -1: not known
+  Nanoseconds take_latency(const CoreState& core);  // and tells it; kNever: not known
   void finish(const Context& context, const Call& call, Nanoseconds now);
 
   io::Batch& happened_;

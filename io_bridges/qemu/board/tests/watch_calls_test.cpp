@@ -18,14 +18,19 @@ TEST(Watch, ALatencyGoesFromTheRequestToTheHandlerAndWithItsCalls) {
   core.watch.enter_function(2, core.handler(20, kToThread));
   core.now = 150;
   core.leave_to_thread(20, kTask);
+  core.watch.line_changed(20, true, 160);
+  core.now = 170;
+  core.take(20, kTask);
+  core.leave_to_thread(20, kTask);
   core.now = 200;
   core.take(20, kTask);  // nobody has requested it
   core.watch.enter_function(2, core.handler(20, kToThread));
   core.now = 210;
   core.leave_to_thread(20, kTask);
-  EXPECT_EQ(all_told(core),
-            (std::vector<Told>{
-                {kLatency, 20, 0, 100}, {kCall, 2, 110, 150, 100}, {kCall, 2, 200, 210, -1}}));
+  EXPECT_EQ(all_told(core), (std::vector<Told>{{kLatency, 20, 0, 100},
+                                               {kCall, 2, 110, 150, 100},
+                                               {kLatency, 20, 160, 170},
+                                               {kCall, 2, 200, 210, -1}}));
 }
 
 TEST(Watch, AReturnOfAnExceptionThatWasNeverTakenEndsNothing) {
@@ -160,6 +165,17 @@ TEST(Watch, AResetEndsAllThatWasOpen) {
   core.come_back(0x08000010, kMain);
   EXPECT_EQ(core.calls(), (Calls{{2, 10}}));
   EXPECT_EQ(all_told(core).size(), 1u);  // and 20 was not requested since
+}
+
+TEST(Watch, AResetForgetsTheStacks) {
+  Core core;
+  core.call(1, kMain, 0x08000011);
+  core.watch.stack_pointer_loads(core.thread(kMain), true);
+  core.call(1, kTask, 0x08000011);
+  ASSERT_EQ(core.watch.stacks().count(), 2u);
+  core.watch.core_was_reset();
+  core.call(1, kMain, 0x08000011);
+  EXPECT_EQ(core.watch.stacks().count(), 1u);
 }
 
 TEST(Watch, ALoadOfTheStackPointerBeforeAResetIsForgotten) {
