@@ -137,14 +137,10 @@ TEST(Verdicts, AFailureSaysWhatWasMeasuredAndWhatWasWanted) {
               e.note = "only 1 ms of 2 ms";
             }),
             "tilt: only 1 ms of 2 ms");
-  EXPECT_EQ(reason([](Report& r, Expectation& e) {
-              const Expectation same = e;
-              r.expectations.push_back(same);
-            }),
+  EXPECT_EQ(reason([](Report& r, Expectation& e) { r.expectations.push_back(e); }),
             "tilt: 7.5 cm, wanted at most 5 cm (and 1 more)");
   EXPECT_EQ(reason([](Report& r, Expectation& e) {
-              const Expectation same = e;
-              r.expectations.insert(r.expectations.end(), 3, same);
+              r.expectations.insert(r.expectations.end(), 3, e);
               r.expectations.back().verdict = Verdict::pass;
             }),
             "tilt: 7.5 cm, wanted at most 5 cm (and 2 more)");

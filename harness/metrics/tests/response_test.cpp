@@ -216,6 +216,8 @@ TEST(Response, WhatIsThereAtTheCommandTookNoTime) {
 TEST(Response, AValueOnTheLevelHasReachedIt) {
   const auto v = answer(0.0, 1.0, [](double t) { return t < 0.1 ? 0.0 : t < 0.3 ? 9.0 : 10.0; });
   EXPECT_TRUE(near(response_time_s(record(v)), 0.1, round_off(4, 1.0)));
+  const auto w = answer(10.0, 1.0, [](double t) { return t < 0.1 ? 10.0 : t < 0.3 ? 1.0 : 0.0; });
+  EXPECT_TRUE(near(response_time_s(record(w)), 0.1, round_off(4, 1.0)));
 }
 
 // 0.3 and 0.2 of the change beyond where it ends, upwards and downwards.
