@@ -12,13 +12,10 @@ if found=$(printf '%s\n' "$symbols" | grep -E " [A-Za-z] $forbidden\$"); then
   printf '%s\n' "$found" >&2
   exit 1
 fi
-# Section by section: .data, with code that runs in RAM, lies in both.
-set -- $(arm-none-eabi-size -A "$elf" | awk '
-  $1 == ".stack" { stack = $2; next }
-  $3 >= 536870912 && $3 < 1073741824 { ram += $2; if ($1 == ".data") flash += $2; next }
-  $3 >= 134217728 && $3 < 268435456 { flash += $2 }
-  END { print flash + 0, ram + 0, stack + 0 }')
-flash=$1 ram=$2 stack=$3
+# Berkeley columns: text (code and constants), data (in both), bss (stack included).
+set -- $(arm-none-eabi-size "$elf" | tail -n 1)
+stack=$(arm-none-eabi-size -A "$elf" | awk '$1 == ".stack" { print $2 }')
+flash=$(($1 + $2)) ram=$(($2 + $3 - stack))
 printf '%s: flash %d B of %d KiB, RAM %d B of %d KiB, stack %d B\n' \
   "$(basename "$elf")" "$flash" "$flash_kib" "$ram" "$ram_kib" "$stack"
 [ "$flash" -le $((flash_kib * 1024)) ] || { echo "check_image: $elf: flash over budget" >&2; exit 1; }

@@ -1,6 +1,7 @@
 #include "harness/executive/board_file.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
@@ -153,8 +154,12 @@ Result<Board> read_board(const std::string& path) {
   if (t.has("boot_image")) board.boot_image = t.sibling(t.text("boot_image"));
   board.start = static_cast<std::uint32_t>(t.integer_or("start", 0, 0, 0xFFFFFFFF));
   if (t.text_or("timing", "cycles") != "cycles") {
-    const double instruction_s = t.quantity("timing", Dimension::time, lua::between(1e-9, 512e-9));
-    board.ns_per_instruction = static_cast<int>(std::lround(instruction_s * 1e9));
+    const double ns = t.quantity("timing", Dimension::time, lua::between(1e-9, 512e-9)) * 1e9;
+    board.ns_per_instruction = static_cast<int>(std::lround(ns));
+    const bool of_qemu = std::has_single_bit(static_cast<unsigned>(board.ns_per_instruction));
+    if (!of_qemu || std::abs(ns - board.ns_per_instruction) > 1e-6) {
+      t.refuse("timing", "is neither \"cycles\" nor a power of two of nanoseconds");
+    }
   }
   for (const lua::Table& entry : t.tables("devices")) board.devices.push_back(read_device(entry));
   board.pins_json = dumped(t, "pins", read_pins(t));

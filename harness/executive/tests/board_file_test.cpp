@@ -115,8 +115,8 @@ TEST(BoardFile, EachLimitBelongsToItsRange) {
   const Edge kEdges[] = {
       {"lse", "'0 Hz'", "'-0.5 Hz'"},         {"hse_start", "'1 us'", "'0.995 us'"},
       {"hse_start", "'1 s'", "'1.005 s'"},    {"start", "0", "-1"},
-      {"start", "0xFFFFFFFF", "0x100000000"}, {"instruction", "'1 ns'", "'0.995 ns'"},
-      {"instruction", "'1 us'", "'1.005 us'"}};
+      {"start", "0xFFFFFFFF", "0x100000000"}, {"timing", "'1 ns'", "'0.995 ns'"},
+      {"timing", "'512 ns'", "'1024 ns'"},    {"timing", "'16 ns'", "'15 ns'"}};
   for (const Edge& edge : kEdges) {
     EXPECT_EQ(complaint(edge.key + " = " + edge.inside), "");
     EXPECT_NE(complaint(edge.key + " = " + edge.outside).find(edge.key), std::string::npos)
@@ -141,8 +141,8 @@ TEST(BoardFile, EachLimitBelongsToItsRange) {
 TEST(BoardFile, WhatItSaysInSIIsExact) {
   EXPECT_EQ(read("").value().start, 0u);
   EXPECT_EQ(read("start = 0xFFFFFFFF").value().start, 0xFFFFFFFFu);
-  EXPECT_EQ(read("instruction = '1 us'").value().ns_per_instruction, 1000);
-  EXPECT_EQ(read("instruction = '7.6 ns'").value().ns_per_instruction, 8);  // the nearest whole one
+  EXPECT_EQ(read("timing = '512 ns'").value().ns_per_instruction, 512);
+  EXPECT_NE(complaint("timing = '7.6 ns'").find("a power of two"), std::string::npos);
   EXPECT_EQ(read("lse = '0.5 Hz'").value().lse_Hz, 0.5);
   EXPECT_TRUE(near(read("hse_start = '5 us'").value().hse_start_s, 5e-6, round_off(2, 5e-6)));
   EXPECT_EQ(json_of(read("hse_start = '5 us'").value())["hse_start_ns"], 5'000);
