@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "io_bridges/qemu/plugin/instruments.hpp"
 
+#include <cstdio>
 #include <cstring>
 
 namespace whirl::qemu {
@@ -60,7 +61,9 @@ void Instruments::translated(qemu_plugin_tb* block) {
   const std::size_t length = qemu_plugin_tb_n_insns(block);
   handler_mode_ = (machine_.core_register(kXpsr) & kIpsr) != 0;
   found_.clear();
-  find_at_start(static_cast<std::uint32_t>(qemu_plugin_tb_vaddr(block)));
+  const auto start = static_cast<std::uint32_t>(qemu_plugin_tb_vaddr(block));
+  report_unreachable_code(start);
+  find_at_start(start);
   for (std::size_t i = 0; i < length; ++i) {
     find_in(qemu_plugin_tb_get_insn(block, i), static_cast<std::uint32_t>(i));
   }
@@ -71,6 +74,18 @@ void Instruments::translated(qemu_plugin_tb* block) {
     found_[n].time = times[n];
     put(qemu_plugin_tb_get_insn(block, found_[n].place), found_[n]);
   }
+}
+
+// CCM hangs on the data bus alone (RM0090 2.3.1): on the part this fetch is a bus fault. QEMU takes code
+// from any memory.
+void Instruments::report_unreachable_code(std::uint32_t address) {
+  const board::MemoryBlock& ccm = machine_.board().part().ccm;
+  if (ccm_reported_ || address - ccm.base >= ccm.size) return;
+  ccm_reported_ = true;
+  char text[96];
+  std::snprintf(text, sizeof text, "code is fetched from CCM at 0x%08x: on the part, a bus fault",
+                address);
+  machine_.board().find({machine_.clock().core_now(), "core", text});
 }
 
 void Instruments::code_thrown_away() {

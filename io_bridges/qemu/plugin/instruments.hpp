@@ -39,6 +39,7 @@ class Instruments {
     std::int64_t time;      // for CoreClock::at
   };
 
+  void report_unreachable_code(std::uint32_t address);
   void find_at_start(std::uint32_t address);
   void find_in(const qemu_plugin_insn* insn, std::uint32_t place);
   void put(qemu_plugin_insn* insn, const Site& site);
@@ -52,6 +53,7 @@ class Instruments {
   std::vector<Site> found_;  // in the block that is being translated
   std::deque<Site> sites_;   // translated code points at them
   bool handler_mode_ = false;
+  bool ccm_reported_ = false;
 };
 
 }  // namespace whirl::qemu

@@ -56,6 +56,17 @@ TEST(Failure, AStackAmongRegistersIsAFirmwareFaultByName) {
   }
 }
 
+TEST(Failure, CodeInMemoryThatThePartCannotFetchFromIsSaidOnce) {
+  const BoardRun run = run_for({image("ccm_code"), {}}, 2);
+  EXPECT_EQ(run.said(), (std::vector<std::uint32_t>{7, 7, 7}));
+  int told = 0;
+  for (const Message* finding : run.of(io::Kind::finding)) {
+    told += run.text_of(*finding).find("fetched from CCM at 0x10000100") != std::string::npos;
+  }
+  EXPECT_EQ(told, 1);
+  EXPECT_FALSE(run_for({image("idle"), {}}, 2).found("CCM"));
+}
+
 TEST(Failure, VectorsAmongRegistersEndInALockUp) {
   const BoardRun run = run_for({image("lost_stack5"), {}}, 2);
   EXPECT_EQ(run.error.what, "");
