@@ -52,6 +52,10 @@ int main(void) {
   SYST_RVR = 16800 - 1;
   SYST_CVR = 0;
   SYST_CSR = 7;
+#if HOW == 7 /* deadlines without an interrupt: they cut the code below everywhere */
+  EVERY = 131;
+  TIMER = 131;
+#endif
   for (;;) {
 #if HOW == 2
     __asm volatile(".rept 150\n nop\n .endr");
