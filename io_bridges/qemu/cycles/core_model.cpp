@@ -9,7 +9,7 @@ namespace {
 constexpr double kRefill_branch = 1.5;  // 1 to 3 by alignment and width: the mean over alignments
 constexpr double kRefill_register = 1.5;
 constexpr double kRefill_load = 3;       // "at least" 5 for LDR PC, with its 2 of a load
-constexpr double kDivide = 6;            // 2 to 12 by operands
+constexpr double kDivide = 2;            // at least; see core_model.hpp
 constexpr double kLong_multiply_m3 = 4;  // 3 to 7 by operands
 constexpr double kLiteral = 0.25;        // meets the instruction fetch in some alignments
 constexpr double kLoad_after_store = 1;  // the write buffer is emptied first

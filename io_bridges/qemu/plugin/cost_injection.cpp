@@ -15,6 +15,7 @@ using tcg::Operation;
 
 constexpr std::uint32_t kCount_flags = 0x1FF;  // CF_COUNT_MASK
 constexpr std::string_view kLazy_save = "v7m_preserve_fp_state";
+constexpr std::string_view kUdiv = "udiv", kSdiv = "sdiv";
 
 // Where what is counted when: a place for each instruction, and one behind the last.
 std::vector<std::int64_t> places_of(const BlockCost& cost) {
@@ -68,6 +69,8 @@ class CostInjection::Writer {
         ++begun;
       } else if (tcg::helper_name(o) == kLazy_save) {
         owe(o, cost_.lazy_frame);
+      } else if (tcg::helper_name(o) == kUdiv || tcg::helper_name(o) == kSdiv) {
+        pay_for_quotient(o, tcg::helper_name(o) == kSdiv);
       } else if (begun == cost_.each.size() && !left_ &&
                  (number == op.goto_block || number == op.exit_block ||
                   number == op.goto_pointer)) {
@@ -86,6 +89,26 @@ class CostInjection::Writer {
     const Argument where = debt_place();
     ahead.put(op.st64, ahead.op64(op.add64, ahead.op64(op.ld64, where), tcg::number64(amount)),
               where);
+  }
+
+  // The divider stops early: it goes by the leading zeros that the operands do not share.
+  void pay_for_quotient(Operation& call, bool with_sign) {
+    const tcg::Numbers& op = tcg::numbers();
+    const auto [dividend, divisor] = tcg::last_inputs(call);
+    tcg::Ahead ahead(&call);
+    const auto zeros = [&](Argument x) {
+      if (with_sign) x = ahead.op32(op.xor32, x, ahead.op32(op.sar32, x, tcg::number32(31)));
+      return ahead.op32(op.leading_zeros32, x, tcg::number32(32));
+    };
+    const Argument bits = ahead.op32(op.sub32, zeros(divisor), zeros(dividend));
+    const Argument none = ahead.op32(op.sar32, bits, tcg::number32(31));
+    const Argument steps =
+        ahead.op32(op.add32, ahead.op32(op.sar32, bits, tcg::number32(2)), tcg::number32(1));
+    const Argument some = ahead.op32(op.sub32, tcg::number32(-1), none);
+    const Argument wide = ahead.op64(op.widen, ahead.op32(op.and32, steps, some));
+    const Argument cost = ahead.op64(op.multiply64, wide, tcg::number64(cost_.divide_step));
+    const Argument where = debt_place();
+    ahead.put(op.st64, ahead.op64(op.add64, ahead.op64(op.ld64, where), cost), where);
   }
 
   // Adds what a line costs that is not among the last 64 fetched, and counts it as fetched.

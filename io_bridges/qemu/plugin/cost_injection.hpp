@@ -13,6 +13,7 @@
 //             flash takes (`entered`)
 //   Deadline  a block that the budget would not last for is left at its start and done again, cut off
 //             at the instruction in which the deadline falls: too_short()
+//   Divides   pay by the bits of their quotient, ahead of QEMU's call for them
 //   Lines     of the F405's cache (fetch_model.hpp) are looked up in line, without a branch
 //   Unit      2^-16 ns
 #pragma once
@@ -40,8 +41,9 @@ struct BlockCost {
     std::int64_t missed;
   };
   std::vector<Line> lines;
-  std::int64_t lazy_frame = 0;  // when the FPU's registers are saved late
-  std::vector<bool> memory;     // instructions that load or store
+  std::int64_t lazy_frame = 0;   // when the FPU's registers are saved late
+  std::int64_t divide_step = 0;  // for each four bits of a quotient
+  std::vector<bool> memory;      // instructions that load or store
   bool ends_in_branch = false;
 };
 

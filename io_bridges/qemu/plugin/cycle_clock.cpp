@@ -47,6 +47,7 @@ BlockCost CycleClock::cost_of(const std::vector<cycles::Instruction>& run) const
     cost.lines.push_back({use.line, units(use.cycles)});
   }
   cost.lazy_frame = units(cycles::kFloating_frame);
+  cost.divide_step = units(1);
   return cost;
 }
 

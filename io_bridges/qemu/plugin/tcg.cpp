@@ -70,7 +70,10 @@ constexpr Wanted kWanted[] = {{&Numbers::ld32, "ld_i32"},
                               {&Numbers::goto_pointer, "goto_ptr"},
                               {&Numbers::callback, "plugin_cb_start"},
                               {&Numbers::callback_end, "plugin_cb_end"},
-                              {&Numbers::call, "call"}};
+                              {&Numbers::call, "call"},
+                              {&Numbers::leading_zeros32, "clz_i32"},
+                              {&Numbers::xor32, "xor_i32"},
+                              {&Numbers::multiply64, "mul_i64"}};
 
 whirl::Error lacking(const std::string& what) {
   return {ErrorKind::host, "QEMU", "its translator has no " + what,
@@ -152,6 +155,11 @@ std::string_view helper_name(const Operation& operation) {
   const unsigned place = outputs + inputs + 1;
   if (place >= std::size(operation.arguments)) return {};
   return reinterpret_cast<const HelperInfo*>(operation.arguments[place])->name;
+}
+
+LastInputs last_inputs(const Operation& call) {
+  const unsigned last = (call.counts & 0xF) + ((call.counts >> 4) & 0xF) - 1;
+  return {call.arguments[last - 1], call.arguments[last]};
 }
 
 Argument Ahead::op32(int number, Argument a, Argument b) {
