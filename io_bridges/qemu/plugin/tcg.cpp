@@ -162,14 +162,22 @@ LastInputs last_inputs(const Operation& call) {
   return {call.arguments[last - 1], call.arguments[last]};
 }
 
+Argument Ahead::temporary(int type) const {
+  for (;;) {
+    const Argument fresh = functions.tcg_temp_new_internal(type, false);
+    const auto& used = place_->arguments;
+    if (std::find(std::begin(used), std::end(used), fresh) == std::end(used)) return fresh;
+  }
+}
+
 Argument Ahead::op32(int number, Argument a, Argument b) {
-  const Argument result = functions.tcg_temp_new_internal(kWord, false);
+  const Argument result = temporary(kWord);
   put(number, result, a, b);
   return result;
 }
 
 Argument Ahead::op64(int number, Argument a, Argument b) {
-  const Argument result = functions.tcg_temp_new_internal(kDoubleword, false);
+  const Argument result = temporary(kDoubleword);
   put(number, result, a, b);
   return result;
 }

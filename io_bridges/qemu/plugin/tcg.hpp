@@ -51,7 +51,9 @@ struct LastInputs {
 };
 LastInputs last_inputs(const Operation& call);
 
-// Puts operations in front of one that is there.
+// Puts operations in front of one that is there. The translator has given all of its temporaries back by
+// then, so that a new one may be one that it still uses in the instruction at hand: never one of those
+// of the operation in front of which we are.
 class Ahead {
  public:
   explicit Ahead(Operation* place) : place_(place) {}
@@ -62,6 +64,8 @@ class Ahead {
   void here(Label* label);
 
  private:
+  Argument temporary(int type) const;
+
   Operation* place_;
 };
 

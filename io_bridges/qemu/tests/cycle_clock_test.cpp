@@ -33,6 +33,10 @@ TEST(CycleClock, StraightCodeLoopsAndMemoryTakeTheCyclesOfArmsTables) {
   EXPECT_LE(more(7), 2u + 12u);
 }
 
+TEST(CycleClock, WhatADivisionCostsDoesNotTouchItsResult) {
+  EXPECT_EQ(run_for(by_cycles("cycles8"), 50).said(), std::vector<std::uint32_t>{0});
+}
+
 struct Background {
   const char* image;
   double cycles;  // how late a tick may come: the longest instruction, and where it is cut

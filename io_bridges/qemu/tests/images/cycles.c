@@ -39,7 +39,36 @@ int main(void) {
   SAY = COUNTED("mov r0, #5\n mov r1, #50\n udiv r2, r1, r0");
   for (;;) __asm volatile("wfi");
 }
-#else /* the time between ticks, as the handler's first load sees it */
+#elif HOW == 8 /* divisions, against a long one */
+static uint32_t divided(uint32_t a, uint32_t b) {
+  uint32_t quotient = 0, rest = 0;
+  for (int bit = 31; bit >= 0; --bit) {
+    rest = rest << 1 | ((a >> bit) & 1);
+    if (rest >= b) {
+      rest -= b;
+      quotient |= 1u << bit;
+    }
+  }
+  return quotient;
+}
+
+int main(void) {
+  uint32_t a = 1, b = 1, wrong = 0;
+  start_counter();
+  for (int i = 0; i < 2000; ++i) {
+    a = a * 1664525u + 1013904223u;
+    b = ((b * 22695477u + 1u) >> (i & 15)) | 1u;
+    const int32_t by_sign = (int32_t)a / (int32_t)(b >> 1 | 1);
+    const uint32_t magnitude = a >> 31 ? 0u - a : a;
+    const uint32_t expected = divided(magnitude, b >> 1 | 1);
+    wrong += a / b != divided(a, b);
+    wrong += by_sign != (int32_t)(a >> 31 ? 0u - expected : expected);
+    if (i % 7 == 0 && a % b != a - b * divided(a, b)) ++wrong;
+  }
+  SAY = wrong;
+  for (;;) __asm volatile("wfi");
+}
+#else          /* the time between ticks, as the handler's first load sees it */
 void systick_handler(void) {
   const uint32_t now = CYCCNT;
   if (ticks++ > 0) SAY = now - first_tick;
@@ -52,7 +81,7 @@ int main(void) {
   SYST_RVR = 16800 - 1;
   SYST_CVR = 0;
   SYST_CSR = 7;
-#if HOW == 7 /* deadlines without an interrupt: they cut the code below everywhere */
+#if HOW == 7   /* deadlines without an interrupt: they cut the code below everywhere */
   EVERY = 131;
   TIMER = 131;
 #endif
