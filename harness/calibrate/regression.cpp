@@ -120,6 +120,9 @@ Result<Fit> solve(const Problem& p) {
   for (Eigen::Index c = 0; c < columns; ++c) {
     if (length(c) > 0.0) scaled.col(c) /= length(c);
   }
+  if (!scaled.allFinite() || !length.allFinite() || !weight.cwiseProduct(y).allFinite()) {
+    return refuse(p, "the data are beyond what can be computed with", "look for a wrong unit");
+  }
   const Eigen::JacobiSVD<MatrixXd> svd(scaled, Eigen::ComputeThinU | Eigen::ComputeThinV);
   const VectorXd& s = svd.singularValues();
   const double condition = s(0) / std::max(s(columns - 1), 1e-300);

@@ -100,6 +100,18 @@ TEST(Regression, RefusesAColumnOfZerosTooFewPointsAndNaN) {
   EXPECT_FALSE(solve(nan).ok());
 }
 
+TEST(Regression, RefusesWhatOverflowsOnTheWay) {
+  for (const double huge : {1e160, 1e308}) {
+    Problem columns = line(1, 6);
+    for (double& x : columns.columns[1].x) x *= huge;
+    EXPECT_FALSE(solve(columns).ok()) << huge;
+    Problem weights = line(1, 6);
+    weights.weights.assign(weights.y.size(), 1e308);
+    weights.y[0] = huge;
+    EXPECT_FALSE(solve(weights).ok()) << huge;
+  }
+}
+
 TEST(Regression, StudentsTIsTheTextbooks) {
   EXPECT_NEAR(student_t95(1), 12.706, 1e-3);
   EXPECT_NEAR(student_t95(2), 4.303, 1e-3);
