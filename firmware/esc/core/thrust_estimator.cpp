@@ -113,7 +113,7 @@ ThrustEstimate ThrustEstimator::conclude() {
   if (!calibration_.identified || !still_.real) return nothing;
   nothing.status = Estimate::not_observable;
   const float most = calibration_.shared_power < 1.0f ? calibration_.shared_power : 1.0f;
-  const float sure = observable() ? 0.5f : 2.0f;  // it does not waver where it just begins to tell
+  const float sure = observable() ? 1.0f : 2.0f;  // it does not waver where it just begins to tell
   if (power_ratio_ >= most - sure * power_error_) return nothing;
   if (gapless_s_ < kSmoothing_s) return nothing;  // the ratio still holds what gaps made of it
   if (!calibration_.power.holds(speed_radps_)) return nothing;
