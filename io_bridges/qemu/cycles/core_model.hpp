@@ -1,9 +1,10 @@
 // Cycles of a Cortex-M3 or M4F for a straight run of instructions with zero wait states.
 //
 //   Source    M3: DDI 0337 chapter 18; M4: DDI 0439 chapter 3.3 (pairing of loads, write buffer) and
-//             chapter 7 (FPU); where ARM gives a range, the row of kRanges says what is taken and why
+//             chapter 7 (FPU); where ARM gives a range, the head of core_model.cpp says what is taken
 //   Unit      CPU cycles
-//   Accuracy  10 % on compiled code as a rule, 15 % as a bound to be told
+//   Accuracy  taken as 10 % on compiled code: what the method showed against published benchmarks. No
+//             board was at hand, so it is no bound
 //   Divides   2 to 12 by operands: here 2, and the clock adds 1 and another for each four bits of the
 //             quotient where it is not 0 (ARM: "early termination"; the steps are our reading of it)
 //   Left out  operands of long multiplies, unaligned accesses, costs that reach
@@ -17,7 +18,7 @@
 namespace whirl::cycles {
 
 // Exceptions: 12 cycles to the handler's first instruction at zero wait states, 6 from one handler to
-// the next, 10 back (DDI 0337 and 0439, 3.9; ARM's application note AN209 on latency).
+// the next, 10 back (../REFERENCES.md: KBA103489845; Yiu2013 for the 6).
 constexpr double kException_entry = 12, kTail_chain = 6, kException_return = 10;
 constexpr double kFloating_frame = 17;  // S0 to S15 and FPSCR: a word each
 
