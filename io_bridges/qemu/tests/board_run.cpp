@@ -36,6 +36,22 @@ void keep(BoardRun& run, Digest& digest, const io::Batch& batch) {
 
 }  // namespace
 
+BusyHost::BusyHost() {
+  constexpr int kThreads = 3;
+  threads_.reserve(kThreads);
+  for (int i = 0; i < kThreads; ++i) {
+    threads_.emplace_back([this] {
+      while (!stop_.load(std::memory_order_relaxed)) {
+      }
+    });
+  }
+}
+
+BusyHost::~BusyHost() {
+  stop_ = true;
+  for (std::thread& thread : threads_) thread.join();
+}
+
 BoardRun run_for(const BoardSetup& setup, int milliseconds) {
   VirtualBoard target(options_for(setup));
   BoardRun run;

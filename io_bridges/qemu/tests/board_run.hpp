@@ -1,7 +1,9 @@
 // Runs a test image in QEMU for some virtual milliseconds and keeps what it said.
 #pragma once
+#include <atomic>
 #include <cstdint>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "harness/target/virtual_board.hpp"
@@ -42,6 +44,19 @@ struct BoardRun {
   std::vector<std::uint32_t> said() const;
   bool found(const std::string& words) const;  // in some finding
   std::string text_of(const Message& message, std::size_t head = 0) const;
+};
+
+// Three threads that compute, for as long as it lives.
+class BusyHost {
+ public:
+  BusyHost();
+  ~BusyHost();
+  BusyHost(const BusyHost&) = delete;
+  BusyHost& operator=(const BusyHost&) = delete;
+
+ private:
+  std::atomic<bool> stop_{false};
+  std::vector<std::thread> threads_;
 };
 
 BoardRun run_for(const BoardSetup& setup, int milliseconds);

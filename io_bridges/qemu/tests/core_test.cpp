@@ -1,29 +1,16 @@
 // Time, sleep, interrupts and their priorities.
 #include <gtest/gtest.h>
 
-#include <atomic>
-#include <thread>
-
 #include "io_bridges/qemu/tests/board_run.hpp"
 
 namespace whirl::board_test {
 namespace {
 
 TEST(Time, TwentyRunsUnderLoadGiveTheSameBytes) {
-  std::atomic<bool> stop{false};
-  std::vector<std::thread> load;
-  load.reserve(3);
-  for (int i = 0; i < 3; ++i) {
-    load.emplace_back([&stop] {
-      while (!stop.load(std::memory_order_relaxed)) {
-      }
-    });
-  }
+  const BusyHost load;
   const std::string first = run_for({image("sleeper"), {}}, 200).digest;
   int same = 0;
   for (int i = 0; i < 20; ++i) same += run_for({image("sleeper"), {}}, 200).digest == first ? 1 : 0;
-  stop = true;
-  for (std::thread& thread : load) thread.join();
   EXPECT_NE(first, "");
   EXPECT_EQ(same, 20);
 }

@@ -2,10 +2,6 @@
 // interrupts come; and that every run is the same.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <atomic>
-#include <thread>
-
 #include "io_bridges/qemu/tests/board_run.hpp"
 
 namespace whirl::board_test {
@@ -63,22 +59,12 @@ TEST(CycleClock, TicksComeWithinOneInstructionOfTheirTime) {
 }
 
 TEST(CycleClock, TwentyRunsUnderLoadGiveTheSameBytes) {
-  std::atomic<bool> stop{false};
-  std::vector<std::thread> load;
-  load.reserve(3);
-  for (int i = 0; i < 3; ++i) {
-    load.emplace_back([&stop] {
-      while (!stop.load(std::memory_order_relaxed)) {
-      }
-    });
-  }
+  const BusyHost load;
   for (const char* name : {"sleeper", "cycles3", "cycles6"}) {
     const std::string first = run_for(by_cycles(name), 50).digest;
     EXPECT_NE(first, "");
     for (int i = 0; i < 20; ++i) EXPECT_EQ(run_for(by_cycles(name), 50).digest, first) << name;
   }
-  stop = true;
-  for (std::thread& thread : load) thread.join();
 }
 
 TEST(CycleClock, WatchingChangesNoMomentOfTheImageAndCountsEachCallOnce) {
