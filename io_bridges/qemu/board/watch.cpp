@@ -6,18 +6,16 @@
 namespace whirl::board {
 namespace {
 
-constexpr std::uint32_t kExcReturn = 0xFFFFFFE0u;  // and above: what a handler returns by
 constexpr std::uint32_t kBasicFrame = 0x20, kFloatingFrame = 0x68;
-constexpr std::uint32_t kNoFloating = 1u << 4;  // of EXC_RETURN
 
 // What a function returns by, as a branch leaves it in PC.
 std::uint32_t return_address(std::uint32_t lr) {
-  return lr >= kExcReturn ? lr : lr & ~1u;
+  return lr >= kExc_return ? lr : lr & ~1u;
 }
 
 // Where the core has stacked what ran at `before`.
 std::uint32_t frame_of(const CoreState& before, const CoreState& after) {
-  const std::uint32_t size = (after.lr & kNoFloating) != 0 ? kBasicFrame : kFloatingFrame;
+  const std::uint32_t size = has_floating_frame(after.lr) ? kFloatingFrame : kBasicFrame;
   return (before.sp - size) & ~7u;
 }
 
@@ -112,7 +110,7 @@ void Watch::stack_pointer_loads(const CoreState& core, bool may_be_new) {
 bool Watch::exception(const CoreState& before, const CoreState& after) {
   see(before);
   counted_until_ns_ = after.now;
-  if (before.exception() != 0 && before.pc >= kExcReturn) {
+  if (before.leaves_exception()) {
     leave(before.now);
     return arrive(after);
   }

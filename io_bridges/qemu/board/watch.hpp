@@ -27,12 +27,20 @@ namespace whirl::board {
 
 using io::Nanoseconds;
 
+// From here on a value in LR or PC is no address but EXC_RETURN: what a handler returns by (DDI 0403E
+// B1.5.8). Its bit 4 is clear where the frame holds the FPU's registers too.
+constexpr std::uint32_t kExc_return = 0xFFFFFFE0u;
+constexpr bool has_floating_frame(std::uint32_t exc_return) {
+  return (exc_return & (1u << 4)) == 0;
+}
+
 // The core between two instructions.
 struct CoreState {
   Nanoseconds now = 0;
   std::uint32_t xpsr = 0;
   std::uint32_t sp = 0, lr = 0, pc = 0;
   std::uint32_t exception() const { return xpsr & 0x1FFu; }  // IPSR: 0 in thread mode
+  bool leaves_exception() const { return exception() != 0 && pc >= kExc_return; }
 };
 
 class Watch {

@@ -55,6 +55,7 @@ class CostInjection::Writer {
     for (std::size_t k = 0; k < operations.size(); ++k) {
       Operation& o = *operations[k];
       const int number = static_cast<int>(o.number);
+      const std::string_view helper = tcg::helper_name(o);
       if (number == op.st16 && !stored_) {
         take_off_budget(o);
       } else if (number == op.st32 && begun == 0 && stored_ && enough_ == nullptr) {
@@ -67,10 +68,10 @@ class CostInjection::Writer {
       } else if (number == op.instruction) {
         if (begun > 0) owe(*operations[k + 1], places_[begun]);
         ++begun;
-      } else if (tcg::helper_name(o) == kLazy_save) {
+      } else if (helper == kLazy_save) {
         owe(o, cost_.lazy_frame);
-      } else if (tcg::helper_name(o) == kUdiv || tcg::helper_name(o) == kSdiv) {
-        pay_for_quotient(o, tcg::helper_name(o) == kSdiv);
+      } else if (helper == kUdiv || helper == kSdiv) {
+        pay_for_quotient(o, helper == kSdiv);
       } else if (begun == cost_.each.size() && !left_ &&
                  (number == op.goto_block || number == op.exit_block ||
                   number == op.goto_pointer)) {

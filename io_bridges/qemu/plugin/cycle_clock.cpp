@@ -3,22 +3,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 namespace whirl::qemu {
 namespace {
 
-constexpr std::uint32_t kNo_floating = 1u << 4;                // of EXC_RETURN
 constexpr std::uint32_t kLspen = 1u << 30, kLspact = 1u << 0;  // of FPCCR
-constexpr std::uint32_t kExc_return = 0xFFFFFFE0u;
 constexpr std::uint32_t kSite_at_start = 1;
 
 cycles::Instruction read_instruction(const qemu_plugin_insn* insn) {
-  std::uint16_t half[2] = {};
-  const std::size_t size = qemu_plugin_insn_size(insn);
-  std::memcpy(half, qemu_plugin_insn_data(insn), std::min(size, sizeof half));
-  return cycles::decode(static_cast<std::uint32_t>(qemu_plugin_insn_vaddr(insn)), half[0], half[1],
-                        size == 4);
+  const Code code = code_of(insn);
+  return cycles::decode(static_cast<std::uint32_t>(qemu_plugin_insn_vaddr(insn)), code.first,
+                        code.second, code.wide);
 }
 
 }  // namespace
@@ -109,19 +104,20 @@ std::uint64_t CycleClock::core_cycles() const {
 
 void CycleClock::exception(const board::CoreState& before, const board::CoreState& after,
                            std::uint32_t fpccr) {
-  const bool returns = before.exception() != 0 && before.pc >= (kExc_return & ~1u);
+  const bool returns = before.leaves_exception();
   if (!returns && after.exception() == before.exception()) return;
   code_.refetch();
   double cycles = 0;
   if (returns && after.exception() == 0) {
     cycles = cycles::kException_return;
-    if ((before.pc & kNo_floating) == 0 && (fpccr & kLspact) == 0)
+    if (board::has_floating_frame(before.pc) && (fpccr & kLspact) == 0)
       cycles += cycles::kFloating_frame;
   } else if (returns) {
     cycles = cycles::kTail_chain;
   } else if (before.exception() == 0 || core_units() != entered_units_) {
     cycles = cycles::kException_entry;
-    if ((after.lr & kNo_floating) == 0 && (fpccr & kLspen) == 0) cycles += cycles::kFloating_frame;
+    if (board::has_floating_frame(after.lr) && (fpccr & kLspen) == 0)
+      cycles += cycles::kFloating_frame;
   }
   code_.owe(units(cycles));
   if (!returns) entered_units_ = core_units();

@@ -2,30 +2,12 @@
 #include "io_bridges/qemu/plugin/instruments.hpp"
 
 #include <cstdio>
-#include <cstring>
 
 namespace whirl::qemu {
 namespace {
 
 constexpr int kXpsr = 25;
 constexpr std::uint32_t kIpsr = 0x1FF;
-constexpr std::uint32_t kExcReturn = 0xFFFFFFE0u;
-
-struct Code {
-  std::uint16_t first = 0, second = 0;
-  bool wide = false;
-};
-
-Code code_of(const qemu_plugin_insn* insn) {
-  Code code;
-  const std::size_t size = qemu_plugin_insn_size(insn);
-  std::memcpy(&code.first, qemu_plugin_insn_data(insn), 2);
-  if (size == 4) {
-    std::memcpy(&code.second, static_cast<const char*>(qemu_plugin_insn_data(insn)) + 2, 2);
-  }
-  code.wide = size == 4;
-  return code;
-}
 
 bool is_wfi(const Code& code) {
   return !code.wide && code.first == 0xBF30;
@@ -144,7 +126,7 @@ void Instruments::reached(const Site& site) {
 void Instruments::enter_function(const Site& site) {
   const board::CoreState core = core_at(site);
   machine_.board().watch().enter_function(site.number, core);
-  if (core.lr >= kExcReturn) return;
+  if (core.lr >= board::kExc_return) return;
   if (return_sites_.insert(core.lr & ~1u).second) machine_.throw_code_away();
 }
 

@@ -17,7 +17,6 @@ namespace {
 
 constexpr int kSysTickException = 15;
 constexpr int kCoreRegisters = 16, kSp = 13, kLr = 14, kPc = 15, kXpsr = 25;
-constexpr std::uint32_t kExc_return = 0xFFFFFFE0u, kNo_floating = 1u << 4;
 constexpr std::uint32_t kFpccr = 0xF34;  // in the System Control Space
 constexpr int kRounds = 64;  // of a sleep before other work of the CPU's thread gets a turn
 
@@ -172,11 +171,11 @@ void Machine::take_exception() {
   anchor();
   const board::CoreState before = core_at(clock_->core_now());
   const auto fpccr = [this] { return system_control_->word(kFpccr); };
-  const bool leaves = before.exception() != 0 && before.pc >= kExc_return;
-  std::uint32_t floating = leaves && (before.pc & kNo_floating) == 0 ? fpccr() : 0;
+  const bool leaves = before.leaves_exception();
+  std::uint32_t floating = leaves && board::has_floating_frame(before.pc) ? fpccr() : 0;
   api_.arm_v7m_cpu_do_interrupt(cpu_);
   board::CoreState after = core_at(before.now);
-  if (!leaves && (after.lr & kNo_floating) == 0) floating = fpccr();
+  if (!leaves && board::has_floating_frame(after.lr)) floating = fpccr();
   clock_->exception(before, after, floating);
   after.now = clock_->core_now();
   board_.exception(before, after, [this](int number) { return core_register(number); });

@@ -5,6 +5,7 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 
 extern "C" {
 using qemu_plugin_id_t = std::uint64_t;
@@ -29,3 +30,22 @@ void qemu_plugin_register_vcpu_tb_trans_cb(qemu_plugin_id_t,
                                            void (*)(qemu_plugin_id_t, qemu_plugin_tb*));
 void qemu_plugin_register_flush_cb(qemu_plugin_id_t, void (*)(qemu_plugin_id_t));
 }
+
+namespace whirl::qemu {
+
+// An instruction's half-words; `second` is 0 in a narrow one.
+struct Code {
+  std::uint16_t first = 0, second = 0;
+  bool wide = false;
+};
+
+inline Code code_of(const qemu_plugin_insn* insn) {
+  Code code;
+  const char* bytes = static_cast<const char*>(qemu_plugin_insn_data(insn));
+  code.wide = qemu_plugin_insn_size(insn) == 4;
+  std::memcpy(&code.first, bytes, 2);
+  if (code.wide) std::memcpy(&code.second, bytes + 2, 2);
+  return code;
+}
+
+}  // namespace whirl::qemu

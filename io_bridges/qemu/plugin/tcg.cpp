@@ -46,8 +46,7 @@ struct Wanted {
   int Numbers::*number;
   const char* name;
 };
-constexpr Wanted kWanted[] = {{&Numbers::ld32, "ld_i32"},
-                              {&Numbers::st32, "st_i32"},
+constexpr Wanted kWanted[] = {{&Numbers::st32, "st_i32"},
                               {&Numbers::ld64, "ld_i64"},
                               {&Numbers::st64, "st_i64"},
                               {&Numbers::st16, "st16_i32"},

@@ -28,9 +28,9 @@ struct Operation {
 };
 
 struct Numbers {
-  int ld32 = -1, st32 = -1, ld64 = -1, st64 = -1, st16 = -1, add64 = -1, sub64 = -1, and64 = -1,
-      sar64 = -1, shl64 = -1, widen = -1, move32 = -1, sub32 = -1, add32 = -1, and32 = -1,
-      sar32 = -1, branch32 = -1, label = -1, instruction = -1, goto_block = -1, exit_block = -1,
+  int st32 = -1, ld64 = -1, st64 = -1, st16 = -1, add64 = -1, sub64 = -1, and64 = -1, sar64 = -1,
+      shl64 = -1, widen = -1, move32 = -1, sub32 = -1, add32 = -1, and32 = -1, sar32 = -1,
+      branch32 = -1, label = -1, instruction = -1, goto_block = -1, exit_block = -1,
       goto_pointer = -1, callback = -1, callback_end = -1, call = -1, leading_zeros32 = -1,
       xor32 = -1, multiply64 = -1;
 };
