@@ -11,6 +11,11 @@ Ticks since(Ticks now, Ticks then) {
   return static_cast<Ticks>(now - then);
 }
 
+// `back` sectors before where the next one is written: 1 is the last. Without a division.
+std::uint32_t sector_of(const std::array<Ticks, 6>& sectors, unsigned newest, unsigned back) {
+  return sectors[newest >= back ? newest - back : newest + 6u - back];
+}
+
 }  // namespace
 
 void Commutation::stop() {
@@ -61,9 +66,7 @@ Commutation::Order Commutation::on_commutated(Ticks now) {
 }
 
 void Commutation::note_sector(Ticks length) {
-  const auto last = [&](unsigned back) -> std::uint32_t {
-    return sectors_[(newest_ + 6u - back) % 6u];
-  };
+  const auto last = [&](unsigned back) { return sector_of(sectors_, newest_, back); };
   const std::uint32_t before = last(2) + last(3);
   braked_ = last(3) > 0 && (length + last(1)) * 64u > before * 65u;
   sectors_[newest_] = length;
@@ -196,7 +199,7 @@ Pace pace_of(const std::array<Ticks, 6>& sectors, std::uint8_t newest, std::uint
     if (length == 0) return {};
     pace.revolution += length;
   }
-  const auto last = [&](unsigned back) { return sectors[(newest + 6u - back) % 6u]; };
+  const auto last = [&](unsigned back) { return sector_of(sectors, newest, back); };
   const std::uint32_t two = last(1) + last(2), before = last(3) + last(4);
   pace.slowing = two * 64u > before * 65u || waited * 20u > two * 11u;
   pace.sector = two / 2u;

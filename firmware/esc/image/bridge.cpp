@@ -40,6 +40,14 @@ void lower_on(std::uint8_t phase) {
   }
 }
 
+void write_duty() {
+  TIM4::CCR1::write(duty_counts);
+  TIM4::CCR2::write(duty_counts);
+  TIM4::CCR3::write(duty_counts);
+  const std::uint32_t on = duty_counts < kShortest_on ? kShortest_on : duty_counts;
+  TIM4::CCR4::write(on - kSample_before_end);
+}
+
 // A disabled channel lets go of its pin's level: the pin is low by the port's own output then.
 void upper_only(std::uint8_t phase) {
   TIM4::CCER::write(kUpperEnable[phase] | TIM4::CC4E);
@@ -59,7 +67,7 @@ void start() {
   TIM4::CCMR2::write(TIM4::OC3M_PWM1 | TIM4::OC3PE | TIM4::OC4M_PWM2 | TIM4::OC4PE);
   TIM4::CR2::write(TIM4::MMS_OC4REF);
   TIM4::CCER::write(TIM4::CC4E);
-  set_duty(0);
+  write_duty();
   TIM4::EGR::write(TIM4::UG);
   TIM4::CR1::write(TIM4::ARPE | TIM4::CEN);
   for (unsigned pin : {6u, 7u, 8u}) GPIOB::configure(pin, kAlternate);
@@ -88,12 +96,10 @@ void apply(std::uint8_t step) {
 }
 
 void set_duty(std::uint32_t counts) {
-  duty_counts = counts > kPeriod ? kPeriod : counts;
-  TIM4::CCR1::write(duty_counts);
-  TIM4::CCR2::write(duty_counts);
-  TIM4::CCR3::write(duty_counts);
-  const std::uint32_t on = duty_counts < kShortest_on ? kShortest_on : duty_counts;
-  TIM4::CCR4::write(on - kSample_before_end);
+  const std::uint32_t wanted = counts > kPeriod ? kPeriod : counts;
+  if (wanted == duty_counts) return;  // at 20 kHz, four accesses to a slow bus
+  duty_counts = wanted;
+  write_duty();
 }
 
 std::uint32_t duty() {
