@@ -69,8 +69,9 @@ bool EventLog::add(const io::Batch& batch) {
           open_calls_ns[header.port].push_back(call.entry_ns);
           break;
         }
-        calls[header.port].push_back(
-            {call.entry_ns, header.t_ns, call.execution_ns, call.latency_ns});
+        calls[header.port].push_back({call.entry_ns, header.t_ns, call.execution_ns,
+                                      call.latency_ns, call.execution_cycles,
+                                      call.response_cycles});
         break;
       }
       case io::Kind::statistics:

@@ -28,6 +28,7 @@ struct CallRecord {
   std::int64_t return_ns = 0;
   std::int64_t execution_ns = 0;
   std::int64_t latency_ns = -1;  // of the interrupt that called it; -1: none
+  std::int64_t execution_cycles = -1, response_cycles = -1;  // -1: no code, or not known
 };
 
 struct BusyRecord {

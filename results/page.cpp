@@ -63,6 +63,9 @@ ordered_json stacks_of(const ordered_json& board) {
 std::string page_html(const Report& report, const TruthLog& truth) {
   auto data = ordered_json::parse(run_json(report));
   data["stacks"] = stacks_of(data["board"]);
+  data["watched"] = data["board"].is_object()
+                        ? data["board"].value("watched", ordered_json::array())
+                        : ordered_json::array();
   data.erase("board");
   data["step_s"] = static_cast<double>(truth.step_ns()) * 1e-9;
   data["signals"] = ordered_json::array();

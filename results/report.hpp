@@ -53,6 +53,10 @@ struct TaskRow {
   double execution_p50_s = 0, execution_p99_s = 0, execution_max_s = 0;
   double response_p99_s = 0, response_max_s = 0;
   double latency_max_s = 0;  // of the interrupts that called it; NaN: none did
+  double execution_min_s = 0;
+  // Of HCLK; NaN: no code, or not known.
+  double execution_min_cycles = 0, execution_p50_cycles = 0, execution_p99_cycles = 0,
+         execution_max_cycles = 0, response_max_cycles = 0;
 };
 
 struct FaultRow {

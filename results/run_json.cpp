@@ -46,12 +46,18 @@ ordered_json task(const TaskRow& row) {
           {"calls", row.calls},
           {"period_mean_s", number(row.period_mean_s)},
           {"period_max_s", number(row.period_max_s)},
+          {"execution_min_s", number(row.execution_min_s)},
           {"execution_p50_s", number(row.execution_p50_s)},
           {"execution_p99_s", number(row.execution_p99_s)},
           {"execution_max_s", number(row.execution_max_s)},
           {"response_p99_s", number(row.response_p99_s)},
           {"response_max_s", number(row.response_max_s)},
-          {"latency_max_s", number(row.latency_max_s)}};
+          {"latency_max_s", number(row.latency_max_s)},
+          {"execution_min_cycles", number(row.execution_min_cycles)},
+          {"execution_p50_cycles", number(row.execution_p50_cycles)},
+          {"execution_p99_cycles", number(row.execution_p99_cycles)},
+          {"execution_max_cycles", number(row.execution_max_cycles)},
+          {"response_max_cycles", number(row.response_max_cycles)}};
 }
 
 ordered_json host_times(const HostTimes& host) {

@@ -11,18 +11,37 @@ double seconds(std::int64_t ns) {
 
 results::TaskRow row_of(const std::string& name, const std::vector<results::CallRecord>& calls) {
   std::vector<std::int64_t> entries;
-  std::vector<double> execution, response, latency;
+  std::vector<double> execution, response, latency, execution_cycles, response_cycles;
   for (const results::CallRecord& call : calls) {
     entries.push_back(call.entry_ns);
     execution.push_back(seconds(call.execution_ns));
     response.push_back(seconds(call.return_ns - call.entry_ns));
     if (call.latency_ns >= 0) latency.push_back(seconds(call.latency_ns));
+    if (call.execution_cycles < 0) continue;
+    execution_cycles.push_back(static_cast<double>(call.execution_cycles));
+    response_cycles.push_back(static_cast<double>(call.response_cycles));
   }
   const auto period = metrics::distribution(metrics::periods_s(entries));
   const auto e = metrics::distribution(execution), r = metrics::distribution(response);
-  const double latency_max = metrics::distribution(latency).max;
-  return {name,  calls.size(), period.mean, period.max, e.p50,
-          e.p99, e.max,        r.p99,       r.max,      latency_max};
+  const auto cycles = metrics::distribution(execution_cycles);
+  results::TaskRow row;
+  row.name = name;
+  row.calls = calls.size();
+  row.period_mean_s = period.mean;
+  row.period_max_s = period.max;
+  row.execution_min_s = e.min;
+  row.execution_p50_s = e.p50;
+  row.execution_p99_s = e.p99;
+  row.execution_max_s = e.max;
+  row.response_p99_s = r.p99;
+  row.response_max_s = r.max;
+  row.latency_max_s = metrics::distribution(latency).max;
+  row.execution_min_cycles = cycles.min;
+  row.execution_p50_cycles = cycles.p50;
+  row.execution_p99_cycles = cycles.p99;
+  row.execution_max_cycles = cycles.max;
+  row.response_max_cycles = metrics::distribution(response_cycles).max;
+  return row;
 }
 
 }  // namespace

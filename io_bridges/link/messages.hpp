@@ -115,6 +115,8 @@ struct FunctionCall {
   std::int64_t execution_ns = 0;
   // Of the interrupt whose handler called it: from the request to the handler's first instruction.
   std::int64_t latency_ns = -1;  // -1: called from no interrupt, or from one that nobody requested
+  // Of HCLK, as it was; -1: not known, or no code of the core's.
+  std::int64_t execution_cycles = -1, response_cycles = -1;
 };
 
 struct InterruptLatency {

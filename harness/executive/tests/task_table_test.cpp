@@ -13,9 +13,9 @@ namespace {
 // an interrupt that waited 3 us, the second by one that did not wait, the third by none.
 TEST(TaskTable, HasARowForEachWatchedFunctionWithWhatItsCallsTook) {
   results::EventLog events;
-  events.calls[1] = {{1'000'000, 1'000'300, 100, 3'000},
-                     {3'000'000, 3'000'500, 200, 0},
-                     {7'000'000, 7'000'900, 400, -1}};
+  events.calls[1] = {{1'000'000, 1'000'300, 100, 3'000, 17, 50},
+                     {3'000'000, 3'000'500, 200, 0, 34, 84},
+                     {7'000'000, 7'000'900, 400, -1, 67, 151}};
   const auto rows = task_table({"none", "some", "other"}, events);
   ASSERT_EQ(rows.size(), 3u);
   EXPECT_EQ(rows[0].name, "none");
@@ -37,6 +37,12 @@ TEST(TaskTable, HasARowForEachWatchedFunctionWithWhatItsCallsTook) {
   EXPECT_TRUE(near(some.response_p99_s, 892e-9, tol));
   EXPECT_TRUE(near(some.response_max_s, 900e-9, tol));
   EXPECT_TRUE(near(some.latency_max_s, 3e-6, tol));
+  EXPECT_TRUE(near(some.execution_min_s, 100e-9, tol));
+  EXPECT_EQ(some.execution_min_cycles, 17.0);
+  EXPECT_EQ(some.execution_p50_cycles, 34.0);
+  EXPECT_TRUE(near(some.execution_p99_cycles, 66.34, tol));
+  EXPECT_EQ(some.execution_max_cycles, 67.0);
+  EXPECT_EQ(some.response_max_cycles, 151.0);
   events.calls[1].erase(events.calls[1].begin());
   EXPECT_EQ(task_table({"none", "some"}, events)[1].latency_max_s, 0.0);
 }

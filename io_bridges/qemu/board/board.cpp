@@ -20,7 +20,6 @@ constexpr std::uint32_t kPeripherals = 0x40000000, kPeripherals_size = 0x2000000
 constexpr double kLeastCycles = 0.8, kMostCycles = 3.0;  // per instruction, of a Cortex-M4
 constexpr Nanoseconds kSettled_ns = 100'000'000;         // a clock that stays so long is meant
 constexpr std::uint32_t kPage = 0x1000;
-constexpr std::uint32_t kSmallest_stack = 64;  // an exception's frame and a little
 constexpr std::uint32_t kSysTickException = 15, kFirstInterrupt = 16;
 constexpr std::uint32_t kHardFault = 3, kUsageFault = 6;
 constexpr std::uint32_t kCfsr = 0xD28, kHfsr = 0xD2C, kMmfar = 0xD34, kBfar = 0xD38;  // in SCS
@@ -37,8 +36,17 @@ Board::Board(Setup setup, io::Channel channel, Emulator& emulator)
     : setup_(std::move(setup)),
       channel_(std::move(channel)),
       emulator_(emulator),
-      watch_(happened_, [this](std::uint32_t address, void* to,
-                               std::size_t size) { return emulator_.peek(address, to, size); }),
+      watch_(
+          happened_,
+          [this](std::uint32_t address, void* to, std::size_t size) {
+            return emulator_.peek(address, to, size);
+          },
+          [this](std::uint32_t address, const CoreState& core) {
+            const Peek peek = [this](std::uint32_t from, void* to, std::size_t size) {
+              return emulator_.peek(from, to, size);
+            };
+            return call_path(setup_.image, peek, address, core.sp, core.exception() != 0);
+          }),
       chip_(make_chip(*setup_.part,
                       {events_, *this, *this, *this, [this](const io::Finding& f) { find(f); },
                        setup_.config.hse_Hz, setup_.config.lse_Hz, setup_.config.hse_start_ns})),
@@ -250,50 +258,6 @@ void Board::check_profile() {
                 clocks_told_.sysclk_Hz * 1e-6,
                 static_cast<long long>(setup_.config.ns_per_instruction), cycles);
   find({events_.now(), "board", text});
-}
-
-// The array that a stack's top ends or lies in, or its address.
-std::string Board::stack_name(std::uint32_t top) const {
-  const Symbol* array = setup_.image.object_at(top - 1);
-  if (array == nullptr) return hex(top);
-  const std::uint32_t end = array->address + array->size;
-  if (end - top < kSmallest_stack) return array->name;
-  return array->name + " up to +" + std::to_string(top - array->address);
-}
-
-nlohmann::json Board::task_stacks() const {
-  nlohmann::json list = nlohmann::json::array();
-  for (const StackUse& stack : watch_.stacks().task_stacks()) {
-    list.push_back({{"stack", stack_name(stack.top)},
-                    {"top", hex(stack.top)},
-                    {"used_bytes", stack.used_bytes}});
-  }
-  return list;
-}
-
-void Board::add_statistics() {
-  check_profile();
-  nlohmann::json list = nlohmann::json::array();
-  for (const auto& [address, touch] : unanswered_.touched()) {
-    list.push_back({{"address", hex(address)},
-                    {"by", setup_.image.describe(touch.pc)},
-                    {"t_ns", touch.t_ns},
-                    {"read", touch.read},
-                    {"written", touch.written},
-                    {"times", touch.times}});
-  }
-  const Peek peek = [this](std::uint32_t address, void* to, std::size_t size) {
-    return emulator_.peek(address, to, size);
-  };
-  nlohmann::json statistics = {{"unanswered", list},
-                               {"stack_used_bytes", stack_used(*setup_.part, peek)},
-                               {"slept_ns", emulator_.slept_ns()},
-                               {"hse_start_ns", setup_.config.hse_start_ns},
-                               {"ns_per_instruction", setup_.config.ns_per_instruction}};
-  if (watch_.stacks().count() > 1) statistics["task_stacks"] = task_stacks();
-  const std::string text = statistics.dump();
-  happened_.add(io::Kind::statistics, 0, events_.now(), text.data(),
-                static_cast<std::uint32_t>(text.size()));
 }
 
 void Board::finish(io::BoardState state) {

@@ -23,34 +23,62 @@ bool behind_a_call(const Peek& peek, std::uint32_t address) {
   return bl || blx;
 }
 
-void add(std::string& text, const Image& image, std::uint32_t address) {
-  if (!text.empty()) text += '\n';
-  text += image.describe(address);
-}
+// Lines of callers, innermost first.
+class Callers {
+ public:
+  Callers(const Image& image, const Peek& peek) : image_(image), peek_(peek) {}
+
+  void add(std::uint32_t address) {
+    if (!text_.empty()) text_ += '\n';
+    text_ += image_.describe(address);
+    ++frames_;
+  }
+  bool is_return_address(std::uint32_t word) const {
+    return (word & 1u) != 0 && image_.function_at(word - 3) != nullptr &&
+           behind_a_call(peek_, word & ~1u);
+  }
+  // Every word up the stack that points behind a call; not `known`, and
+  // of a handler no further than to what it interrupted.
+  void add_from_stack(std::uint32_t sp, std::uint32_t known, bool to_end_of_handler) {
+    for (std::uint32_t at = sp; at < sp + kSearch && frames_ < kFrames; at += 4) {
+      std::uint32_t word = 0;
+      if (!peek_(at, &word, sizeof word)) break;
+      if (to_end_of_handler && is_exc_return(word)) break;
+      if (is_return_address(word) && word != known) add(word - 3);  // an address within the call
+    }
+  }
+  const std::string& text() const { return text_; }
+
+ private:
+  // The values that there are (DDI 0403E table B1-8): a pushed LR of a handler's first function.
+  static bool is_exc_return(std::uint32_t word) {
+    const std::uint32_t kind = word | 0x10u;  // with or without the FPU's registers
+    return kind == 0xFFFFFFF1u || kind == 0xFFFFFFF9u || kind == 0xFFFFFFFDu;
+  }
+
+  const Image& image_;
+  const Peek& peek_;
+  std::string text_;
+  int frames_ = 0;
+};
 
 }  // namespace
 
 std::string backtrace(const Image& image, const Peek& peek, std::uint32_t pc, std::uint32_t lr,
                       std::uint32_t sp) {
-  std::string text;
-  add(text, image, pc);
-  int frames = 1;
-  const auto is_code = [&](std::uint32_t word) {
-    return (word & 1u) != 0 && image.function_at(word - 3) != nullptr &&
-           behind_a_call(peek, word & ~1u);
-  };
-  if (is_code(lr)) {
-    add(text, image, lr - 3);
-    ++frames;
-  }
-  for (std::uint32_t at = sp; at < sp + kSearch && frames < kFrames; at += 4) {
-    std::uint32_t word = 0;
-    if (!peek(at, &word, sizeof word)) break;
-    if (!is_code(word) || word == lr) continue;
-    add(text, image, word - 3);  // an address within the call
-    ++frames;
-  }
-  return text;
+  Callers callers(image, peek);
+  callers.add(pc);
+  if (callers.is_return_address(lr)) callers.add(lr - 3);
+  callers.add_from_stack(sp, lr, false);
+  return callers.text();
+}
+
+std::string call_path(const Image& image, const Peek& peek, std::uint32_t return_address,
+                      std::uint32_t sp, bool in_handler) {
+  Callers callers(image, peek);
+  callers.add(return_address - 2);
+  callers.add_from_stack(sp, return_address | 1u, in_handler);
+  return callers.text();
 }
 
 std::uint32_t touched_below_top(std::span<const std::uint8_t> memory, const std::uint8_t* before) {

@@ -39,7 +39,7 @@ void Watch::run_ends(Nanoseconds now) {
     for (const Context& context : *contexts) {
       for (const Call& call : context.calls) {
         happened_.add(io::Kind::function_call, call.number, now,
-                      io::FunctionCall{call.entry_ns, -1, context.latency_ns});
+                      io::FunctionCall{call.entry_ns, -1, context.latency_ns, -1, -1});
       }
     }
   }
@@ -51,8 +51,11 @@ Watch::Context& Watch::running() {
   return tasks_[stacks_.current()];
 }
 
-void Watch::run_until(Nanoseconds now) {
-  running().ran_ns += now - std::exchange(counted_until_ns_, now);
+void Watch::run_until(const CoreState& core) {
+  Spent& ran = running().ran;
+  ran.ns += core.now - counted_until_.ns;
+  ran.cycles += core.cycles - counted_until_.cycles;
+  counted_until_ = {core.now, core.cycles};
 }
 
 // Where thread mode is; if it loaded its stack pointer on the way, the time since then is of the stack
@@ -66,21 +69,33 @@ void Watch::see(const CoreState& core) {
       stacks_.loaded(core.sp, load == Load::from_memory);
     }
   }
-  run_until(core.now);
+  run_until(core);
 }
 
-void Watch::finish(const Context& context, const Call& call, Nanoseconds now) {
-  io::FunctionCall message;
-  message.entry_ns = call.entry_ns;
-  message.execution_ns = context.ran_ns - call.ran_before_ns;
-  message.latency_ns = context.latency_ns;
-  happened_.add(io::Kind::function_call, call.number, now, message);
+// `returns_to` 0: its handler ended without it.
+void Watch::finish(const Context& context, const Call& call, const CoreState& core,
+                   std::uint32_t returns_to) {
+  LongCall done;
+  done.entry_ns = call.entry_ns;
+  done.return_ns = core.now;
+  done.execution = {context.ran.ns - call.ran_before.ns,
+                    context.ran.cycles - call.ran_before.cycles};
+  done.response = {core.now - call.entry_ns, core.cycles - call.entry_cycles};
+  done.exception = context.exception;
+  happened_.add(io::Kind::function_call, call.number, core.now,
+                io::FunctionCall{call.entry_ns, done.execution.ns, context.latency_ns,
+                                 static_cast<std::int64_t>(done.execution.cycles),
+                                 static_cast<std::int64_t>(done.response.cycles)});
+  worst_.returned(call.number, std::move(done), call.exceptions_before, [&] {
+    return path_ && returns_to != 0 ? path_(returns_to, core) : std::string();
+  });
 }
 
 void Watch::enter_function(std::uint16_t number, const CoreState& core) {
   see(core);
   Context& context = running();
-  const Call call{number, return_address(core.lr), core.sp, core.now, context.ran_ns, loads_};
+  const Call call{number, return_address(core.lr), core.sp, core.now, core.cycles, context.ran,
+                  loads_, worst_.exceptions()};
   const auto known = std::find_if(context.calls.begin(), context.calls.end(), [&](const Call& c) {
     return c.return_address == call.return_address && c.sp == call.sp && c.number == number;
   });
@@ -97,7 +112,7 @@ void Watch::return_site(std::uint32_t address, const CoreState& core) {
     const Call call = context.calls[i];
     if (call.return_address != address || call.sp != core.sp) continue;
     context.calls.erase(context.calls.begin() + static_cast<std::ptrdiff_t>(i));
-    finish(context, call, core.now);
+    finish(context, call, core, address);
   }
 }
 
@@ -109,9 +124,9 @@ void Watch::stack_pointer_loads(const CoreState& core, bool may_be_new) {
 
 bool Watch::exception(const CoreState& before, const CoreState& after) {
   see(before);
-  counted_until_ns_ = after.now;
+  counted_until_ = {after.now, after.cycles};
   if (before.leaves_exception()) {
-    leave(before.now);
+    leave(before);
     return arrive(after);
   }
   if (after.exception() == before.exception()) return false;  // none was taken
@@ -123,13 +138,15 @@ bool Watch::exception(const CoreState& before, const CoreState& after) {
 void Watch::enter(const CoreState& core) {
   Context& entered = handlers_.emplace_back();
   entered.exception = core.exception();
+  entered.entered_ns = core.now;
   entered.latency_ns = take_latency(core);
 }
 
-void Watch::leave(Nanoseconds now) {
+void Watch::leave(const CoreState& core) {
   if (handlers_.empty()) return;
   const Context& left = handlers_.back();
-  for (std::size_t i = left.calls.size(); i-- > 0;) finish(left, left.calls[i], now);
+  for (std::size_t i = left.calls.size(); i-- > 0;) finish(left, left.calls[i], core, 0);
+  worst_.exception_ended(left.exception, left.entered_ns, left.ran);
   handlers_.pop_back();
 }
 
@@ -142,7 +159,7 @@ bool Watch::arrive(const CoreState& after) {
     enter(after);
     return true;
   }
-  while (!handlers_.empty() && handlers_.back().exception != after.exception()) leave(after.now);
+  while (!handlers_.empty() && handlers_.back().exception != after.exception()) leave(after);
   if (handlers_.empty()) stacks_.resumed(after.sp);
   return false;
 }

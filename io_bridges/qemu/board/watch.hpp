@@ -22,6 +22,7 @@
 #include "io_bridges/devices/event_queue.hpp"
 #include "io_bridges/link/messages.hpp"
 #include "io_bridges/qemu/board/stacks.hpp"
+#include "io_bridges/qemu/board/worst_calls.hpp"
 
 namespace whirl::board {
 
@@ -40,12 +41,17 @@ struct CoreState {
   std::uint32_t xpsr = 0;
   std::uint32_t sp = 0, lr = 0, pc = 0;
   std::uint32_t exception() const { return xpsr & 0x1FFu; }  // IPSR: 0 in thread mode
+  std::uint64_t cycles = 0;                                  // of HCLK since power-on
   bool leaves_exception() const { return exception() != 0 && pc >= kExc_return; }
 };
 
 class Watch {
  public:
-  Watch(io::Batch& happened, Peek peek) : happened_(happened), stacks_(std::move(peek)) {}
+  // How thread mode or a handler got to `address` with this stack pointer; callers, one per line.
+  using Path = std::function<std::string(std::uint32_t address, const CoreState& core)>;
+
+  Watch(io::Batch& happened, Peek peek, Path path = {})
+      : happened_(happened), stacks_(std::move(peek)), path_(std::move(path)) {}
 
   void enter_function(std::uint16_t number, const CoreState& core);
   void return_site(std::uint32_t address, const CoreState& core);
@@ -59,6 +65,7 @@ class Watch {
   void run_ends(Nanoseconds now);  // tells the calls that have not returned
 
   const Stacks& stacks() const { return stacks_; }
+  const WorstCalls& worst_calls() const { return worst_; }
 
  private:
   static constexpr std::size_t kExceptions = 256, kDeepest = 64;
@@ -66,31 +73,37 @@ class Watch {
   struct Call {
     std::uint16_t number = 0;
     std::uint32_t return_address = 0, sp = 0;
-    Nanoseconds entry_ns = 0, ran_before_ns = 0;
-    std::uint64_t loads_before = 0;
+    Nanoseconds entry_ns = 0;
+    std::uint64_t entry_cycles = 0;
+    Spent ran_before;
+    std::uint64_t loads_before = 0, exceptions_before = 0;
   };
   struct Context {
     std::uint32_t exception = 0;
-    Nanoseconds ran_ns = 0;
+    Nanoseconds entered_ns = 0;
+    Spent ran;
     Nanoseconds latency_ns = kNever;  // of its entry; kNever: not known
     std::vector<Call> calls;
   };
   enum class Load : std::uint8_t { none, by_move, from_memory };
 
   Context& running();
-  void run_until(Nanoseconds now);  // counts for the running context
+  void run_until(const CoreState& core);  // counts for the running context
   void see(const CoreState& core);
   void enter(const CoreState& core);
-  void leave(Nanoseconds now);
+  void leave(const CoreState& core);
   bool arrive(const CoreState& after);
   Nanoseconds take_latency(const CoreState& core);  // and tells it; kNever: not known
-  void finish(const Context& context, const Call& call, Nanoseconds now);
+  void finish(const Context& context, const Call& call, const CoreState& core,
+              std::uint32_t returns_to);
 
   io::Batch& happened_;
   Stacks stacks_;
   std::vector<Context> tasks_;     // by number of their stack
   std::vector<Context> handlers_;  // active exceptions, the running one last
-  Nanoseconds counted_until_ns_ = 0;
+  Spent counted_until_;
+  WorstCalls worst_;
+  Path path_;
   Load load_ = Load::none;  // of the stack pointer, not yet seen where to
   std::uint64_t loads_ = 0;
   std::array<Nanoseconds, kExceptions> raised_ns_ = filled();

@@ -18,6 +18,11 @@ namespace whirl::qemu {
 
 using io::Nanoseconds;
 
+struct Moment {
+  Nanoseconds now = 0;
+  std::uint64_t cycles = 0;  // of HCLK since power-on
+};
+
 class CoreClock {
  public:
   virtual ~CoreClock() = default;
@@ -29,13 +34,14 @@ class CoreClock {
                                                const std::vector<std::uint32_t>& sites) = 0;
   virtual void code_thrown_away() = 0;
   // Before that instruction, in the middle of translated code.
-  virtual Nanoseconds at(std::int64_t site) const = 0;
+  virtual Moment at(std::int64_t site) const = 0;
 
   // Where QEMU's clock may be read, which shows `now`.
   virtual void anchor(Nanoseconds now) = 0;
   virtual Nanoseconds core_now() const = 0;       // as of the last anchor
   virtual double ahead_ns() const = 0;            // of QEMU's clock, as of the last anchor
   virtual std::uint64_t core_cycles() const = 0;  // of HCLK since power-on, as of the last anchor
+  Moment moment() const { return {core_now(), core_cycles()}; }
 
   virtual void exception(const board::CoreState& before, const board::CoreState& after,
                          std::uint32_t fpccr) = 0;

@@ -57,16 +57,17 @@ std::vector<std::int64_t> CycleClock::translated(qemu_plugin_tb* block,
   const bool from_start = std::find(sites.begin(), sites.end(), 0u) != sites.end();
   code_.put(block, cost, from_start);
   std::vector<std::int64_t> ahead;
+  ahead.reserve(sites.size());
   for (const std::uint32_t site : sites) {
     ahead.push_back(CostInjection::ahead_at(cost, site) * 2 + (site == 0 ? kSite_at_start : 0));
   }
   return ahead;
 }
 
-Nanoseconds CycleClock::at(std::int64_t site) const {
+Moment CycleClock::at(std::int64_t site) const {
   std::int64_t now = (code_.count().now_ns() << kUnit_shift) + code_.debt() - (site >> 1);
   if ((site & kSite_at_start) != 0) now -= code_.stalled();
-  return (now + kUnits_per_ns / 2) >> kUnit_shift;
+  return {(now + kUnits_per_ns / 2) >> kUnit_shift, cycles_at(now)};
 }
 
 // All time that QEMU counts, it counts where we think: checked wherever its clock may be read.
@@ -79,9 +80,13 @@ void CycleClock::anchor(Nanoseconds now) {
   if (whole > 0 && std::abs(cycles - whole) < 0.25) take_edge(whole);
 }
 
-double CycleClock::cycles_since_edge() const {
+double CycleClock::cycles_since_edge(std::int64_t units) const {
   if (units_per_cycle_ <= 0.0) return 0.0;
-  return (static_cast<double>(core_units()) - edge_units_) / units_per_cycle_;
+  return (static_cast<double>(units) - edge_units_) / units_per_cycle_;
+}
+
+std::uint64_t CycleClock::cycles_at(std::int64_t units) const {
+  return edges_ + static_cast<std::uint64_t>(std::max(0.0, std::round(cycles_since_edge(units))));
 }
 
 void CycleClock::take_edge(double cycles) {
@@ -99,7 +104,7 @@ double CycleClock::ahead_ns() const {
 }
 
 std::uint64_t CycleClock::core_cycles() const {
-  return edges_ + static_cast<std::uint64_t>(std::max(0.0, std::round(cycles_since_edge())));
+  return cycles_at(core_units());
 }
 
 void CycleClock::exception(const board::CoreState& before, const board::CoreState& after,

@@ -31,7 +31,7 @@ class CycleClock final : public CoreClock {
   std::vector<std::int64_t> translated(qemu_plugin_tb* block,
                                        const std::vector<std::uint32_t>& sites) override;
   void code_thrown_away() override { code_.code_thrown_away(); }
-  Nanoseconds at(std::int64_t site) const override;
+  Moment at(std::int64_t site) const override;
   void anchor(Nanoseconds now) override;
   Nanoseconds core_now() const override;
   double ahead_ns() const override;
@@ -46,7 +46,9 @@ class CycleClock final : public CoreClock {
   std::int64_t units(double cycles) const;
   BlockCost cost_of(const std::vector<cycles::Instruction>& run) const;
   std::int64_t core_units() const { return (anchor_ns_ << kUnit_shift) + code_.debt(); }
-  double cycles_since_edge() const;
+  double cycles_since_edge(std::int64_t units) const;
+  double cycles_since_edge() const { return cycles_since_edge(core_units()); }
+  std::uint64_t cycles_at(std::int64_t units) const;
   void take_edge(double cycles);
 
   const cycles::Core core_;

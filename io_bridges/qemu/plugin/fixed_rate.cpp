@@ -13,7 +13,7 @@ std::vector<std::int64_t> FixedRate::translated(qemu_plugin_tb* block,
   return behind;
 }
 
-Nanoseconds FixedRate::at(std::int64_t behind) const {
+Nanoseconds FixedRate::time_at(std::int64_t behind) const {
   return anchor_ns_ + (static_cast<std::int64_t>(instructions_ - anchor_instructions_) - behind) *
                           ns_per_instruction_;
 }
@@ -23,9 +23,9 @@ void FixedRate::anchor(Nanoseconds now) {
   anchor_instructions_ = instructions_;
 }
 
-std::uint64_t FixedRate::core_cycles() const {
-  return cycles_ + static_cast<std::uint64_t>(static_cast<double>(anchor_ns_ - counted_since_ns_) *
-                                              1e-9 * hclk_Hz_);
+Moment FixedRate::moment_of(Nanoseconds time) const {
+  return {time, cycles_ + static_cast<std::uint64_t>(static_cast<double>(time - counted_since_ns_) *
+                                                     1e-9 * hclk_Hz_)};
 }
 
 bool FixedRate::retime(const board::CoreTiming& timing) {

@@ -18,17 +18,20 @@ class FixedRate final : public CoreClock {
   std::vector<std::int64_t> translated(qemu_plugin_tb* block,
                                        const std::vector<std::uint32_t>& sites) override;
   void code_thrown_away() override {}
-  Nanoseconds at(std::int64_t behind) const override;
+  Moment at(std::int64_t behind) const override { return moment_of(time_at(behind)); }
   void anchor(Nanoseconds now) override;
-  Nanoseconds core_now() const override { return at(0); }
+  Nanoseconds core_now() const override { return time_at(0); }
   double ahead_ns() const override { return 0; }
-  std::uint64_t core_cycles() const override;
+  std::uint64_t core_cycles() const override { return moment_of(anchor_ns_).cycles; }
   void exception(const board::CoreState&, const board::CoreState&, std::uint32_t) override {}
   void accessed(std::uint32_t, bool) override {}
   Nanoseconds slept(Nanoseconds from, Nanoseconds to) override { return to - from; }
   bool retime(const board::CoreTiming& timing) override;
 
  private:
+  Nanoseconds time_at(std::int64_t behind) const;
+  Moment moment_of(Nanoseconds time) const;
+
   const std::int64_t ns_per_instruction_;
   std::uint64_t instructions_ = 0;  // written by translated code
   std::uint64_t anchor_instructions_ = 0;

@@ -162,22 +162,25 @@ std::uint32_t Machine::core_register(int number) const {
   return value;
 }
 
-board::CoreState Machine::core_at(io::Nanoseconds now) const {
-  return {now, core_register(kXpsr), core_register(kSp), core_register(kLr), core_register(kPc)};
+board::CoreState Machine::core_at(const Moment& moment) const {
+  return {moment.now,         core_register(kXpsr), core_register(kSp),
+          core_register(kLr), core_register(kPc),   moment.cycles};
 }
 
 // Between two instructions, with all registers in place and QEMU's clock readable.
 void Machine::take_exception() {
   anchor();
-  const board::CoreState before = core_at(clock_->core_now());
+  const board::CoreState before = core_at(clock_->moment());
   const auto fpccr = [this] { return system_control_->word(kFpccr); };
   const bool leaves = before.leaves_exception();
   std::uint32_t floating = leaves && board::has_floating_frame(before.pc) ? fpccr() : 0;
   api_.arm_v7m_cpu_do_interrupt(cpu_);
-  board::CoreState after = core_at(before.now);
+  board::CoreState after = core_at(clock_->moment());
   if (!leaves && board::has_floating_frame(after.lr)) floating = fpccr();
   clock_->exception(before, after, floating);
-  after.now = clock_->core_now();
+  const Moment now = clock_->moment();
+  after.now = now.now;
+  after.cycles = now.cycles;
   board_.exception(before, after, [this](int number) { return core_register(number); });
 }
 

@@ -42,7 +42,7 @@ class Machine final : public board::Emulator {
   SystemControl& system_control() { return *system_control_; }
   // R0..R15 (0..15) and XPSR (25) as of the start of the current basic block.
   std::uint32_t core_register(int number) const;
-  board::CoreState core_at(io::Nanoseconds now) const;
+  board::CoreState core_at(const Moment& moment) const;
 
   // The core cannot go on, by the firmware's doing. Ends the process.
   [[noreturn]] void core_stopped(board::StoppedCore why);

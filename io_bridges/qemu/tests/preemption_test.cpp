@@ -69,6 +69,51 @@ TEST(Preemption, ResponseIsExecutionAndAllThatCameOnTop) {
   }
 }
 
+// The first call is as long as the second: the longest is the first.
+TEST(Preemption, TheLongestCallIsToldWithItsCallersAndWhatCameBetween) {
+  const std::vector<std::string> watch = {"work", "spin", "irq30_handler"};
+  const BoardRun run = run_for({image("preempted"), watch}, 1);
+  const auto statistics = run.of(io::Kind::statistics);
+  ASSERT_EQ(statistics.size(), 1u);
+  const auto said = nlohmann::json::parse(run.text_of(*statistics[0])).at("watched");
+  ASSERT_EQ(said.size(), watch.size());
+  const auto& work = said[0].at("worst_response");
+  EXPECT_EQ(said[0].at("name"), "work");
+  EXPECT_EQ(work.at("in"), "thread");
+  EXPECT_EQ(work.at("execution_ns"), 1017 * kInstruction_ns);
+  EXPECT_EQ(work.at("response_ns"), (1017 + 619 + 615 + 615 + 205) * kInstruction_ns);
+  const auto cycles = [](int instructions) {  // of 168 MHz
+    return instructions * static_cast<double>(kInstruction_ns) * 0.168;
+  };
+  EXPECT_NEAR(work.at("execution_cycles"), cycles(1017), 3);
+  const auto function = [](const nlohmann::json& call, std::size_t frame) {
+    const auto line = call.at("path").at(frame).get<std::string>();
+    return line.substr(0, line.find('+'));
+  };
+  ASSERT_EQ(work.at("path").size(), 2u) << work.dump();
+  EXPECT_EQ(function(work, 0), "main");
+  EXPECT_EQ(function(work, 1), "reset_handler");
+  // In order of their numbers, each with what it ran itself.
+  const int ran[] = {205, 615, 615, 619};
+  ASSERT_EQ(work.at("between").size(), 4u) << work.dump();
+  for (int i = 0; i < 4; ++i) {
+    const auto& one = work.at("between")[static_cast<std::size_t>(i)];
+    EXPECT_EQ(one.at("exception"), "exception " + std::to_string(44 + i) + " (irq" +
+                                       std::to_string(28 + i) + "_handler)");
+    EXPECT_EQ(one.at("times"), 1);
+    EXPECT_EQ(one.at("ran_ns"), ran[i] * kInstruction_ns);
+  }
+  const auto& spin = said[1].at("worst_execution");  // the first of 30 that are equal
+  EXPECT_EQ(spin.at("in"), "thread");
+  ASSERT_EQ(spin.at("path").size(), 3u) << spin.dump();
+  EXPECT_EQ(function(spin, 0), "work");
+  EXPECT_EQ(function(spin, 1), "main");
+  const auto& handler = said[2].at("worst_response");
+  EXPECT_EQ(handler.at("in"), "exception 46 (irq30_handler)");
+  EXPECT_TRUE(handler.at("path").empty());
+  EXPECT_EQ(handler.at("exceptions"), 1);
+}
+
 TEST(Rtos, TasksTakeTheirInstructionsWhoeverPreemptsThem) {
   auto calls = calls_of("rtos", {"work_fast", "work_slow"}, 100);
   EXPECT_GE(calls["work_fast"].size(), 48u);
