@@ -1,11 +1,13 @@
 #include "harness/cli/jobs.hpp"
 
+#include <sched.h>
 #include <signal.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstdio>
@@ -22,8 +24,30 @@ namespace {
 
 struct Child {
   const PlanChoice* plan = nullptr;
-  int output = -1;  // a nameless file in memory: no pipe that could fill up, no folder needed
+  std::size_t slot = 0;  // among those that run
+  int output = -1;       // a nameless file in memory: no pipe that could fill up, no folder needed
 };
+
+// A run is two processes that wait for each other in turn. Where there are not two cores for each job,
+// both stay on one: nobody is woken on another core, and what one has written is in the other's cache.
+// Two hovers at once on two cores: 4.0 s instead of 5.1.
+std::vector<int> cores_for(std::size_t jobs) {
+  cpu_set_t allowed;
+  std::vector<int> cores;
+  if (sched_getaffinity(0, sizeof allowed, &allowed) != 0) return cores;
+  for (int core = 0; core < CPU_SETSIZE; ++core) {
+    if (CPU_ISSET(core, &allowed)) cores.push_back(core);
+  }
+  if (2 * jobs <= cores.size()) cores.clear();
+  return cores;
+}
+
+void keep_to(int core) {
+  cpu_set_t only;
+  CPU_ZERO(&only);
+  CPU_SET(core, &only);
+  sched_setaffinity(0, sizeof only, &only);
+}
 
 std::vector<std::string> arguments(const PlanChoice& plan, const RunOptions& options) {
   std::vector<std::string> all{"whirl", "run", "--only", plan.name};
@@ -37,10 +61,11 @@ std::vector<std::string> arguments(const PlanChoice& plan, const RunOptions& opt
 }
 
 // In the child: nothing but the other program.
-[[noreturn]] void become(std::vector<std::string> words, int output, pid_t parent) {
+[[noreturn]] void become(std::vector<std::string> words, int output, pid_t parent, int core) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) _exit(3);  // it died before we asked
-  setpgid(0, 0);                      // a terminal's interrupt reaches it through the parent, once
+  if (core >= 0) keep_to(core);
+  setpgid(0, 0);  // a terminal's interrupt reaches it through the parent, once
   dup2(output, STDOUT_FILENO);
   dup2(output, STDERR_FILENO);
   std::vector<char*> argv = argv_of(words);
@@ -49,13 +74,13 @@ std::vector<std::string> arguments(const PlanChoice& plan, const RunOptions& opt
   _exit(3);
 }
 
-// 0: none could be started, errno says why.
-pid_t start(const PlanChoice& plan, const RunOptions& options, int output) {
+// 0: none could be started, errno says why. core: to keep to; negative: any.
+pid_t start(const PlanChoice& plan, const RunOptions& options, int output, int core) {
   const std::vector<std::string> words = arguments(plan, options);
   std::fflush(stdout);
   const pid_t parent = getpid();
   const pid_t pid = fork();
-  if (pid == 0) become(words, output, parent);
+  if (pid == 0) become(words, output, parent, core);
   return pid < 0 ? 0 : pid;
 }
 
@@ -85,7 +110,10 @@ int code_of(int status, const PlanChoice& plan) {
 class Jobs {
  public:
   Jobs(const std::vector<PlanChoice>& plans, const RunOptions& options, Tally& tally)
-      : plans_(plans), options_(options), tally_(tally) {}
+      : plans_(plans),
+        options_(options),
+        tally_(tally),
+        cores_(cores_for(static_cast<std::size_t>(options.jobs))) {}
 
   void run() {
     while (next_ < plans_.size() || !running_.empty()) {
@@ -105,9 +133,11 @@ class Jobs {
   bool start_next() {
     const PlanChoice& plan = plans_[next_];
     const int output = memfd_create("whirl-outcome", MFD_CLOEXEC);
-    const pid_t pid = output < 0 ? 0 : start(plan, options_, output);
+    const std::size_t slot = free_slot();
+    const int core = cores_.empty() ? -1 : cores_[slot % cores_.size()];
+    const pid_t pid = output < 0 ? 0 : start(plan, options_, output, core);
     if (pid != 0) {
-      running_[pid] = {&plan, output};
+      running_[pid] = {&plan, slot, output};
       ++next_;
       return true;
     }
@@ -119,6 +149,16 @@ class Jobs {
     tally_.add(3);
     ++next_;
     return true;
+  }
+
+  std::size_t free_slot() const {
+    const auto taken = [this](std::size_t slot) {
+      return std::any_of(running_.begin(), running_.end(),
+                         [slot](const auto& child) { return child.second.slot == slot; });
+    };
+    std::size_t slot = 0;
+    while (taken(slot)) ++slot;
+    return slot;
   }
 
   void wait_for_one() {
@@ -144,6 +184,7 @@ class Jobs {
   const std::vector<PlanChoice>& plans_;
   const RunOptions& options_;
   Tally& tally_;
+  const std::vector<int> cores_;  // for the slots; empty: each job goes where it likes
   std::map<pid_t, Child> running_;
   std::size_t next_ = 0;
   bool passed_on_ = false;
