@@ -229,6 +229,12 @@ void Machine::end() {
 
 void Machine::park_main_loop() {
   if (!api_.runstate_is_running()) return api_.qemu_bh_schedule(parking_);  // still setting up
+  // A loop that found this bottom half due before it polled has left word that it polls, and every change
+  // of a timer would write to its eventfd to wake it. What it does after a poll takes the word back.
+  for (AioContext* context : {api_.qemu_get_aio_context(), api_.iohandler_get_aio_context()}) {
+    GlibSource* source = api_.aio_get_g_source(context);
+    source->functions->check(source);
+  }
   api_.qemu_mutex_unlock_iothread();
   for (;;) pause();  // the process ends by end(), or by the harness
 }

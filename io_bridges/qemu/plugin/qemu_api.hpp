@@ -20,6 +20,7 @@ struct Object;  // QOM
 struct Irq;     // struct IRQState
 struct Cpu;     // CPUState
 struct AddressSpace;
+struct AioContext;
 struct Error;
 
 struct alignas(16) MemoryRegion {
@@ -27,6 +28,17 @@ struct alignas(16) MemoryRegion {
 };
 struct alignas(16) Timer {
   char opaque[256];
+};
+// GSource of GLib 2 (gmain.h), as far as it is public.
+struct GlibSource;
+struct GlibSourceFunctions {
+  int (*prepare)(GlibSource*, int* timeout);
+  int (*check)(GlibSource*);
+};
+struct GlibSource {
+  void* callback_data;
+  void* callback_functions;
+  const GlibSourceFunctions* functions;
 };
 struct Attributes {  // MemTxAttrs, a 32-bit bit field; 0: privileged, non-secure
   std::uint32_t bits;
@@ -116,6 +128,9 @@ constexpr unsigned kWord = 2;     // MO_32, little endian
   F(runstate_is_running, bool, (void))                                                             \
   F(qemu_bh_new_full, void*, (void (*)(void*), void*, const char*, void* no_guard))                \
   F(qemu_bh_schedule, void, (void*))                                                               \
+  F(qemu_get_aio_context, AioContext*, (void))                                                     \
+  F(iohandler_get_aio_context, AioContext*, (void))                                                \
+  F(aio_get_g_source, GlibSource*, (AioContext*))                                                  \
   F(qemu_devices_reset, void, (int))                                                               \
   F(qemu_mutex_lock_iothread_impl, void, (const char*, int))                                       \
   F(qemu_mutex_unlock_iothread, void, (void))                                                      \
