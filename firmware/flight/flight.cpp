@@ -12,6 +12,7 @@ constexpr float kHeadingShareGround = 1.0f, kHeadingShareFlight = 0.1f;
 constexpr float kSpinUp_s = 1.5f, kLiftTime_s = 0.8f, kAirborne_m = 0.06f;
 constexpr float kTipped_cos = 0.5f;       // 60 degrees
 constexpr float kTiltToArm_cos = 0.985f;  // 10 degrees
+constexpr float kHighest_m = 10.0f;       // of a take-off
 constexpr float kAboveGround_m = 0.3f;    // a target below that does not mean flight
 constexpr std::uint16_t kIdle = 1;        // the lowest set-point that turns a rotor
 
@@ -49,6 +50,8 @@ const char* text_of(Reason reason) {
       return "commanded";
     case Reason::wrong_state:
       return "not in this state";
+    case Reason::height_out_of_range:
+      return "height out of range";
   }
   return "";
 }
@@ -139,7 +142,7 @@ Reason Flight::disarm() {
 
 Reason Flight::take_off(float height_m) {
   if (state_ != FlightState::armed && state_ != FlightState::flying) return Reason::wrong_state;
-  if (!(height_m > kAboveGround_m && height_m < 10.0f)) return Reason::commanded;
+  if (!(height_m > kAboveGround_m && height_m < kHighest_m)) return Reason::height_out_of_range;
   if (state_ == FlightState::armed) {
     target_W_m_ = ground_W_m_;
     target_yaw_rad_ = yaw_of(attitude_.q_WB());

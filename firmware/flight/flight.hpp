@@ -38,6 +38,7 @@ enum class Reason : std::uint8_t {  // why a command was refused, or a flight en
   landed,
   commanded,
   wrong_state,
+  height_out_of_range,
 };
 const char* text_of(Reason reason);
 

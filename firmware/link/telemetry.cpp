@@ -23,7 +23,7 @@ AckResult result_of(Reason reason) {
     case Reason::none:
       return kAccepted;
     case Reason::wrong_state:
-    case Reason::commanded:
+    case Reason::height_out_of_range:
       return kDenied;
     default:
       return kTemporarilyRejected;

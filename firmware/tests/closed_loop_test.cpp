@@ -214,5 +214,17 @@ TEST(Flight, RefusesToArmAndSaysWhy) {
   EXPECT_EQ(flight.arm(), Reason::esc_silent);
 }
 
+TEST(Flight, RefusesATakeOffToNoSensibleHeightByName) {
+  Flight flight;
+  VehicleModel vehicle({});
+  vehicle.run(flight, 3.0);
+  ASSERT_EQ(flight.arm(), Reason::none);
+  for (const float height_m : {0.0f, 0.3f, -1.0f, 10.0f, 1e9f, std::nanf("")}) {
+    EXPECT_EQ(flight.take_off(height_m), Reason::height_out_of_range) << height_m;
+    EXPECT_EQ(flight.state(), FlightState::armed);
+  }
+  EXPECT_EQ(flight.take_off(0.31f), Reason::none);
+}
+
 }  // namespace
 }  // namespace fw::test
