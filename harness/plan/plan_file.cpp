@@ -22,7 +22,6 @@ Result<Plan> read_plan(const lua::Table& t, std::string name, const std::string&
   plan.board = t.text_or("board", "px4fmu_v1");
   plan.vehicle = t.text_or("vehicle", "");
   if (t.has("stand")) plan.stand = t.table("stand");
-  if (t.has("world")) plan.world = t.table("world");
   if (t.has("vehicle") == t.has("stand")) {
     t.refuse("vehicle", "a plan has a vehicle or a stand, one of the two");
   }
@@ -31,8 +30,8 @@ Result<Plan> read_plan(const lua::Table& t, std::string name, const std::string&
   plan.seed = static_cast<std::uint64_t>(t.integer_or("seed", 1, 0));
   plan.timeout_ns = t.duration_ns_or("timeout", kDefaultTimeout_ns);
   plan.may_reset = t.flag_or("may_reset", false);
-  // What the world is made of is read (and its unknown keys refused) by who makes the world.
-  if (auto good = t.finish_except({"stand", "world"}); !good) return good.error();
+  // What the stand is made of is read (and its unknown keys refused) by who makes it.
+  if (auto good = t.finish_except({"stand"}); !good) return good.error();
   return plan;
 }
 

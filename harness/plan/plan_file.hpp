@@ -1,7 +1,7 @@
 // A plan file: Lua that declares one or more plans, each with what it needs and a function to run.
 //
 //   plan "hover" { image = "flight", board = "px4fmu_v1", vehicle = "hp_quad", tags = { "quick" },
-//                  seed = 1, timeout = "60 s", watch = { "fw::imu_task" }, world = { ... },
+//                  seed = 1, timeout = "60 s", watch = { "fw::imu_task" },
 //                  may_reset = false,
 //                  run = function(t) ... end }
 //   Stand    instead of vehicle: stand = { prop = "hk_10x4.5", battery = "4s_2200" }
@@ -26,7 +26,7 @@ struct Plan {
   std::uint64_t seed = 1;
   std::int64_t timeout_ns = 0;
   bool may_reset = false;  // by a watchdog, without failing the plan
-  std::optional<lua::Table> stand, world;
+  std::optional<lua::Table> stand;
   int run_ref = 0;  // in the file's Lua registry
 
   bool has_tag(const std::string& tag) const;

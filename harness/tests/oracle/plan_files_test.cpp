@@ -35,7 +35,6 @@ TEST(PlanFile, WhatIsNotSaidHasItsDefault) {
   EXPECT_EQ(plan.board, "px4fmu_v1");
   EXPECT_EQ(plan.vehicle, "v");
   EXPECT_FALSE(plan.stand);
-  EXPECT_FALSE(plan.world);
   EXPECT_EQ(plan.seed, 1u);
   EXPECT_EQ(plan.timeout_ns, 120'000'000'000);
   EXPECT_FALSE(plan.may_reset);
@@ -47,14 +46,13 @@ TEST(PlanFile, WhatIsNotSaidHasItsDefault) {
 }
 
 TEST(PlanFile, WhatIsSaidIsTaken) {
-  const Loaded loaded = load(with("stand = { prop = 'x' }, world = {}, board = 'b', seed = 0, "
+  const Loaded loaded = load(with("stand = { prop = 'x' }, board = 'b', seed = 0, "
                                   "timeout = '1500 ms', may_reset "
                                   "= true, tags = { 'quick', 'slow' }, watch = { 'f', 'g' }") +
                              "\n" + with("vehicle = 'v', seed = 7", "q"));
   ASSERT_EQ(loaded.plans.size(), 2u) << loaded.error;
   const Plan& plan = loaded.plans[0];
   EXPECT_TRUE(plan.stand);
-  EXPECT_TRUE(plan.world);
   EXPECT_EQ(plan.board, "b");
   EXPECT_EQ(plan.seed, 0u);
   EXPECT_EQ(plan.timeout_ns, 1'500'000'000);
@@ -93,6 +91,7 @@ TEST(PlanFile, RefusesWhatIsNoPlan) {
       {with("vehicle = 'v', seed = -1"), "seed"},
       {with("vehicle = 'v', timeout = '5 N'"), "'5 N' is a force, not a time"},
       {with("vehicle = 'v', colour = 1"), "unknown key 'colour'"},
+      {with("vehicle = 'v', world = { wind = '2 m/s' }"), "unknown key 'world'"},
       {"local x = {} x.x = x " + with("vehicle = 'v', x = x"), "nested too deep"},
       {"plan 'a' { vehicle = 'v', run = function(t) end }", "image"},
   };
