@@ -111,7 +111,7 @@ board::CoreState Instruments::core_at(const Site& site) const {
 void Instruments::reached(const Site& site) {
   switch (site.kind) {
     case Kind::sleep:
-      return machine_.before_sleep();
+      return machine_.before_sleep(machine_.clock().at(site.time).now);
     case Kind::function:
       return enter_function(site);
     case Kind::return_site:

@@ -245,7 +245,12 @@ void Machine::park_main_loop() {
 // idle" until all is accounted; the work itself then runs the board's events in the CPU's thread.
 // QEMU's clock stays behind meanwhile (moving it costs more than most events) and catches up before
 // anything reaches the core: interrupt lines and resets wait in `deferred_` until then.
-void Machine::before_sleep() {
+void Machine::before_sleep(io::Nanoseconds now) {
+  system_control_->before_sleep(now);
+  work_before_sleep();
+}
+
+void Machine::work_before_sleep() {
   api_.async_run_on_cpu(
       cpu_, [](Cpu*, WorkData self) { static_cast<Machine*>(self.pointer)->sleep(); },
       WorkData{.pointer = this});
@@ -265,7 +270,7 @@ void Machine::sleep() {
   wake();
   // Idle still: other work of this thread gets a turn, then the sleep goes on.
   if (api_.cpu_thread_is_idle(cpu_)) {
-    before_sleep();
+    work_before_sleep();
   } else {
     arm(events.next_deadline());
   }

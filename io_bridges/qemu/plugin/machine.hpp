@@ -34,7 +34,7 @@ class Machine final : public board::Emulator {
   // The machine exists, nothing has run: map, load, power on.
   Result<Done> build(const std::string& versions);
   // From the execution callback of a WFI: see the file's end.
-  void before_sleep();
+  void before_sleep(io::Nanoseconds now);
 
   board::Board& board() { return board_; }
   const Api& api() const { return api_; }
@@ -101,6 +101,7 @@ class Machine final : public board::Emulator {
     bool level;
     stm32::ResetCause cause;
   };
+  void work_before_sleep();
   void sleep();
   bool catch_up();
   void hold();

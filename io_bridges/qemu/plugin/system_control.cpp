@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "io_bridges/qemu/plugin/system_control.hpp"
 
+#include <utility>
+
 namespace whirl::qemu {
 namespace {
 
@@ -8,7 +10,8 @@ namespace {
 constexpr std::uint32_t kBase = 0xE000E000;
 constexpr std::uint32_t kSysTick = 0x010, kSysTick_end = 0x020;
 constexpr std::uint32_t kIpr = 0x400, kIpr_end = 0x4F0;
-constexpr std::uint32_t kAircr = 0xD0C, kShpr = 0xD18, kShpr_end = 0xD24;
+constexpr std::uint32_t kAircr = 0xD0C, kScr = 0xD10, kShpr = 0xD18, kShpr_end = 0xD24;
+constexpr std::uint32_t kSleep_on_exit = 1u << 1, kSleep_deep = 1u << 2, kSend_event = 1u << 4;
 constexpr std::uint32_t kDemcr = 0xDFC;
 constexpr std::uint32_t kTrcena = 1u << 24;
 constexpr std::uint32_t kVectKey = 0x05FA, kSysResetReq = 1u << 2;
@@ -63,6 +66,10 @@ std::uint32_t SystemControl::read(std::uint32_t offset, std::uint64_t& value, un
     value = demcr_;
     return kOk;
   }
+  if (offset == kScr) {  // QEMU keeps none of its bits
+    value = scr_;
+    return kOk;
+  }
   const std::uint32_t result =
       api_.memory_region_dispatch_read(nvic_, offset, &value, memory_op(size), attributes);
   if (is_priority(offset)) value &= 0xF0F0F0F0u;
@@ -81,12 +88,31 @@ std::uint32_t SystemControl::write(std::uint32_t offset, std::uint64_t value, un
     board_.cycle_counter().set_trace_enabled((demcr_ & kTrcena) != 0);
     return kOk;
   }
+  if (offset == kScr) {
+    scr_ = static_cast<std::uint32_t>(value) & (kSleep_on_exit | kSleep_deep | kSend_event);
+    if ((scr_ & kSleep_on_exit) != 0) {
+      report_once(on_exit_reported_, board_.events().now(),
+                  "SLEEPONEXIT is set: not modelled, handlers return to thread mode");
+    }
+    return kOk;
+  }
   if (offset == kAircr && size == 4 && (value >> 16) == kVectKey && (value & kSysResetReq) != 0) {
     reset_request_();
     return kOk;
   }
   if (is_priority(offset)) value |= kStoredZero;
   return api_.memory_region_dispatch_write(nvic_, offset, value, memory_op(size), attributes);
+}
+
+void SystemControl::before_sleep(io::Nanoseconds now) {
+  if ((scr_ & kSleep_deep) == 0) return;
+  report_once(deep_reported_, now,
+              "WFI with SLEEPDEEP set: Stop and Standby are not modelled, the core just sleeps");
+}
+
+void SystemControl::report_once(bool& reported, io::Nanoseconds now, const char* what) {
+  if (std::exchange(reported, true)) return;
+  board_.find({now, "core", what});
 }
 
 std::uint32_t SystemControl::word(std::uint32_t offset) {
@@ -103,7 +129,7 @@ void SystemControl::core_was_reset() {
   };
   clear(kIpr, kIpr_end);
   clear(kShpr, kShpr_end);
-  demcr_ = 0;
+  demcr_ = scr_ = 0;
 }
 
 }  // namespace whirl::qemu

@@ -2,7 +2,7 @@
 //
 // The System Control Space (0xE000E000, 4 KiB) as the part has it, in front of QEMU's NVIC.
 //
-//   Here       SysTick (the board's own), DEMCR, four priority bits, SYSRESETREQ
+//   Here       SysTick (the board's own), DEMCR, SCR, four priority bits, SYSRESETREQ
 //   Passed on  everything else, to QEMU's nvic_sysregs
 //   Priority   the part stores the upper four bits. Stored with the lower ones set, a mask in
 //              BASEPRI acts as on the part whether or not its own lower bits are set; reads mask
@@ -23,7 +23,8 @@ class SystemControl {
                 std::function<void(std::uint32_t address)> accessed);
 
   void map(MemoryRegion* parent, MemoryRegion& region);
-  void core_was_reset();  // priorities back to the stored form of 0
+  void core_was_reset();                   // priorities back to the stored form of 0
+  void before_sleep(io::Nanoseconds now);  // reports the kind of sleep that is not modelled, once
 
   std::uint32_t word(std::uint32_t offset);  // of QEMU's NVIC, from 0xE000E000
 
@@ -38,7 +39,9 @@ class SystemControl {
   MemoryRegion* nvic_;
   std::function<void()> reset_request_;
   std::function<void(std::uint32_t)> accessed_;
-  std::uint32_t demcr_ = 0;
+  void report_once(bool& reported, io::Nanoseconds now, const char* what);
+  std::uint32_t demcr_ = 0, scr_ = 0;
+  bool deep_reported_ = false, on_exit_reported_ = false;
 };
 
 }  // namespace whirl::qemu

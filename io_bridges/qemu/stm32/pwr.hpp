@@ -2,7 +2,7 @@
 //
 //   Source    RM0090 chapter 5.4
 //   PVDO      1 while VDD is below the chosen threshold; also EXTI line 16
-//   Left out  Stop and Standby (a finding when SLEEPDEEP is prepared with PDDS is the plug-in's)
+//   Left out  Stop and Standby: the plug-in reports a WFI with SLEEPDEEP
 #pragma once
 #include "io_bridges/qemu/stm32/word_block.hpp"
 

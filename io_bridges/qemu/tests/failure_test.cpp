@@ -67,6 +67,20 @@ TEST(Failure, CodeInMemoryThatThePartCannotFetchFromIsSaidOnce) {
   EXPECT_FALSE(run_for({image("idle"), {}}, 2).found("CCM"));
 }
 
+TEST(Failure, ASleepThatIsNotModelledIsSaidOnce) {
+  const BoardRun run = run_for({image("deep_sleep"), {}}, 2);
+  EXPECT_EQ(run.said(), (std::vector<std::uint32_t>{4, 2}));  // SCR keeps what is there to keep
+  int deep = 0, on_exit = 0;
+  for (const Message* finding : run.of(io::Kind::finding)) {
+    deep += run.text_of(*finding).find("WFI with SLEEPDEEP") != std::string::npos ? 1 : 0;
+    on_exit += run.text_of(*finding).find("SLEEPONEXIT is set") != std::string::npos ? 1 : 0;
+  }
+  EXPECT_EQ(deep, 1);
+  EXPECT_EQ(on_exit, 1);
+  const BoardRun light = run_for({image("sleeper"), {}}, 2);
+  EXPECT_FALSE(light.found("SLEEPDEEP") || light.found("SLEEPONEXIT"));
+}
+
 TEST(Failure, VectorsAmongRegistersEndInALockUp) {
   const BoardRun run = run_for({image("lost_stack5"), {}}, 2);
   EXPECT_EQ(run.error.what, "");
