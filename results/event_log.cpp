@@ -101,8 +101,16 @@ bool EventLog::add(const io::Batch& batch) {
       case io::Kind::shoot_through:
       case io::Kind::uart_delivered:
         break;  // truth.csv, the bus log and the findings have them
-      case io::Kind::interrupt_latency:
-        break;  // goes with the calls of the handler
+      case io::Kind::interrupt_latency: {
+        const std::int64_t took_ns = header.t_ns - reader.as<io::InterruptLatency>().raised_ns;
+        LatencyRecord& record = latencies[header.port];
+        ++record.count;
+        record.sum_ns += took_ns;
+        if (took_ns <= record.max_ns && record.count > 1) break;
+        record.max_ns = took_ns;
+        record.max_at_ns = header.t_ns;
+        break;
+      }
     }
   }
   return reader.complete();

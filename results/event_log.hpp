@@ -31,6 +31,12 @@ struct CallRecord {
   std::int64_t execution_cycles = -1, response_cycles = -1;  // -1: no code, or not known
 };
 
+// Of one exception's requests, from the line to the first instruction of the handler.
+struct LatencyRecord {
+  std::size_t count = 0;
+  std::int64_t sum_ns = 0, max_ns = 0, max_at_ns = 0;  // at: the handler's first instruction
+};
+
 struct BusyRecord {
   std::int64_t from_ns = 0, to_ns = 0, busy_ns = 0;
 };
@@ -73,6 +79,7 @@ class EventLog {
   std::vector<BusRecord> bus;
   std::vector<UartRecord> uart;
   std::map<std::uint16_t, std::vector<CallRecord>> calls;            // by watch number
+  std::map<std::uint16_t, LatencyRecord> latencies;                  // by exception number
   std::map<std::uint16_t, std::vector<std::int64_t>> open_calls_ns;  // entries: never returned
   std::map<std::uint16_t, std::vector<std::int64_t>> data_ready_ns;  // by device number
   std::map<std::uint32_t, std::int64_t> faults_applied_ns;           // first, by fault number

@@ -59,6 +59,14 @@ struct TaskRow {
          execution_max_cycles = 0, response_max_cycles = 0;
 };
 
+// An exception that was requested, over the whole run.
+struct InterruptRow {
+  std::uint32_t exception = 0;  // 16 and above: interrupt 0 and above
+  std::string handler;          // empty: not known
+  std::size_t requests = 0;
+  double latency_mean_s = 0, latency_max_s = 0, latency_max_at_s = 0;
+};
+
 struct FaultRow {
   std::string kind;
   std::string target;  // "i2c3 0x2A"
@@ -111,6 +119,7 @@ struct Report {
   std::vector<Expectation> expectations;
   std::vector<Histogram> histograms;
   std::vector<TaskRow> tasks;
+  std::vector<InterruptRow> interrupts;
   std::vector<FaultRow> faults;
   std::vector<Note> findings;
   std::vector<Note> log;

@@ -60,6 +60,15 @@ ordered_json task(const TaskRow& row) {
           {"response_max_cycles", number(row.response_max_cycles)}};
 }
 
+ordered_json interrupt(const InterruptRow& row) {
+  return {{"exception", row.exception},
+          {"handler", row.handler},
+          {"requests", row.requests},
+          {"latency_mean_s", number(row.latency_mean_s)},
+          {"latency_max_s", number(row.latency_max_s)},
+          {"latency_max_at_s", number(row.latency_max_at_s)}};
+}
+
 ordered_json host_times(const HostTimes& host) {
   return {{"total_s", host.total_s},
           {"start_s", host.start_s},
@@ -103,6 +112,8 @@ std::string run_json(const Report& r) {
   for (const Expectation& e : r.expectations) out["expectations"].push_back(expectation(e));
   out["tasks"] = ordered_json::array();
   for (const TaskRow& row : r.tasks) out["tasks"].push_back(task(row));
+  out["interrupts"] = ordered_json::array();
+  for (const InterruptRow& row : r.interrupts) out["interrupts"].push_back(interrupt(row));
   out["faults"] = ordered_json::array();
   for (const FaultRow& f : r.faults) {
     out["faults"].push_back(

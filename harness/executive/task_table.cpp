@@ -1,5 +1,7 @@
 #include "harness/executive/task_table.hpp"
 
+#include <nlohmann/json.hpp>
+
 #include "harness/metrics/timing.hpp"
 
 namespace whirl {
@@ -54,6 +56,26 @@ std::vector<results::TaskRow> task_table(const std::vector<std::string>& watch,
     rows.push_back(row_of(watch[number], calls == events.calls.end()
                                              ? std::vector<results::CallRecord>{}
                                              : calls->second));
+  }
+  return rows;
+}
+
+std::vector<results::InterruptRow> interrupt_table(const results::EventLog& events,
+                                                   const std::string& statistics_json) {
+  const auto board = nlohmann::json::parse(statistics_json, nullptr, false);
+  const auto handlers =
+      board.is_object() ? board.value("handlers", nlohmann::json::object()) : nlohmann::json();
+  std::vector<results::InterruptRow> rows;
+  for (const auto& [exception, record] : events.latencies) {
+    results::InterruptRow row;
+    row.exception = exception;
+    const auto handler = handlers.find(std::to_string(exception));
+    if (handler != handlers.end() && handler->is_string()) row.handler = *handler;
+    row.requests = record.count;
+    row.latency_mean_s = seconds(record.sum_ns) / static_cast<double>(record.count);
+    row.latency_max_s = seconds(record.max_ns);
+    row.latency_max_at_s = seconds(record.max_at_ns);
+    rows.push_back(std::move(row));
   }
   return rows;
 }

@@ -1,4 +1,4 @@
-// The watched functions of a run, one row each, over its whole length.
+// The watched functions and the exceptions of a run, one row each, over its whole length.
 #pragma once
 #include <string>
 #include <vector>
@@ -10,5 +10,9 @@ namespace whirl {
 
 std::vector<results::TaskRow> task_table(const std::vector<std::string>& watch,
                                          const results::EventLog& events);
+
+// The exceptions that were requested. statistics_json: the board's own words, which name the handlers.
+std::vector<results::InterruptRow> interrupt_table(const results::EventLog& events,
+                                                   const std::string& statistics_json);
 
 }  // namespace whirl

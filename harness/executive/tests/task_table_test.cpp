@@ -47,5 +47,29 @@ TEST(TaskTable, HasARowForEachWatchedFunctionWithWhatItsCallsTook) {
   EXPECT_EQ(task_table({"none", "some"}, events)[1].latency_max_s, 0.0);
 }
 
+TEST(InterruptTable, HasARowForEachExceptionWithWhatItsRequestsWaited) {
+  io::Batch batch;
+  batch.add(io::Kind::interrupt_latency, 34, 1'000'000, io::InterruptLatency{999'000});
+  batch.add(io::Kind::interrupt_latency, 34, 2'000'000, io::InterruptLatency{1'997'000});
+  batch.add(io::Kind::interrupt_latency, 34, 3'000'000, io::InterruptLatency{2'999'800});
+  batch.add(io::Kind::interrupt_latency, 15, 4'000'000, io::InterruptLatency{4'000'000});
+  results::EventLog events;
+  ASSERT_TRUE(events.add(batch));
+  const auto rows = interrupt_table(events, R"({"handlers": {"34": "adc_handler", "15": 3}})");
+  ASSERT_EQ(rows.size(), 2u);
+  EXPECT_EQ(rows[0].exception, 15u);
+  EXPECT_EQ(rows[0].requests, 1u);
+  EXPECT_EQ(rows[0].latency_max_s, 0.0);
+  EXPECT_TRUE(near(rows[0].latency_max_at_s, 4e-3, round_off(16, 1e-3)));
+  EXPECT_EQ(rows[1].handler, "adc_handler");
+  EXPECT_EQ(rows[1].requests, 3u);
+  EXPECT_TRUE(near(rows[1].latency_mean_s, 1.4e-6, round_off(16, 1e-6)));
+  EXPECT_TRUE(near(rows[1].latency_max_s, 3e-6, round_off(16, 1e-6)));
+  EXPECT_TRUE(near(rows[1].latency_max_at_s, 2e-3, round_off(16, 1e-3)));
+  for (const char* text : {"", "[]", "{", R"({"handlers": []})"}) {
+    EXPECT_EQ(interrupt_table(events, text)[1].handler, "") << text;
+  }
+}
+
 }  // namespace
 }  // namespace whirl

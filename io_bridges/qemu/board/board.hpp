@@ -99,6 +99,8 @@ class Board final : stm32::InterruptLines, stm32::SystemBus, stm32::FlashArray {
   void check_profile();
   std::string stack_name(std::uint32_t top) const;
   nlohmann::json task_stacks() const;
+  std::string handler_name(std::uint32_t exception) const;
+  nlohmann::json handlers() const;
   std::string exception_name(std::uint32_t exception) const;
   nlohmann::json long_call(const LongCall& call) const;
   nlohmann::json watched_calls() const;

@@ -46,16 +46,26 @@ nlohmann::json Board::task_stacks() const {
   return list;
 }
 
-// By the handler's name, as the vector table has it.
-std::string Board::exception_name(std::uint32_t exception) const {
+// As the vector table has it; empty: no function of the image.
+std::string Board::handler_name(std::uint32_t exception) const {
   std::uint32_t handler = 0;
   const std::uint32_t vectors = emulator_.system_control_word(kVtor);
-  std::string name = "exception " + std::to_string(exception);
-  if (emulator_.peek(vectors + 4 * exception, &handler, sizeof handler)) {
-    const Symbol* symbol = setup_.image.function_at(handler & ~1u);
-    if (symbol != nullptr) name += " (" + symbol->name + ")";
+  if (!emulator_.peek(vectors + 4 * exception, &handler, sizeof handler)) return "";
+  const Symbol* symbol = setup_.image.function_at(handler & ~1u);
+  return symbol == nullptr ? "" : symbol->name;
+}
+
+std::string Board::exception_name(std::uint32_t exception) const {
+  const std::string handler = handler_name(exception);
+  return "exception " + std::to_string(exception) + (handler.empty() ? "" : " (" + handler + ")");
+}
+
+nlohmann::json Board::handlers() const {
+  nlohmann::json names = nlohmann::json::object();
+  for (std::uint32_t exception = 0; exception < Watch::kExceptions; ++exception) {
+    if (watch_.was_taken(exception)) names[std::to_string(exception)] = handler_name(exception);
   }
-  return name;
+  return names;
 }
 
 nlohmann::json Board::long_call(const LongCall& call) const {
@@ -108,6 +118,7 @@ void Board::add_statistics() {
                                {"ns_per_instruction", setup_.config.ns_per_instruction}};
   if (watch_.stacks().count() > 1) statistics["task_stacks"] = task_stacks();
   statistics["watched"] = watched_calls();
+  statistics["handlers"] = handlers();
   const std::string text = statistics.dump();
   happened_.add(io::Kind::statistics, 0, events_.now(), text.data(),
                 static_cast<std::uint32_t>(text.size()));

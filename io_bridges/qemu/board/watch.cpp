@@ -138,6 +138,7 @@ bool Watch::exception(const CoreState& before, const CoreState& after) {
 void Watch::enter(const CoreState& core) {
   Context& entered = handlers_.emplace_back();
   entered.exception = core.exception();
+  taken_[core.exception() % kExceptions] = true;
   entered.entered_ns = core.now;
   entered.latency_ns = take_latency(core);
 }

@@ -66,9 +66,11 @@ class Watch {
 
   const Stacks& stacks() const { return stacks_; }
   const WorstCalls& worst_calls() const { return worst_; }
+  bool was_taken(std::uint32_t exception) const { return taken_[exception % kExceptions]; }
+  static constexpr std::size_t kExceptions = 256;
 
  private:
-  static constexpr std::size_t kExceptions = 256, kDeepest = 64;
+  static constexpr std::size_t kDeepest = 64;
   static constexpr Nanoseconds kNever = -1;
   struct Call {
     std::uint16_t number = 0;
@@ -107,6 +109,7 @@ class Watch {
   Load load_ = Load::none;  // of the stack pointer, not yet seen where to
   std::uint64_t loads_ = 0;
   std::array<Nanoseconds, kExceptions> raised_ns_ = filled();
+  std::array<bool, kExceptions> taken_{};
   static std::array<Nanoseconds, kExceptions> filled();
 };
 
