@@ -8,13 +8,14 @@ namespace {
 // Where ARM gives a range.
 constexpr double kRefill_branch = 1.5;  // 1 to 3 by alignment and width: the mean over alignments
 constexpr double kRefill_register = 1.5;
-constexpr double kRefill_load = 3;       // "at least" 5 for LDR PC, with its 2 of a load
-constexpr double kDivide = 2;            // at least; see core_model.hpp
-constexpr double kLong_multiply_m3 = 4;  // 3 to 7 by operands
-constexpr double kLiteral = 0.25;        // meets the instruction fetch in some alignments
-constexpr double kLoad_after_store = 1;  // the write buffer is emptied first
-constexpr double kBarrier = 4;           // ISB refills, DSB waits for the write buffer
-constexpr double kFp_divide = 14;        // the integer pipeline goes on meanwhile
+constexpr double kRefill_load = 3;            // "at least" 5 for LDR PC, with its 2 of a load
+constexpr double kDivide = 2;                 // at least; see core_model.hpp
+constexpr double kLong_multiply_m3 = 4;       // 3 to 7 by operands
+constexpr double kLiteral = 0.25;             // meets the instruction fetch in some alignments
+constexpr double kStore_register_offset = 1;  // [Rn, #imm] alone is "always one cycle"
+constexpr double kLoad_after_store = 1;       // the write buffer is emptied first
+constexpr double kBarrier = 4;                // ISB refills, DSB waits for the write buffer
+constexpr double kFp_divide = 14;             // the integer pipeline goes on meanwhile
 
 // Cycles by class, DDI 0337 table 18-1 and DDI 0439 table 3-1, 7-1.
 struct Row {
@@ -58,6 +59,7 @@ double alone(Core core, const Instruction& i) {
   double cycles = (core == Core::cortex_m3 ? row.m3 : row.m4) + i.registers;
   if (i.doubleword) cycles += 1;
   if (i.literal) cycles += kLiteral;
+  if (i.kind == Class::store && i.register_offset) cycles += kStore_register_offset;
   if (i.flow == Flow::direct || i.flow == Flow::indirect) cycles += refill_cycles(i);
   return cycles;
 }

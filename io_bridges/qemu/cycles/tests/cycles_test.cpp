@@ -43,7 +43,8 @@ constexpr std::uint32_t kNop = 0xBF00, kAdds_r0 = 0x3001, kMul = 0x4348, kMla = 
                         kBx_lr = 0x4770, kTbb = 0xE8D0F001, kVadd_s0 = 0xEE300A20,
                         kVadd_s1_s0 = 0xEE700A20, kVmla = 0xEE000A20, kVdiv = 0xEE800A20,
                         kVldr = 0xED900A00, kVldr_d = 0xED900B00, kVldm_4 = 0xEC900A04,
-                        kIte = 0xBF0C, kCmp = 0x2800;
+                        kIte = 0xBF0C, kCmp = 0x2800, kStr_r0_r1_r2 = 0x5088,
+                        kStr_w_r0_r1_r2 = 0xF8410002;
 
 TEST(CoreModel, EachClassTakesWhatItsRowSays) {
   EXPECT_EQ(m4({kNop}), std::vector<double>{1});
@@ -57,6 +58,8 @@ TEST(CoreModel, EachClassTakesWhatItsRowSays) {
   EXPECT_LE(m4({kUdiv})[0], 12);
   EXPECT_EQ(m4({kLdr_r1_r0}), std::vector<double>{2});
   EXPECT_EQ(m4({kStr_r1_r0}), std::vector<double>{1});
+  EXPECT_EQ(m4({kStr_r0_r1_r2}), std::vector<double>{2});
+  EXPECT_EQ(m3({kStr_w_r0_r1_r2}), std::vector<double>{2});
   EXPECT_EQ(m4({kLdm_r0_8}), std::vector<double>{9});
   EXPECT_EQ(m4({kPush_4}), std::vector<double>{5});
   EXPECT_EQ(m4({kLdrd}), std::vector<double>{3});
