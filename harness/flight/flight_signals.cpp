@@ -78,6 +78,8 @@ void FlightWorld::name_motor_signals() {
 void FlightWorld::name_telemetry_signals() {
   using D = Dimension;
   const auto told = [this] { return station_.telemetry(now_ns_); };
+  add_signal("setpoints_refused", D::none, "so far, by all ESCs: wrong length or CRC",
+             [this] { return static_cast<double>(setpoints_refused_); });
   add_signal("told_state", D::none, "HEARTBEAT custom_mode", [=] { return told().state; });
   add_signal("told_armed", D::none, "HEARTBEAT base_mode", [=] { return told().armed; });
   add_signal("told_height", D::length, "", [=] { return told().height_m; });

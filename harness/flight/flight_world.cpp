@@ -55,7 +55,11 @@ void FlightWorld::take(const io::Batch& happened) {
     if (header.kind == io::Kind::esc_setpoint) {
       WHIRL_CHECK(header.port >= 1 && header.port <= 4, header.port);
       const auto setpoint = reader.as<io::EscSetpoint>();
-      if (setpoint.valid != 0) escs_[header.port - 1u].write(setpoint.value);
+      if (setpoint.valid != 0) {
+        escs_[header.port - 1u].write(setpoint.value);
+      } else {
+        ++setpoints_refused_;
+      }
     } else if (header.kind == io::Kind::uart_received && header.port == kRadioPort) {
       station_.receive(reader.payload(), header.t_ns);
     } else if (header.kind == io::Kind::uart_delivered && header.port == kRadioPort) {

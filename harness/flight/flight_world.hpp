@@ -76,6 +76,7 @@ class FlightWorld : public World {
   std::vector<Signal> signals_;
   std::vector<std::function<double()>> values_;
   std::int64_t now_ns_ = 0;
+  std::uint32_t setpoints_refused_ = 0;
 };
 
 }  // namespace whirl::flight
