@@ -20,6 +20,7 @@ struct Unit {
 
 constexpr std::array kUnits{
     Unit{"%", Dimension::ratio, 0.01},
+    Unit{"ppm", Dimension::ratio, 1e-6},
     Unit{"ns", Dimension::time, 1e-9},
     Unit{"us", Dimension::time, 1e-6},
     Unit{"ms", Dimension::time, 1e-3},

@@ -133,10 +133,19 @@ int Board::watch_number(const std::string& function) const {
 std::string Board::timing_profile() const {
   char text[80];
   std::snprintf(text, sizeof text, "crystal ready after %g ms", hse_start_s * 1e3);
+  std::string clocks = text;
+  if (hse_error != 0) {
+    std::snprintf(text, sizeof text, ", %+g ppm off", hse_error * 1e6);
+    clocks += text;
+  }
+  if (hsi_error != 0) {
+    std::snprintf(text, sizeof text, ", HSI %+g %% off", hsi_error * 1e2);
+    clocks += text;
+  }
   const std::string rate = ns_per_instruction == 0
                                ? "CPU cycles (+-10 %)"
                                : std::to_string(ns_per_instruction) + " ns per instruction";
-  return rate + ", " + text;
+  return rate + ", " + clocks;
 }
 
 Result<Board> read_board(const std::string& path) {
@@ -151,6 +160,8 @@ Result<Board> read_board(const std::string& path) {
   board.lse_Hz = t.quantity_or("lse", Dimension::frequency, 0.0, lua::at_least(0.0));
   board.hse_start_s =
       t.quantity_or("hse_start", Dimension::time, board.hse_start_s, lua::between(1e-6, 1.0));
+  board.hsi_error = t.quantity_or("hsi_error", Dimension::ratio, 0.0, lua::between(-0.05, 0.05));
+  board.hse_error = t.quantity_or("hse_error", Dimension::ratio, 0.0, lua::between(-1e-3, 1e-3));
   if (t.has("boot_image")) board.boot_image = t.sibling(t.text("boot_image"));
   board.start = static_cast<std::uint32_t>(t.integer_or("start", 0, 0, 0xFFFFFFFF));
   if (t.text_or("timing", "cycles") != "cycles") {
@@ -179,6 +190,8 @@ std::string board_json(const Board& board, const BoardRun& run) {
   out["hse_Hz"] = board.hse_Hz;
   out["lse_Hz"] = board.lse_Hz;
   out["hse_start_ns"] = std::llround(board.hse_start_s * 1e9);
+  out["hsi_error"] = board.hsi_error;
+  out["hse_error"] = board.hse_error;
   out["boot_image"] = board.boot_image;
   out["start"] = board.start;
   out["image"] = run.image;

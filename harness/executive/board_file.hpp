@@ -26,7 +26,8 @@ struct BoardDevice {
 struct Board {
   std::string file, name, mcu;
   double hse_Hz = 0, lse_Hz = 0;
-  double hse_start_s = 2e-3;   // of the crystal
+  double hse_start_s = 2e-3;            // of the crystal
+  double hsi_error = 0, hse_error = 0;  // of their frequency, as a share
   std::string boot_image;      // of a boot loader that is flashed beside the image; empty: none
   std::uint32_t start = 0;     // of the vector table at reset; 0: the start of flash
   int ns_per_instruction = 0;  // 0: time passes by the cycles of the core

@@ -27,6 +27,7 @@ TEST(Units, AreTurnedIntoSI) {
       {"-3", Dimension::none, -3.0},
       {"0.0125 kg m2", Dimension::inertia, 0.0125},
       {"+12 %", Dimension::ratio, 0.12},
+      {"-50 ppm", Dimension::ratio, -5e-5},
   };
   for (const Row& row : kRows) {
     const auto got = parse_quantity(row.text, "test");

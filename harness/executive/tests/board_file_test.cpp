@@ -43,6 +43,16 @@ TEST(BoardFile, TimePassesByCyclesUnlessTheFileFixesIt) {
   EXPECT_NE(complaint(R"(timing = "8 instructions")").find("timing"), std::string::npos);
 }
 
+TEST(BoardFile, OscillatorsAreWhatTheySayUnlessTheFileKnowsBetter) {
+  EXPECT_EQ(json_of(read("").value())["hsi_error"], 0.0);
+  EXPECT_EQ(json_of(read("").value())["hse_error"], 0.0);
+  const Board off = read(R"(hsi_error = "-1 %", hse_error = "50 ppm")").value();
+  EXPECT_TRUE(near(json_of(off)["hsi_error"].get<double>(), -0.01, round_off(2, 0.01)));
+  EXPECT_TRUE(near(json_of(off)["hse_error"].get<double>(), 5e-5, round_off(2, 5e-5)));
+  EXPECT_EQ(off.timing_profile(),
+            "CPU cycles (+-10 %), crystal ready after 2 ms, +50 ppm off, HSI -1 % off");
+}
+
 TEST(BoardFile, PinsCarryTheirResistorAndTheirBus) {
   const Board board = read(R"(pins = { { name = "c", pin = "PB8", bus = "i2c1.scl", pull = "up" },
                                        { name = "d", pin = "PB9" } })")
@@ -112,11 +122,19 @@ TEST(BoardFile, EachLimitBelongsToItsRange) {
   struct Edge {
     std::string key, inside, outside;
   };
-  const Edge kEdges[] = {
-      {"lse", "'0 Hz'", "'-0.5 Hz'"},         {"hse_start", "'1 us'", "'0.995 us'"},
-      {"hse_start", "'1 s'", "'1.005 s'"},    {"start", "0", "-1"},
-      {"start", "0xFFFFFFFF", "0x100000000"}, {"timing", "'1 ns'", "'0.995 ns'"},
-      {"timing", "'512 ns'", "'1024 ns'"},    {"timing", "'16 ns'", "'15 ns'"}};
+  const Edge kEdges[] = {{"lse", "'0 Hz'", "'-0.5 Hz'"},
+                         {"hse_start", "'1 us'", "'0.995 us'"},
+                         {"hse_start", "'1 s'", "'1.005 s'"},
+                         {"start", "0", "-1"},
+                         {"start", "0xFFFFFFFF", "0x100000000"},
+                         {"timing", "'1 ns'", "'0.995 ns'"},
+                         {"timing", "'512 ns'", "'1024 ns'"},
+                         {"timing", "'16 ns'", "'15 ns'"},
+                         {"hsi_error", "'5 %'", "'5.01 %'"},
+                         {"hsi_error", "'-5 %'", "'-5.01 %'"},
+                         {"hse_error", "'1000 ppm'", "'1001 ppm'"},
+                         {"hse_error", "'-1000 ppm'", "'-1001 ppm'"},
+                         {"hse_error", "'0.1 %'", "'8 MHz'"}};
   for (const Edge& edge : kEdges) {
     EXPECT_EQ(complaint(edge.key + " = " + edge.inside), "");
     EXPECT_NE(complaint(edge.key + " = " + edge.outside).find(edge.key), std::string::npos)

@@ -136,6 +136,8 @@ Result<BoardConfig> parse_board(std::string_view json_text) {
   keys.read(top, "hse_Hz", "", config.hse_Hz);
   keys.read(top, "hse_start_ns", "", config.hse_start_ns);
   keys.read(top, "lse_Hz", "", config.lse_Hz);
+  keys.read(top, "hsi_error", "", config.hsi_error);
+  keys.read(top, "hse_error", "", config.hse_error);
   keys.read(top, "boot_image", "", config.boot_image);
   keys.read(top, "start", "", config.start);
   keys.read(top, "ns_per_instruction", "", config.ns_per_instruction);
@@ -145,6 +147,10 @@ Result<BoardConfig> parse_board(std::string_view json_text) {
   read_lists(keys, top, config);
   if (config.image.empty()) keys.fail("image", "is missing");
   if (!(config.hse_Hz >= 0.0 && config.hse_Hz <= 50e6)) keys.fail("hse_Hz", "is outside 0..50 MHz");
+  if (!(std::abs(config.hsi_error) <= 0.05)) keys.fail("hsi_error", "is outside +-5 %");
+  if (!(std::abs(config.hse_error) <= 1e-3)) keys.fail("hse_error", "is outside +-1000 ppm");
+  if (config.hse_error != 0.0 && config.hse_Hz == 0.0)
+    keys.fail("hse_error", "is of a crystal that is not fitted");
   if (config.hse_start_ns < 0) keys.fail("hse_start_ns", "is negative");
   if (config.ns_per_instruction < 0) keys.fail("ns_per_instruction", "is negative");
   if (keys.failed()) {

@@ -1,6 +1,7 @@
 // What a board process is told at its start: the board's description as JSON with SI numbers.
 //
-//   Keys    board, mcu, hse_Hz, hse_start_ns, lse_Hz, image, boot_image, start, ns_per_instruction, seed, sync_ns, gdb_port,
+//   Keys    board, mcu, hse_Hz, hse_start_ns, lse_Hz, hsi_error, hse_error, image, boot_image, start,
+//           ns_per_instruction, seed, sync_ns, gdb_port,
 //           devices[] {name, type, bus, cs, int, address, motor, baud, params{}},
 //           pins[] {name, pin, pull, bus}, watch[] (function names)
 //   Errors  bad_input, with the key that is wrong
@@ -34,6 +35,7 @@ struct BoardConfig {
   std::string boot_image;   // of a boot loader that lies in flash beside the image; empty: none
   std::uint32_t start = 0;  // address of the vector table at reset; 0: the start of flash
   double hse_Hz = 0.0, lse_Hz = 0.0;
+  double hsi_error = 0.0, hse_error = 0.0;  // as a share of the frequency: +-0.05, +-0.001
   std::int64_t hse_start_ns = 2'000'000;
   std::int64_t ns_per_instruction = 0;  // 0: by the cycles that the core takes
   std::uint64_t seed = 1;

@@ -45,6 +45,7 @@ constexpr Part kF103 = {
 constexpr Part bench() {
   Part part = kF405;
   part.mcu = "bench_m4";
+  part.oscillators = false;
   return part;
 }
 

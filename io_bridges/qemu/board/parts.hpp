@@ -28,6 +28,7 @@ struct Part {
   double sysclk_maximum_Hz;
   std::uint16_t elf_machine;  // EM_ARM
   bool is_m4;                 // Cortex-M4 with FPU, else M3
+  bool oscillators = true;    // has HSI and HSE
 };
 
 // Null: unknown.

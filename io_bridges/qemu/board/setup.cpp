@@ -23,6 +23,11 @@ Result<Setup> read_setup(std::string_view board_json) {
     return Error{ErrorKind::bad_input, config.value().board,
                  "unknown mcu '" + config.value().mcu + "'", "use stm32f405rg or stm32f103cb"};
   }
+  const bool errors = config.value().hsi_error != 0.0 || config.value().hse_error != 0.0;
+  if (errors && !part->oscillators) {
+    return Error{ErrorKind::bad_input, config.value().board + ": hsi_error, hse_error",
+                 config.value().mcu + " has no oscillators", ""};
+  }
   auto image = load_image(config.value().image, *part);
   if (!image) return image.error();
   const BoardConfig& board = config.value();

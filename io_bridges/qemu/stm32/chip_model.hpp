@@ -44,6 +44,8 @@ struct ChipHost {
   double hse_Hz = 0.0;  // crystals of the board; 0: not fitted
   double lse_Hz = 0.0;
   Nanoseconds hse_start_ns = 2'000'000;  // until the crystal swings
+  // How much faster than it says an oscillator runs, as a share.
+  double hsi_error = 0.0, hse_error = 0.0;
 };
 
 class ChipModel {

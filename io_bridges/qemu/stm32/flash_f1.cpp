@@ -136,7 +136,7 @@ void FlashF1::update() {
 
 // 0 up to 24 MHz, 1 up to 48, 2 above (RM0008 3.3.3).
 void FlashF1::check_latency() {
-  const double hclk_Hz = chip_.clocks.hclk_Hz();
+  const double hclk_Hz = chip_.clocks.nominal_Hz(chip_.clocks.hclk_Hz());
   const std::uint32_t wanted = hclk_Hz > 48.001e6 ? 2 : hclk_Hz > 24.001e6 ? 1 : 0;
   if (latency_reported_ || !chip_.finding || (acr_ & 7) >= wanted) return;
   latency_reported_ = true;

@@ -192,7 +192,8 @@ void FlashF4::update() {
 
 // One wait state per 30 MHz (RM0090 table 10, 2.7 to 3.6 V).
 void FlashF4::check_latency() {
-  const int wanted = static_cast<int>(std::ceil(chip_.clocks.hclk_Hz() / 30.001e6)) - 1;
+  const int wanted =
+      static_cast<int>(std::ceil(chip_.clocks.nominal_Hz(chip_.clocks.hclk_Hz()) / 30.001e6)) - 1;
   if (latency_reported_ || !chip_.finding || static_cast<int>(acr_ & 7) >= wanted) return;
   latency_reported_ = true;
   chip_.finding({chip_.events.now(), "FLASH", "too few wait states for HCLK"});

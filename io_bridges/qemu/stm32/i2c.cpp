@@ -233,7 +233,7 @@ void I2c::update() {
 
 void I2c::check_setup() {
   if (!routed()) report_once(1, "START with SCL or SDA not muxed to a pin");
-  const double pclk_MHz = chip_.clocks.pclk1_Hz() / 1e6;
+  const double pclk_MHz = chip_.clocks.nominal_Hz(chip_.clocks.pclk1_Hz()) / 1e6;
   if (std::abs((cr2_ & 0x3F) - pclk_MHz) > 0.6) report_once(2, "CR2.FREQ is not PCLK1 in MHz");
   const double rate_Hz = 1e9 / bit_ns_;
   if (rate_Hz > ((ccr_ & FS) != 0 ? 405e3 : 101e3))

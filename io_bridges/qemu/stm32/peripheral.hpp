@@ -95,6 +95,9 @@ class Clocks {
   virtual double lsi_Hz() const = 0;
   virtual double lse_Hz() const = 0;  // 0: no crystal fitted
   virtual double hse_Hz() const = 0;
+  // Of the oscillator that SYSCLK comes from, as a share: limits and settings are meant without it.
+  virtual double oscillator_error() const { return 0.0; }
+  double nominal_Hz(double real_Hz) const { return real_Hz / (1.0 + oscillator_error()); }
   virtual void on_change(std::function<void()> changed) = 0;
 };
 

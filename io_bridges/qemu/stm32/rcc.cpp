@@ -67,6 +67,8 @@ Rcc::Rcc(const RccSetup& setup, const RccLayout& layout)
       hse_Hz_(setup.hse_Hz),
       lse_Hz_(setup.lse_Hz),
       hse_start_ns_(setup.hse_start_ns),
+      hsi_error_(setup.hsi_error),
+      hse_error_(setup.hse_error),
       events_(setup.events),
       interrupts_(setup.interrupts),
       finding_(setup.finding),
@@ -262,7 +264,7 @@ double Rcc::rtc_Hz() const {
     case 2:
       return (word(layout_.csr) & LSIRDY) != 0 ? lsi_Hz() : 0.0;
     case 3:
-      return (word(CR) & HSERDY) != 0 ? rtc_from_hse_Hz() : 0.0;
+      return (word(CR) & HSERDY) != 0 ? rtc_from_hse_Hz() * (1.0 + hse_error_) : 0.0;
     default:
       return 0.0;
   }
@@ -270,16 +272,19 @@ double Rcc::rtc_Hz() const {
 
 void Rcc::update_clocks() {
   const ClockTree tree = clock_tree();
-  sysclk_Hz_ = tree.sysclk_Hz;
+  sysclk_Hz_ = tree.sysclk_Hz * (1.0 + oscillator_error());
   hclk_Hz_ = sysclk_Hz_ / tree.ahb;
   pclk1_Hz_ = hclk_Hz_ / tree.apb1;
   pclk2_Hz_ = hclk_Hz_ / tree.apb2;
   timclk1_Hz_ = tree.apb1 > 1.0 ? 2 * pclk1_Hz_ : pclk1_Hz_;
   timclk2_Hz_ = tree.apb2 > 1.0 ? 2 * pclk2_Hz_ : pclk2_Hz_;
   constexpr double kSlack = 1.00001;
-  if (sysclk_Hz_ > kSlack * layout_.max_sysclk_Hz) report_once(1, "SYSCLK above the part's limit");
-  if (pclk1_Hz_ > kSlack * layout_.max_pclk1_Hz) report_once(2, "PCLK1 above the part's limit");
-  if (pclk2_Hz_ > kSlack * layout_.max_pclk2_Hz) report_once(4, "PCLK2 above the part's limit");
+  const auto above = [this](double real_Hz, double limit_Hz) {
+    return nominal_Hz(real_Hz) > kSlack * limit_Hz;
+  };
+  if (above(sysclk_Hz_, layout_.max_sysclk_Hz)) report_once(1, "SYSCLK above the part's limit");
+  if (above(pclk1_Hz_, layout_.max_pclk1_Hz)) report_once(2, "PCLK1 above the part's limit");
+  if (above(pclk2_Hz_, layout_.max_pclk2_Hz)) report_once(4, "PCLK2 above the part's limit");
   for (const auto& listener : listeners_) listener();
 }
 

@@ -4,6 +4,8 @@
 //   Source    RM0090 chapter 7 (F405), RM0008 chapter 7 (F103)
 //   Times     typical values of the datasheets: HSI 2.2 us, PLL 200 us, LSI 30 us, LSE 2 s; HSE as
 //             the board says (2 ms)
+//   Errors    an oscillator that runs off its frequency takes all that is clocked from it along;
+//             limits are judged by what it says it is
 //   Findings  limits of the part; a crystal that was given up, or is not there; a core that stays
 //             on its reset clock
 //   Left out  MCO pins, spread spectrum, I2S clocks (PLLI2S locks, nobody uses it)
@@ -26,6 +28,7 @@ struct RccSetup {
   double hse_Hz = 0.0;  // 0: no crystal fitted, HSE never becomes ready
   double lse_Hz = 0.0;
   Nanoseconds hse_start_ns = 2'000'000;
+  double hsi_error = 0.0, hse_error = 0.0;  // 0.01: runs 1 % faster than it says
 };
 
 // Where a part keeps what all parts have.
@@ -40,7 +43,7 @@ struct RccLayout {
 
 // Frequencies as CFGR and PLL settings give them.
 struct ClockTree {
-  double sysclk_Hz = 0.0;
+  double sysclk_Hz = 0.0;                    // with oscillators that are what they say
   double ahb = 1.0, apb1 = 1.0, apb2 = 1.0;  // divisors
 };
 
@@ -56,7 +59,8 @@ class Rcc : public WordBlock, public Clocks {
   double timclk2_Hz() const override { return timclk2_Hz_; }
   double lsi_Hz() const override { return layout_.lsi_Hz; }
   double lse_Hz() const override { return lse_Hz_; }
-  double hse_Hz() const override { return hse_Hz_; }
+  double hse_Hz() const override { return hse_Hz_ * (1.0 + hse_error_); }
+  double oscillator_error() const override { return error_of(runs_from_hse()); }
   void on_change(std::function<void()> changed) override {
     listeners_.push_back(std::move(changed));
   }
@@ -93,8 +97,11 @@ class Rcc : public WordBlock, public Clocks {
   void report_once(std::uint32_t bit, const std::string& what);
 
   const RccLayout layout_;
+  double error_of(bool crystal) const { return crystal ? hse_error_ : hsi_error_; }
+
   const double hse_Hz_, lse_Hz_;
   const Nanoseconds hse_start_ns_;
+  const double hsi_error_, hse_error_;
 
  private:
   struct ResetLine {

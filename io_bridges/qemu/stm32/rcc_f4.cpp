@@ -74,7 +74,7 @@ double RccF4::vco_Hz() const {
 
 double RccF4::pll48_Hz() const {
   const std::uint32_t q = (word(PLLCFGR) >> 24) & 0xF;
-  return (word(CR) & PLLRDY) != 0 && q >= 2 ? vco_Hz() / q : 0.0;
+  return (word(CR) & PLLRDY) != 0 && q >= 2 ? vco_Hz() * (1.0 + error_of(pll_from_hse())) / q : 0.0;
 }
 
 ClockTree RccF4::clock_tree() const {

@@ -20,7 +20,8 @@ constexpr std::array<int, Exti::kLines> kExtiIrqs{6,  7,  8,  9,  10, 23, 23, 23
 struct F103Core {
   explicit F103Core(const ChipHost& host)
       : interrupts(host.interrupts),
-        rcc({host.events, interrupts, host.finding, host.hse_Hz, host.lse_Hz, host.hse_start_ns}) {}
+        rcc({host.events, interrupts, host.finding, host.hse_Hz, host.lse_Hz, host.hse_start_ns,
+             host.hsi_error, host.hse_error}) {}
   ChangesOnly interrupts;
   RccF1 rcc;
 };

@@ -38,7 +38,8 @@ class BackupSram final : public WordBlock {
 struct F405Core {
   explicit F405Core(const ChipHost& host)
       : interrupts(host.interrupts),
-        rcc({host.events, interrupts, host.finding, host.hse_Hz, host.lse_Hz, host.hse_start_ns}) {}
+        rcc({host.events, interrupts, host.finding, host.hse_Hz, host.lse_Hz, host.hse_start_ns,
+             host.hsi_error, host.hse_error}) {}
   ChangesOnly interrupts;
   RccF4 rcc;
 };

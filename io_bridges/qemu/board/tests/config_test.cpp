@@ -37,5 +37,20 @@ TEST(BoardConfig, ACrystalCannotStartBeforeItIsAsked) {
   EXPECT_TRUE(parse(R"("hse_start_ns":0)"));
 }
 
+TEST(BoardConfig, AnOscillatorsErrorIsWithinItsRangeAndOfOneThatIsThere) {
+  for (const char* good : {R"("hsi_error":-0.05)", R"("hse_Hz":8e6,"hse_error":0.001)",
+                           R"("hse_Hz":8e6,"hse_error":-0.001,"hsi_error":0.05)"}) {
+    EXPECT_TRUE(parse(good)) << good;
+  }
+  EXPECT_EQ(parse(R"("hsi_error":0.01)").value().hsi_error, 0.01);
+  for (const char* bad :
+       {R"("hsi_error":0.0501)", R"("hsi_error":-0.0501)", R"("hse_Hz":8e6,"hse_error":0.00101)",
+        R"("hse_Hz":8e6,"hse_error":-0.00101)", R"("hse_error":0.0001)", R"("hsi_error":"1 %")"}) {
+    const auto config = parse(bad);
+    ASSERT_FALSE(config) << bad;
+    EXPECT_NE(config.error().message().find("_error"), std::string::npos) << bad;
+  }
+}
+
 }  // namespace
 }  // namespace whirl::board

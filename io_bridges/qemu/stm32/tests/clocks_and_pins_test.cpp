@@ -43,6 +43,25 @@ TEST(Rcc, SwsFollowsOnlyAReadySourceAndWhatDrivesSysclkStaysOn) {
   EXPECT_EQ(bench.get(kCr) & 3, 0u);
 }
 
+std::unique_ptr<ChipModel> make_off(const ChipHost& host) {
+  ChipHost off = host;
+  off.hsi_error = -0.04;
+  off.hse_error = 900e-6;
+  return make_stm32f405(off);
+}
+
+// What the firmware sets up is as right as ever, so nobody complains; all that is clocked is off.
+TEST(Rcc, AnOscillatorThatIsOffTakesAllClocksAlong) {
+  ChipBench bench(8e6, make_off);
+  const Clocks& clocks = bench.chip().clocks();
+  EXPECT_DOUBLE_EQ(clocks.hclk_Hz(), 16e6 * 0.96);
+  bench.clock_168();
+  EXPECT_DOUBLE_EQ(bench.chip().sysclk_Hz(), 168e6 * 1.0009);
+  EXPECT_DOUBLE_EQ(clocks.pclk1_Hz(), 42e6 * 1.0009);
+  EXPECT_DOUBLE_EQ(clocks.timclk2_Hz(), 168e6 * 1.0009);
+  EXPECT_TRUE(bench.findings.empty()) << bench.findings[0];
+}
+
 TEST(Rcc, PrescalersDivideAsTheirTablesSay) {
   ChipBench bench;
   struct Row {
