@@ -41,19 +41,20 @@ class CostInjection::Writer {
         block_(block),
         cost_(cost),
         keep_stalls_(keep_stalls),
-        places_(places_of(cost)) {}
+        places_(places_of(cost)),
+        operations_(tcg::operations()),
+        spare_(operations_) {}
 
   void write() {
     const tcg::Numbers& op = tcg::numbers();
-    const std::vector<Operation*> operations = tcg::operations();
-    const auto first = std::find_if(operations.begin(), operations.end(), [&](const Operation* o) {
-      return static_cast<int>(o->number) == op.instruction;
-    });
+    const auto first = std::find_if(
+        operations_.begin(), operations_.end(),
+        [&](const Operation* o) { return static_cast<int>(o->number) == op.instruction; });
     // Inside an IT block the translator clears its state in memory at the block's start.
-    it_state_ = first == operations.end() ? 0 : static_cast<std::int32_t>((*first)->arguments[1]);
+    it_state_ = first == operations_.end() ? 0 : static_cast<std::int32_t>((*first)->arguments[1]);
     std::size_t begun = 0;
-    for (std::size_t k = 0; k < operations.size(); ++k) {
-      Operation& o = *operations[k];
+    for (std::size_t k = 0; k < operations_.size(); ++k) {
+      Operation& o = *operations_[k];
       const int number = static_cast<int>(o.number);
       const std::string_view helper = tcg::helper_name(o);
       if (number == op.st16 && !stored_) {
@@ -63,10 +64,10 @@ class CostInjection::Writer {
       } else if (number == op.callback && begun == 0 && enough_ == nullptr && stored_) {
         if (it_state_ == 0 || it_store_ != nullptr) guard(o);
       } else if (number == op.callback_end && begun == 0 && enough_ != nullptr && !placed_) {
-        go_on(*operations[k + 1]);
+        go_on(*operations_[k + 1]);
         placed_ = true;
       } else if (number == op.instruction) {
-        if (begun > 0) owe(*operations[k + 1], places_[begun]);
+        if (begun > 0) owe(*operations_[k + 1], places_[begun]);
         ++begun;
       } else if (helper == kLazy_save) {
         owe(o, cost_.lazy_frame);
@@ -86,7 +87,7 @@ class CostInjection::Writer {
   void owe(Operation& place, std::int64_t amount) {
     if (amount == 0) return;
     const tcg::Numbers& op = tcg::numbers();
-    tcg::Ahead ahead(&place);
+    tcg::Ahead ahead(&place, spare_);
     const Argument where = debt_place();
     ahead.put(op.st64, ahead.op64(op.add64, ahead.op64(op.ld64, where), tcg::number64(amount)),
               where);
@@ -96,7 +97,7 @@ class CostInjection::Writer {
   void pay_for_quotient(Operation& call, bool with_sign) {
     const tcg::Numbers& op = tcg::numbers();
     const auto [dividend, divisor] = tcg::last_inputs(call);
-    tcg::Ahead ahead(&call);
+    tcg::Ahead ahead(&call, spare_);
     const auto zeros = [&](Argument x) {
       if (with_sign) x = ahead.op32(op.xor32, x, ahead.op32(op.sar32, x, tcg::number32(31)));
       return ahead.op32(op.leading_zeros32, x, tcg::number32(32));
@@ -113,8 +114,9 @@ class CostInjection::Writer {
   }
 
   // Adds what a line costs that is not among the last 64 fetched, and counts it as fetched.
-  Argument look_up(tcg::Ahead& ahead, Argument debt, const BlockCost::Line& line, Argument when) {
+  void look_up(Operation& place, Argument debt, const BlockCost::Line& line, Argument when) {
     const tcg::Numbers& op = tcg::numbers();
+    tcg::Ahead ahead(&place, spare_);
     State& state = owner_.state_;
     const Argument where = tcg::address(&state.filled[line.number % kLines]);
     const Argument count = tcg::address(&state.fills);
@@ -127,23 +129,23 @@ class CostInjection::Writer {
     ahead.put(op.st64, next, count);
     const Argument change = ahead.op64(op.and64, missed, ahead.op64(op.sub64, next, then));
     ahead.put(op.st64, ahead.op64(op.add64, then, change), where);
-    return ahead.op64(op.add64, debt, ahead.op64(op.and64, missed, tcg::number64(line.missed)));
+    ahead.put(op.add64, debt, debt, ahead.op64(op.and64, missed, tcg::number64(line.missed)));
   }
 
-  Argument add_fetches(tcg::Ahead& ahead, Argument debt, Argument entered) {
+  void add_fetches(Operation& place, Argument debt, Argument entered) {
     const tcg::Numbers& op = tcg::numbers();
-    const Argument before = debt;
+    tcg::Ahead ahead(&place, spare_);
+    const Argument before = keep_stalls_ ? ahead.op64(op.move64, debt) : 0;
     if (cost_.entry != 0) {
       const Argument entry = ahead.op64(op.and64, entered, tcg::number64(cost_.entry));
-      debt = ahead.op64(op.add64, debt, entry);
+      ahead.put(op.add64, debt, debt, entry);
     }
     for (const BlockCost::Line& line : cost_.lines) {
-      debt = look_up(ahead, debt, line, &line == &cost_.lines.front() ? entered : 0);
+      look_up(place, debt, line, &line == &cost_.lines.front() ? entered : 0);
     }
     if (keep_stalls_) {
       ahead.put(op.st64, ahead.op64(op.sub64, debt, before), tcg::address(&owner_.state_.stalled));
     }
-    return debt;
   }
 
   // `store` puts QEMU's budget back, already less the block's instructions: less the debt as well, but
@@ -151,10 +153,11 @@ class CostInjection::Writer {
   void take_off_budget(Operation& store) {
     const tcg::Numbers& op = tcg::numbers();
     owner_.find_budget(static_cast<std::intptr_t>(store.arguments[2]));
-    tcg::Ahead ahead(&store);
+    tcg::Ahead ahead(&store, spare_);
     const Argument where = debt_place(), flag = tcg::address(&owner_.state_.entered);
-    Argument debt = ahead.op64(op.add64, ahead.op64(op.ld64, where), tcg::number64(places_[0]));
-    debt = add_fetches(ahead, debt, ahead.op64(op.ld64, flag));
+    const Argument debt =
+        ahead.op64(op.add64, ahead.op64(op.ld64, where), tcg::number64(places_[0]));
+    add_fetches(store, debt, ahead.op64(op.ld64, flag));
     const Argument ns = ahead.op64(op.sar64, debt, tcg::number64(kUnit_shift));
     left_ns_ = store.arguments[0];  // a local of QEMU's: it lives on behind the next branch
     const Argument left = ahead.op64(op.sub64, ahead.op64(op.widen, left_ns_), ns);
@@ -177,7 +180,7 @@ class CostInjection::Writer {
         std::accumulate(cost_.each.begin(), cost_.each.end(), std::int64_t{0}) - charged;
     // One more: a budget of 0 may be one that did not last.
     const auto enough = static_cast<std::int32_t>((later >> kUnit_shift) + 1);
-    enough_ = tcg::Ahead(&place).branch_if_at_least(left_ns_, tcg::number32(enough));
+    enough_ = tcg::Ahead(&place, spare_).branch_if_at_least(left_ns_, tcg::number32(enough));
     set_it_state(place, it_state_);
     owner_.blocks_.push_back(std::make_unique<Block>(Block{&owner_, charged, cost_.each}));
     qemu_plugin_register_vcpu_tb_exec_cb(
@@ -192,13 +195,14 @@ class CostInjection::Writer {
   // The callback came back: the block runs.
   void go_on(Operation& place) {
     set_it_state(place, 0);
-    tcg::Ahead(&place).here(enough_);
+    tcg::Ahead(&place, spare_).here(enough_);
   }
 
   void set_it_state(Operation& place, std::int32_t state) {
     if (it_state_ == 0) return;
-    tcg::Ahead(&place).put(tcg::numbers().st32, tcg::number32(state), it_store_->arguments[1],
-                           it_store_->arguments[2]);
+    tcg::Ahead(&place, spare_)
+        .put(tcg::numbers().st32, tcg::number32(state), it_store_->arguments[1],
+             it_store_->arguments[2]);
   }
 
   // The first way out behind the last instruction is that of a taken branch, or of running on.
@@ -207,8 +211,8 @@ class CostInjection::Writer {
     owe(place, places_.back());
     if (!cost_.ends_in_branch) return;
     owe(place, cost_.taken);
-    tcg::Ahead(&place).put(tcg::numbers().st64, tcg::number64(-1),
-                           tcg::address(&owner_.state_.entered));
+    tcg::Ahead(&place, spare_)
+        .put(tcg::numbers().st64, tcg::number64(-1), tcg::address(&owner_.state_.entered));
   }
 
   CostInjection& owner_;
@@ -216,6 +220,8 @@ class CostInjection::Writer {
   const BlockCost& cost_;
   const bool keep_stalls_;
   const std::vector<std::int64_t> places_;
+  const std::vector<Operation*> operations_;
+  tcg::Spare spare_;
   Argument left_ns_ = 0;
   std::int32_t it_state_ = 0;            // of the IT block that the block begins in
   const Operation* it_store_ = nullptr;  // where the translator clears it: behind that of can_do_io

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "harness/base/check.hpp"
 #include "io_bridges/qemu/plugin/qemu_api.hpp"
 
 namespace whirl::qemu::tcg {
@@ -57,6 +58,7 @@ constexpr Wanted kWanted[] = {{&Numbers::st32, "st_i32"},
                               {&Numbers::shl64, "shl_i64"},
                               {&Numbers::widen, "ext_i32_i64"},
                               {&Numbers::move32, "mov_i32"},
+                              {&Numbers::move64, "mov_i64"},
                               {&Numbers::sub32, "sub_i32"},
                               {&Numbers::add32, "add_i32"},
                               {&Numbers::and32, "and_i32"},
@@ -72,7 +74,10 @@ constexpr Wanted kWanted[] = {{&Numbers::st32, "st_i32"},
                               {&Numbers::call, "call"},
                               {&Numbers::leading_zeros32, "clz_i32"},
                               {&Numbers::xor32, "xor_i32"},
-                              {&Numbers::multiply64, "mul_i64"}};
+                              {&Numbers::multiply64, "mul_i64"},
+                              {&Numbers::widen_unsigned, "extu_i32_i64"},
+                              {&Numbers::load32, "qemu_ld_i32"},
+                              {&Numbers::load64, "qemu_ld_i64"}};
 
 whirl::Error lacking(const std::string& what) {
   return {ErrorKind::host, "QEMU", "its translator has no " + what,
@@ -161,22 +166,33 @@ LastInputs last_inputs(const Operation& call) {
   return {call.arguments[last - 1], call.arguments[last]};
 }
 
-Argument Ahead::temporary(int type) const {
-  for (;;) {
-    const Argument fresh = functions.tcg_temp_new_internal(type, false);
-    const auto& used = place_->arguments;
-    if (std::find(std::begin(used), std::end(used), fresh) == std::end(used)) return fresh;
+Spare::Spare(const std::vector<Operation*>& block)
+    : context_(reinterpret_cast<Argument>(context())) {
+  for (const Operation* operation : block) {
+    for (const Argument argument : operation->arguments) {
+      if (place_of(argument) < kWords) used_.set(place_of(argument));
+    }
   }
 }
 
+Argument Spare::take(int type) {
+  std::vector<Argument>& ours = ours_[type];
+  while (taken_[type] == ours.size()) {
+    const Argument fresh = functions.tcg_temp_new_internal(type, false);
+    WHIRL_CHECK(place_of(fresh) < kWords, place_of(fresh));
+    if (!used_.test(place_of(fresh))) ours.push_back(fresh);
+  }
+  return ours[taken_[type]++];
+}
+
 Argument Ahead::op32(int number, Argument a, Argument b) {
-  const Argument result = temporary(kWord);
+  const Argument result = spare_.take(kWord);
   put(number, result, a, b);
   return result;
 }
 
 Argument Ahead::op64(int number, Argument a, Argument b) {
-  const Argument result = temporary(kDoubleword);
+  const Argument result = spare_.take(kDoubleword);
   put(number, result, a, b);
   return result;
 }

@@ -8,6 +8,8 @@
 //   Numbers  operations are known by name, so no enumeration of QEMU's is copied
 //   Source   QEMU 7.2: tcg/tcg.c, include/tcg/tcg.h, include/exec/gen-icount.h
 #pragma once
+#include <array>
+#include <bitset>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -29,10 +31,10 @@ struct Operation {
 
 struct Numbers {
   int st32 = -1, ld64 = -1, st64 = -1, st16 = -1, add64 = -1, sub64 = -1, and64 = -1, sar64 = -1,
-      shl64 = -1, widen = -1, move32 = -1, sub32 = -1, add32 = -1, and32 = -1, sar32 = -1,
-      branch32 = -1, label = -1, instruction = -1, goto_block = -1, exit_block = -1,
+      shl64 = -1, widen = -1, move32 = -1, move64 = -1, sub32 = -1, add32 = -1, and32 = -1,
+      sar32 = -1, branch32 = -1, label = -1, instruction = -1, goto_block = -1, exit_block = -1,
       goto_pointer = -1, callback = -1, callback_end = -1, call = -1, leading_zeros32 = -1,
-      xor32 = -1, multiply64 = -1;
+      xor32 = -1, multiply64 = -1, widen_unsigned = -1, load32 = -1, load64 = -1;
 };
 
 // Finds all of it, once; refused where this QEMU lacks something.
@@ -51,12 +53,34 @@ struct LastInputs {
 };
 LastInputs last_inputs(const Operation& call);
 
-// Puts operations in front of one that is there. The translator has given all of its temporaries back by
-// then, so that a new one may be one that it still uses in the instruction at hand: never one of those
-// of the operation in front of which we are.
+// Temporaries of our own. The translator has given all of its own back by then, so that a new one may be
+// one that it still uses: only those that no operation of the block names are taken.
+class Spare {
+ public:
+  explicit Spare(const std::vector<Operation*>& block);
+  Argument take(int type);
+  // What those taken since then hold is no longer wanted. The translator has few hundred of them.
+  using Taken = std::array<std::size_t, 2>;
+  Taken taken() const { return taken_; }
+  void give_back(Taken since) { taken_ = since; }
+
+ private:
+  static constexpr std::size_t kWords = 32768;  // temporaries lie at the start of the context
+  std::size_t place_of(Argument argument) const { return (argument - context_) / sizeof(Argument); }
+
+  Argument context_;
+  std::bitset<kWords> used_;       // by the block
+  std::vector<Argument> ours_[2];  // of 32 and 64 bits
+  Taken taken_{};
+};
+
+// Puts operations in front of one that is there. What it computes is good for as long as it lives.
 class Ahead {
  public:
-  explicit Ahead(Operation* place) : place_(place) {}
+  Ahead(Operation* place, Spare& spare) : place_(place), spare_(spare), since_(spare.taken()) {}
+  ~Ahead() { spare_.give_back(since_); }
+  Ahead(const Ahead&) = delete;
+  Ahead& operator=(const Ahead&) = delete;
   Argument op32(int number, Argument a, Argument b);  // a new 32-bit temporary holds the result
   Argument op64(int number, Argument a, Argument b = 0);
   void put(int number, Argument a, Argument b = 0, Argument c = 0);
@@ -64,9 +88,9 @@ class Ahead {
   void here(Label* label);
 
  private:
-  Argument temporary(int type) const;
-
   Operation* place_;
+  Spare& spare_;
+  const Spare::Taken since_;
 };
 
 }  // namespace whirl::qemu::tcg
