@@ -7,8 +7,9 @@
 //             one is asked for as execution enters a line. A stall is what execution still waits for
 //   ART       which lines it holds is known at run time only: `lines` says what would have to be
 //             waited for. It is modelled as the last 64 lines fetched, oldest first out
-//   Left out  data in flash other than literals; the 8 lines of data cache (a literal of the F405 with
-//             DCEN costs no wait); the core's halt while flash is being programmed
+//   Data      a literal is counted here where there is no data cache (DCEN); all else that is read from
+//             flash where its address is known, at run time
+//   Left out  fetches that wait for such data; the core's halt while flash is being programmed
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -18,7 +19,7 @@
 
 namespace whirl::cycles {
 
-constexpr int kCached_lines = 64;
+constexpr int kCached_lines = 64, kCached_data_lines = 8;
 
 struct LineUse {
   std::uint32_t line;  // address / line_bytes

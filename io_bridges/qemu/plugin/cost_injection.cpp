@@ -69,6 +69,8 @@ class CostInjection::Writer {
       } else if (number == op.instruction) {
         if (begun > 0) owe(*operations_[k + 1], places_[begun]);
         ++begun;
+      } else if (number == op.load32 || number == op.load64) {
+        if (begun > 0 && cost_.flash_wait != 0 && !cost_.paid[begun - 1]) pay_for_data(o);
       } else if (helper == kLazy_save) {
         owe(o, cost_.lazy_frame);
       } else if (helper == kUdiv || helper == kSdiv) {
@@ -91,6 +93,15 @@ class CostInjection::Writer {
     const Argument where = debt_place();
     ahead.put(op.st64, ahead.op64(op.add64, ahead.op64(op.ld64, where), tcg::number64(amount)),
               where);
+  }
+
+  void pay_for_data(Operation& load) {
+    const tcg::Numbers& op = tcg::numbers();
+    tcg::Ahead ahead(&load, spare_);
+    FlashLines* cache = cost_.data_cache ? &owner_.state_.data : nullptr;
+    const Argument cost = flash_wait(ahead, cache, load.arguments[1], cost_.flash_wait);
+    const Argument where = debt_place();
+    ahead.put(op.st64, ahead.op64(op.add64, ahead.op64(op.ld64, where), cost), where);
   }
 
   // The divider stops early: it goes by the leading zeros that the operands do not share.
@@ -117,18 +128,9 @@ class CostInjection::Writer {
   void look_up(Operation& place, Argument debt, const BlockCost::Line& line, Argument when) {
     const tcg::Numbers& op = tcg::numbers();
     tcg::Ahead ahead(&place, spare_);
-    State& state = owner_.state_;
-    const Argument where = tcg::address(&state.filled[line.number % kLines]);
-    const Argument count = tcg::address(&state.fills);
-    const Argument then = ahead.op64(op.ld64, where), now = ahead.op64(op.ld64, count);
-    const Argument age = ahead.op64(op.sub64, now, then);
-    const Argument spare = ahead.op64(op.sub64, tcg::number64(cycles::kCached_lines - 1), age);
-    Argument missed = ahead.op64(op.sar64, spare, tcg::number64(63));
-    if (when != 0) missed = ahead.op64(op.and64, missed, when);
-    const Argument next = ahead.op64(op.sub64, now, missed);
-    ahead.put(op.st64, next, count);
-    const Argument change = ahead.op64(op.and64, missed, ahead.op64(op.sub64, next, then));
-    ahead.put(op.st64, ahead.op64(op.add64, then, change), where);
+    FlashLines& lines = owner_.state_.code;
+    const Argument where = tcg::address(&lines.filled[line.number % FlashLines::kLines]);
+    const Argument missed = missed_line(ahead, lines, where, when);
     ahead.put(op.add64, debt, debt, ahead.op64(op.and64, missed, tcg::number64(line.missed)));
   }
 
@@ -238,11 +240,6 @@ Result<Done> CostInjection::find_qemu() {
 void CostInjection::find_budget(std::intptr_t decrementer) {
   if (count_.found()) return;
   if (!count_.find_budget(api_.qemu_get_cpu(0), decrementer)) refuse_();
-}
-
-void CostInjection::forget_lines() {
-  std::fill(std::begin(state_.filled), std::end(state_.filled),
-            state_.fills - cycles::kCached_lines);
 }
 
 void CostInjection::put(qemu_plugin_tb* block, const BlockCost& cost, bool keep_stalls) {

@@ -14,6 +14,7 @@
 //   Deadline  a block that the budget would not last for is left at its start and done again, cut off
 //             at the instruction in which the deadline falls: too_short()
 //   Divides   pay by the bits of their quotient, ahead of QEMU's call for them
+//   Data      read from flash pays ahead of the load (access_cost.hpp)
 //   Lines     of the F405's cache (fetch_model.hpp) are looked up in line, without a branch
 //   Unit      2^-16 ns
 #pragma once
@@ -23,6 +24,7 @@
 #include <vector>
 
 #include "io_bridges/qemu/cycles/fetch_model.hpp"
+#include "io_bridges/qemu/plugin/access_cost.hpp"
 #include "io_bridges/qemu/plugin/icount.hpp"
 #include "io_bridges/qemu/plugin/plugin_api.hpp"
 
@@ -43,26 +45,26 @@ struct BlockCost {
   std::vector<Line> lines;
   std::int64_t lazy_frame = 0;   // when the FPU's registers are saved late
   std::int64_t divide_step = 0;  // for each four bits of a quotient
-  std::vector<bool> memory;      // instructions that load or store
+  std::int64_t flash_wait = 0;   // when data comes from flash; with its cache: when it is not held
+  bool data_cache = false;
+  std::vector<bool> paid;    // instructions whose read of flash is in `each`
+  std::vector<bool> memory;  // instructions that load or store
   bool ends_in_branch = false;
 };
 
 class CostInjection {
  public:
-  static constexpr std::uint32_t kLines = 65536;  // of 1 MiB of flash, 16 bytes each
-
   // `refuse` ends the run: QEMU's inside is not what it is in 7.2.
   CostInjection(const Api& api, std::function<void()> refuse)
-      : api_(api), refuse_(std::move(refuse)) {
-    forget_lines();
-  }
+      : api_(api), refuse_(std::move(refuse)) {}
 
   Result<Done> find_qemu();
   void put(qemu_plugin_tb* block, const BlockCost& cost, bool keep_stalls);
   // What has been counted at instruction `n` of such a block, less what those before it cost.
   static std::int64_t ahead_at(const BlockCost& cost, std::size_t n);
   void code_thrown_away() { blocks_.clear(); }
-  void forget_lines();
+  void forget_code_lines() { state_.code.forget(); }
+  void forget_data_lines() { state_.data.forget(); }
 
   const InstructionCount& count() const { return count_; }
   std::int64_t debt() const { return state_.debt; }
@@ -74,10 +76,9 @@ class CostInjection {
  private:
   struct State {  // written by translated code
     std::int64_t debt = 0;
-    std::int64_t entered = 0;     // -1: the last block ended in a taken branch
-    std::int64_t stalled = 0;     // what lines and entry cost the last block that keeps it
-    std::int64_t fills = 0;       // lines fetched so far
-    std::int64_t filled[kLines];  // when each was, as a count of fills
+    std::int64_t entered = 0;  // -1: the last block ended in a taken branch
+    std::int64_t stalled = 0;  // what lines and entry cost the last block that keeps it
+    FlashLines code{cycles::kCached_lines}, data{cycles::kCached_data_lines};
   };
   struct Block {
     CostInjection* owner;

@@ -31,6 +31,7 @@ BlockCost CycleClock::cost_of(const std::vector<cycles::Instruction>& run) const
     const double then = until + core[n] + fetch.stalls[n];
     cost.each.push_back(units(then) - units(until));
     cost.memory.push_back(run[n].accesses_memory());
+    cost.paid.push_back(run[n].literal && !timing_.flash.data_cache);
     until = then;
   }
   const cycles::Instruction& last = run.back();
@@ -43,6 +44,8 @@ BlockCost CycleClock::cost_of(const std::vector<cycles::Instruction>& run) const
   }
   cost.lazy_frame = units(cycles::kFloating_frame);
   cost.divide_step = units(1);
+  cost.flash_wait = units(timing_.flash.wait_states);
+  cost.data_cache = timing_.flash.data_cache;
   return cost;
 }
 
@@ -156,7 +159,8 @@ Nanoseconds CycleClock::slept(Nanoseconds from, Nanoseconds to) {
 
 bool CycleClock::retime(const board::CoreTiming& timing) {
   const bool stale = !(timing == timing_);
-  if (timing_.flash.line_cache && !timing.flash.line_cache) code_.forget_lines();
+  if (timing_.flash.line_cache && !timing.flash.line_cache) code_.forget_code_lines();
+  if (timing_.flash.data_cache && !timing.flash.data_cache) code_.forget_data_lines();
   if (timing.hclk_Hz != timing_.hclk_Hz) {
     edges_ = core_cycles();
     edge_units_ = static_cast<double>(core_units());

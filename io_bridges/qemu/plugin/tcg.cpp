@@ -76,6 +76,8 @@ constexpr Wanted kWanted[] = {{&Numbers::st32, "st_i32"},
                               {&Numbers::xor32, "xor_i32"},
                               {&Numbers::multiply64, "mul_i64"},
                               {&Numbers::widen_unsigned, "extu_i32_i64"},
+                              {&Numbers::shr32, "shr_i32"},
+                              {&Numbers::shr64, "shr_i64"},
                               {&Numbers::load32, "qemu_ld_i32"},
                               {&Numbers::load64, "qemu_ld_i64"}};
 

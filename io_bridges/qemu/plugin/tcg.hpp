@@ -34,7 +34,8 @@ struct Numbers {
       shl64 = -1, widen = -1, move32 = -1, move64 = -1, sub32 = -1, add32 = -1, and32 = -1,
       sar32 = -1, branch32 = -1, label = -1, instruction = -1, goto_block = -1, exit_block = -1,
       goto_pointer = -1, callback = -1, callback_end = -1, call = -1, leading_zeros32 = -1,
-      xor32 = -1, multiply64 = -1, widen_unsigned = -1, load32 = -1, load64 = -1;
+      xor32 = -1, multiply64 = -1, widen_unsigned = -1, shr32 = -1, shr64 = -1, load32 = -1,
+      load64 = -1;
 };
 
 // Finds all of it, once; refused where this QEMU lacks something.

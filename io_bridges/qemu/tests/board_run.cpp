@@ -1,6 +1,7 @@
 #include "io_bridges/qemu/tests/board_run.hpp"
 
 #include <cstdlib>
+#include <sstream>
 
 #include "harness/base/digest.hpp"
 
@@ -106,6 +107,15 @@ std::vector<std::uint32_t> BoardRun::said() const {
     if (at == std::string::npos) continue;
     values.push_back(static_cast<std::uint32_t>(std::strtoul(text.c_str() + at + 5, nullptr, 16)));
   }
+  return values;
+}
+
+std::vector<std::uint32_t> BoardRun::told() const {
+  std::string text;
+  for (const Message* message : of(io::Kind::uart_received)) text += text_of(*message);
+  std::istringstream lines(text.substr(0, text.rfind('\n')));
+  std::vector<std::uint32_t> values;
+  for (std::uint32_t value = 0; lines >> value;) values.push_back(value);
   return values;
 }
 

@@ -1,8 +1,6 @@
 // Oscillators that are off: the core's own count is as ever, the world's time is not.
 #include <gtest/gtest.h>
 
-#include <sstream>
-
 #include "io_bridges/qemu/tests/board_run.hpp"
 
 namespace whirl::board_test {
@@ -38,17 +36,8 @@ double period_ns(const BoardRun& run) {
          static_cast<double>(raised.size() - 1);
 }
 
-std::vector<std::uint32_t> told(const BoardRun& run) {
-  std::string text;
-  for (const Message* message : run.of(io::Kind::uart_received)) text += run.text_of(*message);
-  std::istringstream lines(text.substr(0, text.rfind('\n')));
-  std::vector<std::uint32_t> values;
-  for (std::uint32_t value = 0; lines >> value;) values.push_back(value);
-  return values;
-}
-
 void expect_cycles(const BoardRun& run, std::uint32_t cycles) {
-  const auto values = told(run);
+  const auto values = run.told();
   EXPECT_GT(values.size(), 50u);
   for (const std::uint32_t value : values) EXPECT_NEAR(value, cycles, 1);  // asleep, to the ns
 }
