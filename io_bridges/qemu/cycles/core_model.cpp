@@ -10,7 +10,7 @@ constexpr double kRefill_branch = 1.5;  // 1 to 3 by alignment and width: the me
 constexpr double kRefill_register = 1.5;
 constexpr double kRefill_load = 3;            // "at least" 5 for LDR PC, with its 2 of a load
 constexpr double kDivide = 2;                 // at least; see core_model.hpp
-constexpr double kLong_multiply_m3 = 4;       // 3 to 7 by operands
+constexpr double kLong_multiply_m3 = 3;       // at least; see core_model.hpp
 constexpr double kLiteral = 0.25;             // meets the instruction fetch in some alignments
 constexpr double kStore_register_offset = 1;  // [Rn, #imm] alone is "always one cycle"
 constexpr double kLoad_after_store = 1;       // the write buffer is emptied first
@@ -58,6 +58,7 @@ double alone(Core core, const Instruction& i) {
   const Row& row = kTable[static_cast<std::size_t>(i.kind)];
   double cycles = (core == Core::cortex_m3 ? row.m3 : row.m4) + i.registers;
   if (i.doubleword) cycles += 1;
+  if (core == Core::cortex_m3 && i.accumulates) cycles += i.with_sign ? 2 : 1;
   if (i.literal) cycles += kLiteral;
   if (i.kind == Class::store && i.register_offset) cycles += kStore_register_offset;
   if (i.flow == Flow::direct || i.flow == Flow::indirect) cycles += refill_cycles(i);

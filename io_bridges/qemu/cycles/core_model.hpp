@@ -7,8 +7,11 @@
 //             board was at hand, so it is no bound
 //   Divides   2 to 12 by operands: here 2, and the clock adds 1 and another for each four bits of the
 //             quotient where it is not 0 (ARM: "early termination"; the steps are our reading of it)
-//   Left out  operands of long multiplies, unaligned accesses, costs that reach
-//             over the end of a basic block, DMA on the bus; an IT's skipped instructions cost as if
+//   Multiplies  long ones of the M3 take 3 to 5, with accumulation 4 to 6, signed 5 to 7: here the
+//             least, and the clock adds 1 for each operand that does not fit 16 bits (our reading of
+//             ARM's "depending on the size of the source values")
+//   Addresses unaligned accesses and data in flash: the clock adds those too
+//   Left out  costs that reach over the end of a basic block, DMA on the bus; an IT's skipped instructions cost as if
 //             they were executed
 #pragma once
 #include <vector>

@@ -211,6 +211,8 @@ void decode_register_32(Instruction& i, Bits first, Bits second) {
     i.kind = Class::divide;
   } else if (first.is(0xFF80, 0xFB80)) {
     i.kind = Class::long_multiply;
+    i.accumulates = first.field(6, 1) != 0;
+    i.with_sign = first.field(5, 1) == 0;
     i.writes |= bit(ra);
   }
 }

@@ -52,6 +52,8 @@ struct Instruction {
   bool updates_base = false;                  // write-back
   bool register_offset = false;               // [Rn, Rm]
   bool doubleword = false;                    // VLDR, VSTR of D registers
+  bool accumulates = false;                   // a long multiply
+  bool with_sign = false;                     // the same
   bool folding_it = false;                    // an IT that may fold into what is before it
   std::uint32_t writes = 0;                   // core registers, a bit each
   std::uint32_t address_from = 0;             // core registers that make its address

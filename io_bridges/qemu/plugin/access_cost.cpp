@@ -46,4 +46,16 @@ Argument flash_wait(Ahead& ahead, FlashLines* cache, Argument address, std::int6
   return ahead.op64(op.and64, missed, number64(wait));
 }
 
+// A table of two bits for each place within a word.
+Argument unaligned_cycles(Ahead& ahead, const tcg::Operation& access) {
+  constexpr std::int32_t kHalf_word = 0b01'00'01'00, kWord = 0b10'01'10'00;
+  const tcg::Numbers& op = tcg::numbers();
+  const int bytes_log2 = tcg::size_log2(access);
+  if (bytes_log2 == 0) return number64(0);
+  const Argument place = ahead.op32(op.and32, access.arguments[1], number32(3));
+  const Argument table = number32(bytes_log2 == 1 ? kHalf_word : kWord);
+  const Argument entry = ahead.op32(op.shr32, table, ahead.op32(op.shl32, place, number32(1)));
+  return ahead.op64(op.widen, ahead.op32(op.and32, entry, number32(3)));
+}
+
 }  // namespace whirl::qemu

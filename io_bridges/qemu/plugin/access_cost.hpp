@@ -5,6 +5,8 @@
 //
 //   Flash     data comes through a cache of 8 lines of 128 bits on the F405 (RM0090 3.4.2), taken as
 //             the last 8 lines fetched, oldest first out; without a cache each read waits
+//   Unaligned a half-word goes as two bytes, one cycle more; a word as two half-words, one more, or as a
+//             byte, a half-word and a byte, two more (DDI 0439 3.3.2, DDI 0337 the like)
 //   Place     ahead of the access: one that turns out to reach a register is done again, but costs
 //             nothing here
 #pragma once
@@ -33,5 +35,8 @@ tcg::Argument missed_line(tcg::Ahead& ahead, FlashLines& lines, tcg::Argument wh
 // What a read of data waits for: `wait` when it is of flash, with a cache when it misses.
 tcg::Argument flash_wait(tcg::Ahead& ahead, FlashLines* cache, tcg::Argument address,
                          std::int64_t wait);
+
+// Cycles more of a load or store (an operation that accesses the guest's memory) that is not aligned.
+tcg::Argument unaligned_cycles(tcg::Ahead& ahead, const tcg::Operation& access);
 
 }  // namespace whirl::qemu

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "harness/base/check.hpp"
+#include "io_bridges/qemu/plugin/operand_cost.hpp"
 #include "io_bridges/qemu/plugin/tcg.hpp"
 
 namespace whirl::qemu {
@@ -25,7 +26,7 @@ std::vector<std::int64_t> places_of(const BlockCost& cost) {
   for (std::size_t n = 0; n < length; ++n) {
     const bool last = n + 1 == length;
     // A block of one instruction is what QEMU does again; a branch has left before a place behind it.
-    if (cost.memory[n] && length > 1 && !(last && cost.ends_in_branch)) place = n + 1;
+    if (cost.kinds[n].memory && length > 1 && !(last && cost.ends_in_branch)) place = n + 1;
     places[place] += cost.each[n] - kUnits_per_ns;
   }
   return places;
@@ -69,8 +70,13 @@ class CostInjection::Writer {
       } else if (number == op.instruction) {
         if (begun > 0) owe(*operations_[k + 1], places_[begun]);
         ++begun;
-      } else if (number == op.load32 || number == op.load64) {
-        if (begun > 0 && cost_.flash_wait != 0 && !cost_.paid[begun - 1]) pay_for_data(o);
+      } else if (begun > 0 && (number == op.load32 || number == op.load64)) {
+        pay_by_address(o, true, cost_.kinds[begun - 1]);
+      } else if (begun > 0 && number == op.store32) {
+        pay_by_address(o, false, cost_.kinds[begun - 1]);
+      } else if (begun > 0 && cost_.kinds[begun - 1].long_multiply &&
+                 (number == op.multiply_long || number == op.multiply_long_signed)) {
+        pay_for_product(o, number == op.multiply_long_signed);
       } else if (helper == kLazy_save) {
         owe(o, cost_.lazy_frame);
       } else if (helper == kUdiv || helper == kSdiv) {
@@ -95,33 +101,42 @@ class CostInjection::Writer {
               where);
   }
 
-  void pay_for_data(Operation& load) {
+  void owe(tcg::Ahead& ahead, Argument amount) {
     const tcg::Numbers& op = tcg::numbers();
-    tcg::Ahead ahead(&load, spare_);
-    FlashLines* cache = cost_.data_cache ? &owner_.state_.data : nullptr;
-    const Argument cost = flash_wait(ahead, cache, load.arguments[1], cost_.flash_wait);
     const Argument where = debt_place();
-    ahead.put(op.st64, ahead.op64(op.add64, ahead.op64(op.ld64, where), cost), where);
+    ahead.put(op.st64, ahead.op64(op.add64, ahead.op64(op.ld64, where), amount), where);
   }
 
-  // The divider stops early: it goes by the leading zeros that the operands do not share.
-  void pay_for_quotient(Operation& call, bool with_sign) {
+  Argument times_cycle(tcg::Ahead& ahead, Argument count) {
+    return ahead.op64(tcg::numbers().multiply64, count, tcg::number64(cost_.cycle));
+  }
+
+  void pay_by_address(Operation& access, bool loads, const BlockCost::Kind& kind) {
     const tcg::Numbers& op = tcg::numbers();
+    const bool waits = loads && kind.reads_flash && cost_.flash_wait != 0;
+    const bool unaligned = kind.unaligned && tcg::size_log2(access) > 0;
+    if (!waits && !unaligned) return;
+    tcg::Ahead ahead(&access, spare_);
+    FlashLines* cache = cost_.data_cache ? &owner_.state_.data : nullptr;
+    Argument cost = 0;
+    if (waits) cost = flash_wait(ahead, cache, access.arguments[1], cost_.flash_wait);
+    if (unaligned) {
+      const Argument more = times_cycle(ahead, unaligned_cycles(ahead, access));
+      cost = waits ? ahead.op64(op.add64, cost, more) : more;
+    }
+    owe(ahead, cost);
+  }
+
+  void pay_for_quotient(Operation& call, bool with_sign) {
     const auto [dividend, divisor] = tcg::last_inputs(call);
     tcg::Ahead ahead(&call, spare_);
-    const auto zeros = [&](Argument x) {
-      if (with_sign) x = ahead.op32(op.xor32, x, ahead.op32(op.sar32, x, tcg::number32(31)));
-      return ahead.op32(op.leading_zeros32, x, tcg::number32(32));
-    };
-    const Argument bits = ahead.op32(op.sub32, zeros(divisor), zeros(dividend));
-    const Argument none = ahead.op32(op.sar32, bits, tcg::number32(31));
-    const Argument steps =
-        ahead.op32(op.add32, ahead.op32(op.sar32, bits, tcg::number32(2)), tcg::number32(1));
-    const Argument some = ahead.op32(op.sub32, tcg::number32(-1), none);
-    const Argument wide = ahead.op64(op.widen, ahead.op32(op.and32, steps, some));
-    const Argument cost = ahead.op64(op.multiply64, wide, tcg::number64(cost_.divide_step));
-    const Argument where = debt_place();
-    ahead.put(op.st64, ahead.op64(op.add64, ahead.op64(op.ld64, where), cost), where);
+    owe(ahead, times_cycle(ahead, quotient_steps(ahead, dividend, divisor, with_sign)));
+  }
+
+  void pay_for_product(Operation& multiply, bool with_sign) {
+    tcg::Ahead ahead(&multiply, spare_);
+    const Argument a = multiply.arguments[2], b = multiply.arguments[3];  // behind two results
+    owe(ahead, times_cycle(ahead, long_multiply_steps(ahead, a, b, with_sign)));
   }
 
   // Adds what a line costs that is not among the last 64 fetched, and counts it as fetched.

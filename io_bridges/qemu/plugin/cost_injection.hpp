@@ -13,8 +13,8 @@
 //             flash takes (`entered`)
 //   Deadline  a block that the budget would not last for is left at its start and done again, cut off
 //             at the instruction in which the deadline falls: too_short()
-//   Divides   pay by the bits of their quotient, ahead of QEMU's call for them
-//   Data      read from flash pays ahead of the load (access_cost.hpp)
+//   Operands  are paid for ahead of what computes with them (operand_cost.hpp)
+//   Addresses ahead of the access: data in flash, and what is unaligned (access_cost.hpp)
 //   Lines     of the F405's cache (fetch_model.hpp) are looked up in line, without a branch
 //   Unit      2^-16 ns
 #pragma once
@@ -43,12 +43,17 @@ struct BlockCost {
     std::int64_t missed;
   };
   std::vector<Line> lines;
-  std::int64_t lazy_frame = 0;   // when the FPU's registers are saved late
-  std::int64_t divide_step = 0;  // for each four bits of a quotient
-  std::int64_t flash_wait = 0;   // when data comes from flash; with its cache: when it is not held
+  std::int64_t cycle = 0;
+  std::int64_t lazy_frame = 0;  // when the FPU's registers are saved late
+  std::int64_t flash_wait = 0;  // when data comes from flash; with its cache: when it is not held
   bool data_cache = false;
-  std::vector<bool> paid;    // instructions whose read of flash is in `each`
-  std::vector<bool> memory;  // instructions that load or store
+  struct Kind {
+    bool memory;         // loads or stores
+    bool reads_flash;    // may, and `each` has not counted it
+    bool unaligned;      // may be
+    bool long_multiply;  // whose cycles go by its operands
+  };
+  std::vector<Kind> kinds;  // of each instruction
   bool ends_in_branch = false;
 };
 

@@ -22,6 +22,18 @@ std::int64_t CycleClock::units(double cycles) const {
   return std::llround(cycles * units_per_cycle_);
 }
 
+// A stack lies in RAM, and its pointer is aligned, as the narrow encodings' offsets from it are.
+BlockCost::Kind CycleClock::kind_of(const cycles::Instruction& i) const {
+  constexpr std::uint32_t kSp = 1u << 13;
+  const bool on_stack = i.address_from == kSp;
+  const bool single = i.kind == cycles::Class::load || i.kind == cycles::Class::store;
+  return {
+      .memory = i.accesses_memory(),
+      .reads_flash = !on_stack && !(i.literal && !timing_.flash.data_cache),
+      .unaligned = single && !i.literal && !(on_stack && i.bytes == 2),
+      .long_multiply = core_ == cycles::Core::cortex_m3 && i.kind == cycles::Class::long_multiply};
+}
+
 BlockCost CycleClock::cost_of(const std::vector<cycles::Instruction>& run) const {
   const std::vector<double> core = cycles::core_cycles(core_, run);
   const cycles::Fetch fetch = cycles::fetch_stalls(core_, timing_.flash, run, core);
@@ -30,8 +42,7 @@ BlockCost CycleClock::cost_of(const std::vector<cycles::Instruction>& run) const
   for (std::size_t n = 0; n < run.size(); ++n) {
     const double then = until + core[n] + fetch.stalls[n];
     cost.each.push_back(units(then) - units(until));
-    cost.memory.push_back(run[n].accesses_memory());
-    cost.paid.push_back(run[n].literal && !timing_.flash.data_cache);
+    cost.kinds.push_back(kind_of(run[n]));
     until = then;
   }
   const cycles::Instruction& last = run.back();
@@ -43,7 +54,7 @@ BlockCost CycleClock::cost_of(const std::vector<cycles::Instruction>& run) const
     cost.lines.push_back({use.line, units(use.cycles)});
   }
   cost.lazy_frame = units(cycles::kFloating_frame);
-  cost.divide_step = units(1);
+  cost.cycle = units(1);
   cost.flash_wait = units(timing_.flash.wait_states);
   cost.data_cache = timing_.flash.data_cache;
   return cost;

@@ -44,6 +44,7 @@ class CycleClock final : public CoreClock {
 
  private:
   std::int64_t units(double cycles) const;
+  BlockCost::Kind kind_of(const cycles::Instruction& i) const;
   BlockCost cost_of(const std::vector<cycles::Instruction>& run) const;
   std::int64_t core_units() const { return (anchor_ns_ << kUnit_shift) + code_.debt(); }
   double cycles_since_edge(std::int64_t units) const;

@@ -63,6 +63,7 @@ constexpr Wanted kWanted[] = {{&Numbers::st32, "st_i32"},
                               {&Numbers::add32, "add_i32"},
                               {&Numbers::and32, "and_i32"},
                               {&Numbers::sar32, "sar_i32"},
+                              {&Numbers::shl32, "shl_i32"},
                               {&Numbers::branch32, "brcond_i32"},
                               {&Numbers::label, "set_label"},
                               {&Numbers::instruction, "insn_start"},
@@ -79,7 +80,10 @@ constexpr Wanted kWanted[] = {{&Numbers::st32, "st_i32"},
                               {&Numbers::shr32, "shr_i32"},
                               {&Numbers::shr64, "shr_i64"},
                               {&Numbers::load32, "qemu_ld_i32"},
-                              {&Numbers::load64, "qemu_ld_i64"}};
+                              {&Numbers::load64, "qemu_ld_i64"},
+                              {&Numbers::store32, "qemu_st_i32"},
+                              {&Numbers::multiply_long, "mulu2_i32"},
+                              {&Numbers::multiply_long_signed, "muls2_i32"}};
 
 whirl::Error lacking(const std::string& what) {
   return {ErrorKind::host, "QEMU", "its translator has no " + what,
@@ -166,6 +170,11 @@ std::string_view helper_name(const Operation& operation) {
 LastInputs last_inputs(const Operation& call) {
   const unsigned last = (call.counts & 0xF) + ((call.counts >> 4) & 0xF) - 1;
   return {call.arguments[last - 1], call.arguments[last]};
+}
+
+// MemOpIdx: four bits of MMU index, then MemOp, whose lowest three bits are the size.
+int size_log2(const Operation& access) {
+  return static_cast<int>((access.arguments[2] >> 4) & 7);
 }
 
 Spare::Spare(const std::vector<Operation*>& block)

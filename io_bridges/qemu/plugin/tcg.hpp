@@ -32,10 +32,11 @@ struct Operation {
 struct Numbers {
   int st32 = -1, ld64 = -1, st64 = -1, st16 = -1, add64 = -1, sub64 = -1, and64 = -1, sar64 = -1,
       shl64 = -1, widen = -1, move32 = -1, move64 = -1, sub32 = -1, add32 = -1, and32 = -1,
-      sar32 = -1, branch32 = -1, label = -1, instruction = -1, goto_block = -1, exit_block = -1,
-      goto_pointer = -1, callback = -1, callback_end = -1, call = -1, leading_zeros32 = -1,
-      xor32 = -1, multiply64 = -1, widen_unsigned = -1, shr32 = -1, shr64 = -1, load32 = -1,
-      load64 = -1;
+      sar32 = -1, shl32 = -1, branch32 = -1, label = -1, instruction = -1, goto_block = -1,
+      exit_block = -1, goto_pointer = -1, callback = -1, callback_end = -1, call = -1,
+      leading_zeros32 = -1, xor32 = -1, multiply64 = -1, widen_unsigned = -1, shr32 = -1,
+      shr64 = -1, load32 = -1, load64 = -1, store32 = -1, multiply_long = -1,
+      multiply_long_signed = -1;
 };
 
 // Finds all of it, once; refused where this QEMU lacks something.
@@ -53,6 +54,9 @@ struct LastInputs {
   Argument first, second;
 };
 LastInputs last_inputs(const Operation& call);
+
+// Of the guest's memory that such an operation accesses, log2 of the bytes.
+int size_log2(const Operation& access);
 
 // Temporaries of our own. The translator has given all of its own back by then, so that a new one may be
 // one that it still uses: only those that no operation of the block names are taken.

@@ -47,5 +47,42 @@ TEST(AccessCost, DataFromFlashWaitsUnlessACacheHoldsIt) {
                "F103");
 }
 
+// DDI 0337 and 0439: a half-word goes as two bytes, a word as two half-words or as a byte, a half-word and a
+// byte, each transfer a cycle.
+TEST(AccessCost, WhatIsNotAlignedTakesACycleForEachTransferMore) {
+  for (const auto& [name, mcu] :
+       {std::pair{"operands_f4", "stm32f405rg"}, std::pair{"operands_f1", "stm32f103cb"}}) {
+    const Counts counts = told(name, mcu);
+    ASSERT_GE(counts.size(), 18u) << mcu;
+    // LDR, STR, LDRH, LDRSH, STRH, LDRB at 1, 2 and 3 bytes behind a word.
+    const Counts expected = {200, 200, 100, 100, 100, 0,   100, 100, 0,
+                             0,   0,   0,   200, 200, 100, 100, 100, 0};
+    for (std::size_t n = 0; n < expected.size(); ++n) {
+      EXPECT_NEAR(counts[n], expected[n], 1) << mcu << ", access " << n;
+    }
+  }
+}
+
+// DDI 0337: UMULL, SMULL 3 to 5, UMLAL, SMLAL 4 to 7, the signed one a cycle longer, by the size of the
+// operands; DDI 0439: always 1.
+TEST(OperandCost, LongMultipliesOfAnM3GoByTheSizeOfTheirOperands) {
+  const Counts f4 = told("operands_f4", "stm32f405rg"), f1 = told("operands_f1", "stm32f103cb");
+  ASSERT_EQ(f4.size(), 25u);
+  ASSERT_EQ(f1.size(), 25u);
+  const Counts expected = {100, 200, 0, 200, 100, 200};
+  for (std::size_t n = 0; n < expected.size(); ++n) {
+    EXPECT_NEAR(f1[18 + n], expected[n], 3) << n;  // and where a block is cut
+    EXPECT_NEAR(f4[18 + n], 0, 1) << n;
+  }
+}
+
+TEST(OperandCost, WhatIsCountedTouchesNoResult) {
+  for (const Counts& counts :
+       {told("operands_f4", "stm32f405rg"), told("operands_f1", "stm32f103cb")}) {
+    ASSERT_EQ(counts.size(), 25u);
+    EXPECT_EQ(counts.back(), 0u);
+  }
+}
+
 }  // namespace
 }  // namespace whirl::board_test
