@@ -75,9 +75,7 @@ Result<Done> Machine::build(const std::string& versions) {
       api_, board_, reinterpret_cast<MemoryRegion*>(registers),
       [this] { reset_core(stm32::ResetCause::software); },
       [this](std::uint32_t address) { accessed(address); });
-  api_.timer_init_full(
-      &timer_, nullptr, kVirtualClock, 1, 0,
-      [](void* self) { static_cast<Machine*>(self)->on_timer(); }, this);
+  init_timers();
   map_memories();
   load_image();
   board_.power_on(versions);
@@ -94,6 +92,16 @@ Result<Done> Machine::build(const std::string& versions) {
       },
       WorkData{.pointer = this});
   return Done{};
+}
+
+// Under gdb the main loop lives, and takes a core that gdb has stopped for one that sleeps: it would move
+// the clock on to the next deadline at each stop. It leaves out timers that are marked as external.
+void Machine::init_timers() {
+  constexpr int kExternal = 1;  // QEMU_TIMER_ATTR_EXTERNAL
+  const auto fire = [](void* self) { static_cast<Machine*>(self)->on_timer(); };
+  const int marks = board_.config().gdb_port != 0 ? kExternal : 0;
+  api_.timer_init_full(&timer_, nullptr, kVirtualClock, 1, marks, fire, this);
+  api_.timer_init_full(&jump_, nullptr, kVirtualClock, 1, 0, fire, this);
 }
 
 void Machine::arm(io::Nanoseconds deadline) {
@@ -293,16 +301,18 @@ void Machine::give_way() {
 // False: gdb is stopping the machine at this moment, and a stopped clock does not move.
 bool Machine::catch_up() {
   if (api_.qemu_clock_get_ns(kVirtualClock) != sleep_now_ns_) {
-    api_.timer_mod(&timer_, sleep_now_ns_);
+    api_.timer_del(&timer_);  // the clock moves for the first timer only
+    api_.timer_mod(&jump_, sleep_now_ns_);
     const std::int64_t there = api_.qemu_clock_get_ns(kVirtualClock);
     if (there < sleep_now_ns_ && board_.config().gdb_port != 0) return false;
     WHIRL_CHECK(there == sleep_now_ns_, there, sleep_now_ns_);
+    api_.timer_del(&jump_);
   }
   act_on_deferred();
   return true;
 }
 
-// The timer is set to where the board is already; when gdb lets go it fires, and the rest follows.
+// `jump_` is set to where the board is already; when gdb lets go it fires, and the rest follows.
 void Machine::hold() {
   wake();
 }

@@ -110,6 +110,7 @@ class Machine final : public board::Emulator {
   void act(const Deferred& what);
   void act_or_defer(const Deferred& what);
   void queue_reset(stm32::ResetCause cause);
+  void init_timers();
   void park_main_loop();
 
   const Api& api_;
@@ -124,6 +125,7 @@ class Machine final : public board::Emulator {
   GByteArray* register_text_ = nullptr;
   void* parking_ = nullptr;  // bottom half of the main loop
   Timer timer_;
+  Timer jump_;  // under gdb: moves the clock of a core that sleeps
   std::unique_ptr<CoreClock> clock_;
   const std::uint32_t* core_registers_ = nullptr;  // R0..R15 in QEMU's CPU; its env begins there
   io::Nanoseconds slept_ns_ = 0, asleep_since_ns_ = -1, sleep_now_ns_ = 0;

@@ -30,9 +30,7 @@ namespace {
 
 void keep(BoardRun& run, Digest& digest, const io::Batch& batch) {
   digest.add_bytes(batch.bytes().data(), batch.bytes().size());
-  for (io::Reader r(batch.bytes()); r.next();) {
-    run.messages.push_back({r.header(), {r.payload().begin(), r.payload().end()}});
-  }
+  run.keep(batch);
 }
 
 }  // namespace
@@ -77,6 +75,12 @@ BoardRun run_for(const BoardSetup& setup, int milliseconds) {
   keep(run, digest, happened);
   run.digest = digest.hex();
   return run;
+}
+
+void BoardRun::keep(const io::Batch& batch) {
+  for (io::Reader r(batch.bytes()); r.next();) {
+    messages.push_back({r.header(), {r.payload().begin(), r.payload().end()}});
+  }
 }
 
 std::vector<const Message*> BoardRun::of(io::Kind kind) const {

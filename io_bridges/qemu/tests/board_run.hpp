@@ -39,6 +39,7 @@ struct BoardRun {
   std::vector<Message> messages;
   std::string digest;
 
+  void keep(const io::Batch& batch);
   std::vector<const Message*> of(io::Kind kind) const;
   // What the image said: values written to the bench part's SAY register.
   std::vector<std::uint32_t> said() const;

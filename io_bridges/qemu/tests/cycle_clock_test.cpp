@@ -81,6 +81,17 @@ TEST(CycleClock, WatchingChangesNoMomentOfTheImageAndCountsEachCallOnce) {
   }
 }
 
+// Each image's calls differ by their NOPs of a cycle each, in SRAM as in flash without wait states.
+TEST(CycleClock, CodeThatIsWrittenOverOtherCodeCostsWhatItNowIs) {
+  const auto said = run_for(by_cycles("rewritten"), 20).said();
+  ASSERT_EQ(said.size(), 8u);
+  for (const std::size_t first : {0u, 4u}) {
+    for (std::size_t n = 1; n < 4; ++n) {
+      EXPECT_EQ(said[first + n - 1] - said[first + n], 10u) << first << ", " << n;
+    }
+  }
+}
+
 TEST(CycleClock, AComputingCoreIsBusyAlways) {
   const BoardRun busy_run = run_for(by_cycles("busy"), 5);
   ASSERT_EQ(busy_run.of(io::Kind::busy_time).size(), 5u);

@@ -57,6 +57,44 @@ TEST(Gdb, StopsInAFunctionWhileTheWorldWaits) {
   target.stop(happened);
 }
 
+// What a step costs on its own is what the tables say of it alone: neighbours no longer overlap. In
+// counted() that is the folding and pipelining of at most two pairs a turn, of which 60 steps see five.
+TEST(Gdb, SteppingNeitherLosesNorAddsCycles) {
+  BoardSetup setup{image("stepped"), {}};
+  setup.more = R"("ns_per_instruction":0)";
+  const auto free_run = run_for(setup, 3).said();
+  setup.gdb_port = 20000 + static_cast<int>((getpid() + 14) % 20000);
+  VirtualBoard target(options_for(setup));
+  ASSERT_TRUE(target.start());
+  std::string text;
+  std::thread person([&] {
+    text = gdb(setup.gdb_port, "stepped",
+               "-ex 'break counted' -ex 'continue' -ex 'continue' -ex 'stepi 60' -ex 'print $pc'"
+               " -ex 'delete' -ex 'detach'");
+    let_nobody_wait(target, text);
+  });
+  BoardRun run;
+  bool alive = true;
+  for (int k = 1; k <= 3 && alive; ++k) {
+    io::Batch happened;
+    target.run(k * std::int64_t{1'000'000}, {});
+    alive = target.arrive(happened).ok();
+    run.keep(happened);
+  }
+  person.join();
+  io::Batch rest;
+  target.stop(rest);
+  run.keep(rest);
+  ASSERT_TRUE(alive) << target.output();
+  const auto stepped = run.said();
+  ASSERT_EQ(stepped.size(), free_run.size()) << text;
+  ASSERT_EQ(stepped.size(), 5u);
+  for (std::size_t n = 0; n < stepped.size(); ++n) {
+    const bool by_steps = n == 1;
+    EXPECT_NEAR(stepped[n], free_run[n], by_steps ? 10.0 : n == 0 ? 3.0 : 0.0) << n << text;
+  }
+}
+
 TEST(Gdb, InterruptsAnImageThatMostlySleeps) {
   BoardSetup setup{image("sleeper"), {}};
   setup.gdb_port = 20000 + static_cast<int>((getpid() + 7) % 20000);
