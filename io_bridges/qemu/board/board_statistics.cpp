@@ -1,4 +1,6 @@
-// What the board says of the run at its end.
+// What a board tells of a whole run at its end, as JSON: how deep its stacks went, how long the core slept,
+// what nobody answered, how long DMA may have held the core up, which calls were the longest.
+#include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -111,11 +113,13 @@ void Board::add_statistics() {
   const Peek peek = [this](std::uint32_t address, void* to, std::size_t size) {
     return emulator_.peek(address, to, size);
   };
-  nlohmann::json statistics = {{"unanswered", list},
-                               {"stack_used_bytes", stack_used(*setup_.part, peek)},
-                               {"slept_ns", emulator_.slept_ns()},
-                               {"hse_start_ns", setup_.config.hse_start_ns},
-                               {"ns_per_instruction", setup_.config.ns_per_instruction}};
+  nlohmann::json statistics = {
+      {"unanswered", list},
+      {"stack_used_bytes", stack_used(*setup_.part, peek)},
+      {"slept_ns", emulator_.slept_ns()},
+      {"core_waits_for_dma_at_most_ns", std::llround(chip_->core_waits_for_dma_at_most_ns())},
+      {"hse_start_ns", setup_.config.hse_start_ns},
+      {"ns_per_instruction", setup_.config.ns_per_instruction}};
   if (watch_.stacks().count() > 1) statistics["task_stacks"] = task_stacks();
   statistics["watched"] = watched_calls();
   statistics["handlers"] = handlers();

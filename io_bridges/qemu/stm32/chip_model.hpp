@@ -82,6 +82,7 @@ class ChipModel {
   // The flash interface as it is set up now, and who is told when that changes.
   virtual cycles::FlashTiming flash_timing() const = 0;
   virtual void on_flash_timing_change(std::function<void()> changed) = 0;
+  virtual double core_waits_for_dma_at_most_ns() const { return 0.0; }  // see dma_bus.hpp
   virtual double sysclk_Hz() const = 0;  // what the firmware has set up now
 };
 

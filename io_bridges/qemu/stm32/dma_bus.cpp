@@ -16,7 +16,17 @@ Region* DmaBus::find(std::uint32_t address) {
   return page < kPages && pages_[page].block != nullptr ? &pages_[page] : nullptr;
 }
 
+void DmaBus::count(std::uint32_t address) {
+  constexpr std::uint32_t kApb2 = kBase + 0x10000, kEnd_of_apb = kBase + 0x18000;
+  const double hclk_Hz = clocks_.hclk_Hz();
+  if (hclk_Hz <= 0.0) return;
+  transfers_ns_ += 1e9 / hclk_Hz;
+  if (address < kBase || address >= kEnd_of_apb) return;
+  transfers_ns_ += 2e9 / (address < kApb2 ? clocks_.pclk1_Hz() : clocks_.pclk2_Hz());
+}
+
 bool DmaBus::read(std::uint32_t address, unsigned size, std::uint32_t& value) {
+  count(address);
   if (Region* region = find(address)) {
     value = region->block->read(address - region->base, size);
     return true;
@@ -25,6 +35,7 @@ bool DmaBus::read(std::uint32_t address, unsigned size, std::uint32_t& value) {
 }
 
 bool DmaBus::write(std::uint32_t address, unsigned size, std::uint32_t value) {
+  count(address);
   if (Region* region = find(address)) {
     region->block->write(address - region->base, value, size);
     return true;

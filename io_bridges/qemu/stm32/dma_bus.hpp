@@ -1,4 +1,9 @@
 // What DMA reaches: the register blocks of the part by address, and beyond them the memories.
+//
+//   Core      does not wait for DMA here. On the part an access of the core to the same memory or bridge
+//             waits for at most the one transfer under way (RM0090 2.1, RM0008 3.1: round robin); so the
+//             transfers' time, a cycle of HCLK each and two PCLK more through a bridge, is a bound on
+//             all that it may have waited
 #pragma once
 #include <array>
 #include <vector>
@@ -9,12 +14,14 @@ namespace whirl::stm32 {
 
 class DmaBus final : public SystemBus {
  public:
-  explicit DmaBus(SystemBus& memory) : memory_(memory) {}
+  DmaBus(SystemBus& memory, const Clocks& clocks) : memory_(memory), clocks_(clocks) {}
 
   // Blocks between 0x40000000 and 0x40080000, found by their 1 KiB page.
   void map(const std::vector<Region>& regions);
   // An address range that this master does not reach (CCM).
   void bar(std::uint32_t base, std::uint32_t size) { barred_ = {base, size, nullptr}; }
+
+  double core_waits_at_most_ns() const { return transfers_ns_; }  // since power-on
 
   bool read(std::uint32_t address, unsigned size, std::uint32_t& value) override;
   bool write(std::uint32_t address, unsigned size, std::uint32_t value) override;
@@ -24,7 +31,11 @@ class DmaBus final : public SystemBus {
   Region* find(std::uint32_t address);
   bool reachable(std::uint32_t address) const { return address - barred_.base >= barred_.size; }
 
+  void count(std::uint32_t address);
+
   SystemBus& memory_;
+  const Clocks& clocks_;
+  double transfers_ns_ = 0.0;
   std::array<Region, kPages> pages_{};
   Region barred_;
 };

@@ -8,7 +8,7 @@ Part::Part(const ChipHost& host, Rcc& rcc, ChangesOnly& interrupts, const PartTa
            const std::array<int, Exti::kLines>& exti_irqs, bool f4)
     : host_(host),
       rcc_(rcc),
-      dma_bus_(host.memory),
+      dma_bus_(host.memory, rcc),
       chip_{host.events, interrupts, dma_bus_, rcc_, host.finding},
       pwr_(f4),
       exti_(chip_, exti_irqs),

@@ -59,6 +59,7 @@ class Part : public ChipModel {
     rcc_.on_change(std::move(changed));
   }
   double sysclk_Hz() const override { return rcc_.sysclk_Hz(); }
+  double core_waits_for_dma_at_most_ns() const override { return dma_bus_.core_waits_at_most_ns(); }
 
  protected:
   using MakeFunctionBlocks = std::unique_ptr<FunctionBlocks> (*)(const Chip&,

@@ -44,6 +44,21 @@ TEST(Dma, MemoryToMemoryCopiesAndStops) {
   EXPECT_EQ(bench.get(kLisr), 0u);
 }
 
+// RM0090 2.1: a transfer takes the bus matrix a cycle, and the bridge to APB1 two of PCLK1 (16 MHz here).
+TEST(Dma, HoldsTheCoreUpForNoLongerThanItsTransfersTake) {
+  constexpr std::uint32_t kTim2Arr = 0x4000002C;
+  DmaBench bench;
+  EXPECT_EQ(bench.chip().core_waits_for_dma_at_most_ns(), 0.0);
+  bench.set_up(1, kMemToMem | kPinc | kMinc, 0x20000000, 0x20001000, 100, 0);
+  bench.run(1'000'000);
+  EXPECT_NEAR(bench.chip().core_waits_for_dma_at_most_ns(), 200 * 62.5, 1.0);
+  bench.set_bits(0x40023840, 1);
+  bench.put(kLifcr, 0x3D << 6);
+  bench.set_up(1, kMemToMem | (2u << 11) | (2u << 13), 0x20000000, kTim2Arr, 10, 0);
+  bench.run(1'000'000);
+  EXPECT_NEAR(bench.chip().core_waits_for_dma_at_most_ns(), 200 * 62.5 + 10 * (62.5 + 187.5), 1.0);
+}
+
 TEST(Dma, FifoPacksBytesIntoWordsAndUnpacksThem) {
   DmaBench bench;
   // 16 items of 1 byte to 4 words; then 8 items of 4 bytes to 32 bytes.
