@@ -142,7 +142,9 @@ void CycleClock::exception(const board::CoreState& before, const board::CoreStat
   if (!returns) entered_units_ = core_units();
 }
 
-// The bridge to APB passes one transfer after the other, each of two PCLK, from an edge of PCLK.
+// The bridge to APB passes one transfer after the other, each of two PCLK, from an edge of PCLK. A write
+// to a bit-band alias reads and writes the register in the time of one access: the bus does both, and the
+// core does not wait for them.
 void CycleClock::accessed(std::uint32_t address, bool write) {
   constexpr std::uint32_t kApb1 = 0x40000000, kApb2 = 0x40010000, kEnd_of_apb = 0x40018000;
   if (address < kApb1 || address >= kEnd_of_apb) return;
@@ -154,8 +156,14 @@ void CycleClock::accessed(std::uint32_t address, bool write) {
   const Nanoseconds now = core_now();
   const Nanoseconds from = std::max(now, free_ns);
   free_ns = from + std::llround(transfer_ns);
-  const Nanoseconds waits = (write ? from : free_ns) - now;
-  code_.owe(units(std::round(static_cast<double>(waits) * timing_.hclk_Hz * 1e-9)));
+  if (write && core_units() == alias_.after_units) return code_.owe(-alias_.own_units);
+  const auto whole_cycles = [this](Nanoseconds ns) {
+    return units(std::round(static_cast<double>(ns) * timing_.hclk_Hz * 1e-9));
+  };
+  const std::int64_t until_free = whole_cycles(from - now);
+  const std::int64_t waited = write ? until_free : whole_cycles(free_ns - now);
+  code_.owe(waited);
+  alias_ = {write ? -1 : core_units(), waited - until_free};
 }
 
 // The core's clock goes on while it sleeps, so it goes on at an edge.

@@ -10,8 +10,10 @@
 //             instruction of a handler, and goes before it, costs nothing more (late arrival). FPU
 //             registers are paid for when they are saved: at entry, or late
 //   Buses     an access to APB waits for the bridge; a store leaves the core at once and holds the
-//             bridge instead
-//   Left out  see core_model.hpp and fetch_model.hpp; bit-band writes, DMA on the buses
+//             bridge instead. So does a write to a bit-band alias, for two transfers (DDI 0337G 12.10:
+//             the core waits only if it comes to the bus meanwhile)
+//   Left out  see core_model.hpp and fetch_model.hpp; bit-band aliases of SRAM and of AHB, DMA on the
+//             buses
 //   Source    ARM: DDI 0403E B1.5; AMBA APB: two PCLK a transfer; RM0090 2.1 and RM0008 3.1
 #pragma once
 #include <functional>
@@ -62,7 +64,10 @@ class CycleClock final : public CoreClock {
   double edge_units_ = 0.0;
   std::uint64_t edges_ = 0;
   Nanoseconds bridge_free_ns_[2] = {};  // APB1, APB2
-  std::int64_t entered_units_ = -1;     // the core's time behind its last exception entry
+  struct {
+    std::int64_t after_units = -1, own_units = 0;
+  } alias_;  // the core's time behind its last access, if that was a read, and what that itself took
+  std::int64_t entered_units_ = -1;  // the core's time behind its last exception entry
 };
 
 }  // namespace whirl::qemu

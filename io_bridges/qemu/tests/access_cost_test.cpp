@@ -63,6 +63,23 @@ TEST(AccessCost, WhatIsNotAlignedTakesACycleForEachTransferMore) {
   }
 }
 
+// DDI 0337G 12.10. A transfer over the bridge takes two PCLK and one HCLK here, three cycles in all. A store leaves the core
+// at once (a cycle); a load takes two and waits. Two writes by alias: the second waits until the bridge has
+// read and written for the first, six cycles; a turn of the loop less saves some four.
+TEST(AccessCost, AWriteByABitBandAliasHoldsTheBridgeForTwoTransfersAndNotTheCore) {
+  for (const auto& [name, mcu] :
+       {std::pair{"aliases_f4", "stm32f405rg"}, std::pair{"aliases_f1", "stm32f103cb"}}) {
+    const Counts counts = told(name, mcu);
+    ASSERT_EQ(counts.size(), 6u) << mcu;
+    EXPECT_NEAR(counts[0], 100, 10) << mcu;
+    EXPECT_NEAR(counts[1], 100, 10) << mcu;
+    EXPECT_NEAR(counts[2], 500, 110) << mcu;
+    EXPECT_NEAR(counts[3], counts[2], 5) << mcu;
+    EXPECT_NEAR(static_cast<int>(counts[4]), 100 * (1 + 6 - 4), 110) << mcu;
+    EXPECT_EQ(counts[5], 5u | 7u << 3) << mcu;
+  }
+}
+
 // DDI 0337: UMULL, SMULL 3 to 5, UMLAL, SMLAL 4 to 7, the signed one a cycle longer, by the size of the
 // operands; DDI 0439: always 1.
 TEST(OperandCost, LongMultipliesOfAnM3GoByTheSizeOfTheirOperands) {
