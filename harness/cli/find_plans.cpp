@@ -112,7 +112,7 @@ FoundPlans find_plans(const RunOptions& options, const std::string& root) {
     for (const plan::Plan& p : file.value()->plans()) {
       if (!options.tag.empty() && !p.has_tag(options.tag)) continue;
       if (!options.only.empty() && p.name != options.only) continue;
-      found.plans.push_back({path, p.name, p.tags, p.image, p.board, p.vehicle});
+      found.plans.push_back({path, p.name, p.tags, p.image, p.board, p.vehicle, p.timeout_ns});
     }
   }
   if (found.plans.empty() && found.errors.empty()) {

@@ -1,5 +1,6 @@
 // Which plans a command speaks of.
 #pragma once
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@ struct PlanChoice {
   std::string name;
   std::vector<std::string> tags;
   std::string image, board, vehicle;
+  std::int64_t timeout_ns = 0;
 };
 
 // Lua files below the given paths that declare plans. Files in folders named boards, vehicles or

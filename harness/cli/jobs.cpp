@@ -109,11 +109,16 @@ int code_of(int status, const PlanChoice& plan) {
 
 class Jobs {
  public:
+  // The longest plans first, as far as their time-outs tell: the last one to end runs alone.
   Jobs(const std::vector<PlanChoice>& plans, const RunOptions& options, Tally& tally)
       : plans_(plans),
         options_(options),
         tally_(tally),
-        cores_(cores_for(static_cast<std::size_t>(options.jobs))) {}
+        cores_(cores_for(static_cast<std::size_t>(options.jobs))) {
+    std::stable_sort(plans_.begin(), plans_.end(), [](const PlanChoice& a, const PlanChoice& b) {
+      return a.timeout_ns > b.timeout_ns;
+    });
+  }
 
   void run() {
     while (next_ < plans_.size() || !running_.empty()) {
@@ -181,7 +186,7 @@ class Jobs {
     passed_on_ = true;
   }
 
-  const std::vector<PlanChoice>& plans_;
+  std::vector<PlanChoice> plans_;
   const RunOptions& options_;
   Tally& tally_;
   const std::vector<int> cores_;  // for the slots; empty: each job goes where it likes

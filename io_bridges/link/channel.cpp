@@ -175,7 +175,7 @@ bool Channel::wait(int timeout_ms) {
     }
     relax();
   }
-  spin_.waited(preemptions());
+  if (turns > 0) spin_.waited(preemptions());
   box.sleeping.store(1, std::memory_order_seq_cst);
   const bool came = sleep_until(box, timeout_ms);
   box.sleeping.store(0, std::memory_order_relaxed);
