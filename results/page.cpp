@@ -58,6 +58,13 @@ ordered_json stacks_of(const ordered_json& board) {
   return stacks;
 }
 
+// How long the core may have waited for DMA, which no time counts; 0: not said.
+double dma_wait_s(const ordered_json& board) {
+  if (!board.is_object() || !board.contains("core_waits_for_dma_at_most_ns")) return 0.0;
+  const auto& wait = board["core_waits_for_dma_at_most_ns"];
+  return wait.is_number() ? wait.get<double>() * 1e-9 : 0.0;
+}
+
 }  // namespace
 
 std::string page_html(const Report& report, const TruthLog& truth) {
@@ -66,6 +73,7 @@ std::string page_html(const Report& report, const TruthLog& truth) {
   data["watched"] = data["board"].is_object()
                         ? data["board"].value("watched", ordered_json::array())
                         : ordered_json::array();
+  data["dma_wait_at_most_s"] = dma_wait_s(data["board"]);
   data.erase("board");
   data["step_s"] = static_cast<double>(truth.step_ns()) * 1e-9;
   data["signals"] = ordered_json::array();

@@ -1,6 +1,7 @@
 #include "harness/base/text.hpp"
 
 #include <cstdint>
+#include <cstdio>
 
 namespace whirl {
 namespace {
@@ -75,6 +76,12 @@ std::string printable_line(std::string_view bytes) {
                        (code >= 0x2066 && code <= 0x2069);
     return !is_control(code) && !turns;
   });
+}
+
+std::string hex(std::uint32_t value) {
+  char text[16];
+  std::snprintf(text, sizeof text, "0x%08x", value);
+  return text;
 }
 
 }  // namespace whirl

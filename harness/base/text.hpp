@@ -4,6 +4,7 @@
 //           feed and carriage return, no surrogates, no U+FFFE and U+FFFF
 //   Else    each byte that is not part of such a character is shown as \xNN
 #pragma once
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -11,5 +12,7 @@ namespace whirl {
 
 std::string legal_text(std::string_view bytes);      // for files
 std::string printable_line(std::string_view bytes);  // for terminals: no control character at all
+
+std::string hex(std::uint32_t value);  // "0x0800012c"
 
 }  // namespace whirl

@@ -1,6 +1,6 @@
 #include "harness/executive/cpu_fault.hpp"
 
-#include <cstdio>
+#include "harness/base/text.hpp"
 
 namespace whirl {
 namespace {
@@ -24,12 +24,6 @@ const char* exception_name(std::uint32_t exception) {
     default:
       return "fault";
   }
-}
-
-std::string hex(std::uint32_t x) {
-  char text[16];
-  std::snprintf(text, sizeof text, "0x%08x", x);
-  return text;
 }
 
 struct Bit {

@@ -172,6 +172,21 @@ TEST(Page, ShowsTheStackOfEachTask) {
   EXPECT_EQ(stacks[1]["used_bytes"], 64);
 }
 
+TEST(Page, SaysWhichCallsWereTheLongestAndWhatTheModelLeavesOut) {
+  Report r = sample();
+  r.statistics_json =
+      R"({"core_waits_for_dma_at_most_ns": 250000, "watched": [{"name": "f", "worst_execution": {}}]})";
+  const auto said = data_of(page_html(r, truth()));
+  EXPECT_EQ(said["watched"].size(), 1u);
+  EXPECT_EQ(said["watched"][0]["name"], "f");
+  EXPECT_EQ(said["dma_wait_at_most_s"], 250e-6);
+  for (const char* text : {"", "{}", "[]", R"({"core_waits_for_dma_at_most_ns": "much"})"}) {
+    r.statistics_json = text;
+    EXPECT_EQ(data_of(page_html(r, truth()))["dma_wait_at_most_s"], 0.0) << text;
+    EXPECT_TRUE(data_of(page_html(r, truth()))["watched"].empty()) << text;
+  }
+}
+
 TEST(Page, NoTextOfAPlanEndsTheScript) {
   Report r = sample();
   r.reason = "</script><b>";

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <tuple>
 
+#include "harness/base/text.hpp"
 #include "io_bridges/devices/faults.hpp"
 #include "io_bridges/qemu/board/chip_factory.hpp"
 #include "io_bridges/qemu/board/post_mortem.hpp"
@@ -23,12 +24,6 @@ constexpr std::uint32_t kPage = 0x1000;
 constexpr std::uint32_t kSysTickException = 15, kFirstInterrupt = 16;
 constexpr std::uint32_t kHardFault = 3, kUsageFault = 6;
 constexpr std::uint32_t kCfsr = 0xD28, kHfsr = 0xD2C, kMmfar = 0xD34, kBfar = 0xD38;  // in SCS
-
-std::string hex(std::uint32_t value) {
-  char text[16];
-  std::snprintf(text, sizeof text, "0x%08x", value);
-  return text;
-}
 
 }  // namespace
 

@@ -1,10 +1,10 @@
 // What a board tells of a whole run at its end, as JSON: how deep its stacks went, how long the core slept,
 // what nobody answered, how long DMA may have held the core up, which calls were the longest.
 #include <cmath>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "harness/base/text.hpp"
 #include "io_bridges/qemu/board/board.hpp"
 #include "io_bridges/qemu/board/post_mortem.hpp"
 
@@ -13,12 +13,6 @@ namespace {
 
 constexpr std::uint32_t kSmallest_stack = 64;  // an exception's frame and a little
 constexpr std::uint32_t kVtor = 0xD08;         // in SCS
-
-std::string hex(std::uint32_t value) {
-  char text[16];
-  std::snprintf(text, sizeof text, "0x%08x", value);
-  return text;
-}
 
 nlohmann::json lines_of(const std::string& text) {
   nlohmann::json lines = nlohmann::json::array();

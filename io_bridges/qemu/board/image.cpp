@@ -14,18 +14,13 @@
 #include <sstream>
 
 #include "harness/base/digest.hpp"
+#include "harness/base/text.hpp"
 
 namespace whirl::board {
 namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 constexpr int kArmv7_m = 10, kArmv7e_m = 13;
-
-std::string hex(std::uint32_t value) {
-  char text[16];
-  std::snprintf(text, sizeof text, "0x%08x", value);
-  return text;
-}
 
 constexpr std::uintmax_t kLargest_file_B = 256u << 20;
 constexpr std::size_t kLongest_name_B = 1024;
