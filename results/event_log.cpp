@@ -102,7 +102,8 @@ bool EventLog::add(const io::Batch& batch) {
       case io::Kind::uart_delivered:
         break;  // truth.csv, the bus log and the findings have them
       case io::Kind::interrupt_latency: {
-        const std::int64_t took_ns = header.t_ns - reader.as<io::InterruptLatency>().raised_ns;
+        const double took_ns = static_cast<double>(header.t_ns) -
+                               static_cast<double>(reader.as<io::InterruptLatency>().raised_ns);
         LatencyRecord& record = latencies[header.port];
         ++record.count;
         record.sum_ns += took_ns;

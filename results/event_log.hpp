@@ -34,7 +34,8 @@ struct CallRecord {
 // Of one exception's requests, from the line to the first instruction of the handler.
 struct LatencyRecord {
   std::size_t count = 0;
-  std::int64_t sum_ns = 0, max_ns = 0, max_at_ns = 0;  // at: the handler's first instruction
+  double sum_ns = 0.0, max_ns = 0.0;  // exact up to 2^53 ns, and no times of any messages overflow
+  std::int64_t max_at_ns = 0;         // the handler's first instruction
 };
 
 struct BusyRecord {

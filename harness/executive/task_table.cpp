@@ -72,8 +72,8 @@ std::vector<results::InterruptRow> interrupt_table(const results::EventLog& even
     const auto handler = handlers.find(std::to_string(exception));
     if (handler != handlers.end() && handler->is_string()) row.handler = *handler;
     row.requests = record.count;
-    row.latency_mean_s = seconds(record.sum_ns) / static_cast<double>(record.count);
-    row.latency_max_s = seconds(record.max_ns);
+    row.latency_mean_s = record.sum_ns * 1e-9 / static_cast<double>(record.count);
+    row.latency_max_s = record.max_ns * 1e-9;
     row.latency_max_at_s = seconds(record.max_at_ns);
     rows.push_back(std::move(row));
   }

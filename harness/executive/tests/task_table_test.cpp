@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "harness/base/near.hpp"
 
@@ -45,6 +46,17 @@ TEST(TaskTable, HasARowForEachWatchedFunctionWithWhatItsCallsTook) {
   EXPECT_EQ(some.response_max_cycles, 151.0);
   events.calls[1].erase(events.calls[1].begin());
   EXPECT_EQ(task_table({"none", "some"}, events)[1].latency_max_s, 0.0);
+}
+
+TEST(InterruptTable, TimesThatNoRunHasOverflowNothing) {
+  constexpr std::int64_t kEnd = std::numeric_limits<std::int64_t>::max();
+  io::Batch batch;
+  batch.add(io::Kind::interrupt_latency, 7, -kEnd, io::InterruptLatency{kEnd});
+  batch.add(io::Kind::interrupt_latency, 7, kEnd, io::InterruptLatency{-kEnd});
+  results::EventLog events;
+  ASSERT_TRUE(events.add(batch));
+  EXPECT_EQ(interrupt_table(events, "")[0].latency_mean_s, 0.0);
+  EXPECT_GT(interrupt_table(events, "")[0].latency_max_s, 1.8e10);
 }
 
 TEST(InterruptTable, HasARowForEachExceptionWithWhatItsRequestsWaited) {
