@@ -184,7 +184,7 @@ class Run {
     report.statistics_json = record_.events.statistics;
     log_clocks(record_.events, report);
     report.tasks = task_table(parts_.board.watch, record_.events);
-    report.interrupts = interrupt_table(record_.events, record_.events.statistics);
+    report.interrupts = interrupt_table(record_.events);
     // Guards and windows are judged also when the run has failed: their figures help to see why.
     for (const Error& error : script_.finish(completed_)) end_for(error);
     if (completed_) judge_faults();

@@ -60,9 +60,8 @@ std::vector<results::TaskRow> task_table(const std::vector<std::string>& watch,
   return rows;
 }
 
-std::vector<results::InterruptRow> interrupt_table(const results::EventLog& events,
-                                                   const std::string& statistics_json) {
-  const auto board = nlohmann::json::parse(statistics_json, nullptr, false);
+std::vector<results::InterruptRow> interrupt_table(const results::EventLog& events) {
+  const auto board = nlohmann::json::parse(events.statistics, nullptr, false);
   const auto handlers =
       board.is_object() ? board.value("handlers", nlohmann::json::object()) : nlohmann::json();
   std::vector<results::InterruptRow> rows;

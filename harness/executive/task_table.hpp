@@ -11,8 +11,7 @@ namespace whirl {
 std::vector<results::TaskRow> task_table(const std::vector<std::string>& watch,
                                          const results::EventLog& events);
 
-// The exceptions that were requested. statistics_json: the board's own words, which name the handlers.
-std::vector<results::InterruptRow> interrupt_table(const results::EventLog& events,
-                                                   const std::string& statistics_json);
+// The exceptions that were requested; the board's own words name the handlers.
+std::vector<results::InterruptRow> interrupt_table(const results::EventLog& events);
 
 }  // namespace whirl
