@@ -3,6 +3,8 @@
 //   Interrupt  is passed on to the children, which end in order; no more are started
 //   Lack       of processes or memory: the plan is inconclusive, by name; while others still run, it
 //              waits for one of them and tries again
+//   Order      the longest first, as their time-outs tell
+//   Cores      where there are not two for each job, a job keeps to one
 //   Life       the children end with this process, however it ends
 #pragma once
 #include <vector>
