@@ -1,12 +1,12 @@
 #include "io_bridges/qemu/board/bench_chip.hpp"
 
-#include <cstdio>
 #include <cstdlib>
 #include <new>
 #include <stdexcept>
 
 #include "harness/base/check.hpp"
 #include "harness/base/digest.hpp"
+#include "harness/base/text.hpp"
 
 namespace whirl::board {
 namespace {
@@ -101,9 +101,7 @@ class BenchBlock final : public stm32::Peripheral {
 
  private:
   void say(std::uint32_t value) {
-    char text[24];
-    std::snprintf(text, sizeof text, "says 0x%08x", value);
-    host_.finding({host_.events.now(), "BENCH", text});
+    host_.finding({host_.events.now(), "BENCH", "says " + hex(value)});
   }
   void go_wrong(std::uint32_t how) {
     WHIRL_CHECK(how != 1, how);

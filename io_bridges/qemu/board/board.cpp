@@ -31,17 +31,10 @@ Board::Board(Setup setup, io::Channel channel, Emulator& emulator)
     : setup_(std::move(setup)),
       channel_(std::move(channel)),
       emulator_(emulator),
-      watch_(
-          happened_,
-          [this](std::uint32_t address, void* to, std::size_t size) {
-            return emulator_.peek(address, to, size);
-          },
-          [this](std::uint32_t address, const CoreState& core) {
-            const Peek peek = [this](std::uint32_t from, void* to, std::size_t size) {
-              return emulator_.peek(from, to, size);
-            };
-            return call_path(setup_.image, peek, address, core.sp, core.exception() != 0);
-          }),
+      watch_(happened_, peek(),
+             [this](std::uint32_t address, const CoreState& core) {
+               return call_path(setup_.image, peek(), address, core.sp, core.exception() != 0);
+             }),
       chip_(make_chip(*setup_.part,
                       {events_, *this, *this, *this, [this](const io::Finding& f) { find(f); },
                        setup_.config.hse_Hz, setup_.config.lse_Hz, setup_.config.hse_start_ns,
@@ -82,6 +75,12 @@ Board::Board(Setup setup, io::Channel channel, Emulator& emulator)
 }
 
 Board::~Board() = default;
+
+Peek Board::peek() const {
+  return [this](std::uint32_t address, void* to, std::size_t size) {
+    return emulator_.peek(address, to, size);
+  };
+}
 
 Result<Done> Board::build_devices() {
   if (const auto built = devices_.build(setup_.config); !built) return built.error();
@@ -291,16 +290,13 @@ io::CpuFault Board::fault_registers(const Registers& registers) {
 void Board::exception(const CoreState& before, const CoreState& after, const Registers& registers) {
   if (!watch_.exception(before, after)) return;
   if (after.exception() < kHardFault || after.exception() > kUsageFault) return;
-  const Peek peek = [this](std::uint32_t address, void* to, std::size_t size) {
-    return emulator_.peek(address, to, size);
-  };
   io::CpuFault fault = fault_registers(registers);
   fault.exception = after.exception();
   fault.pc = before.pc;
   fault.lr = before.lr;
   fault.sp = before.sp;
   fault.xpsr = before.xpsr;
-  const std::string text = backtrace(setup_.image, peek, before.pc, before.lr, before.sp);
+  const std::string text = backtrace(setup_.image, peek(), before.pc, before.lr, before.sp);
   happened_.add(io::Kind::cpu_fault, 0, after.now, fault, text.data(),
                 static_cast<std::uint32_t>(text.size()));
 }

@@ -97,6 +97,7 @@ class Board final : stm32::InterruptLines, stm32::SystemBus, stm32::FlashArray {
   void report_clocks();
   void report_busy();
   void check_profile();
+  Peek peek() const;  // as debuggers look: nothing happens by it
   std::string stack_name(std::uint32_t top) const;
   nlohmann::json task_stacks() const;
   std::string handler_name(std::uint32_t exception) const;

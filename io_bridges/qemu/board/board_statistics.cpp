@@ -104,12 +104,9 @@ void Board::add_statistics() {
                     {"written", touch.written},
                     {"times", touch.times}});
   }
-  const Peek peek = [this](std::uint32_t address, void* to, std::size_t size) {
-    return emulator_.peek(address, to, size);
-  };
   nlohmann::json statistics = {
       {"unanswered", list},
-      {"stack_used_bytes", stack_used(*setup_.part, peek)},
+      {"stack_used_bytes", stack_used(*setup_.part, peek())},
       {"slept_ns", emulator_.slept_ns()},
       {"core_waits_for_dma_at_most_ns", std::llround(chip_->core_waits_for_dma_at_most_ns())},
       {"hse_start_ns", setup_.config.hse_start_ns},

@@ -1,16 +1,13 @@
 // From a board's description and its images to what a board process is made of.
-#include <cstdio>
-
+#include "harness/base/text.hpp"
 #include "io_bridges/qemu/board/board.hpp"
 
 namespace whirl::board {
 namespace {
 
 Error wrong_start(const BoardConfig& board, std::uint32_t start) {
-  char text[16];
-  std::snprintf(text, sizeof text, "0x%08x", start);
-  return {ErrorKind::bad_input, board.board + ": start",
-          std::string(text) + " is no place in flash", "give a multiple of 0x200"};
+  return {ErrorKind::bad_input, board.board + ": start", hex(start) + " is no place in flash",
+          "give a multiple of 0x200"};
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "io_bridges/qemu/board/watch.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <utility>
 
 namespace whirl::board {
@@ -86,9 +87,11 @@ void Watch::finish(const Context& context, const Call& call, const CoreState& co
                 io::FunctionCall{call.entry_ns, done.execution.ns, context.latency_ns,
                                  static_cast<std::int64_t>(done.execution.cycles),
                                  static_cast<std::int64_t>(done.response.cycles)});
-  worst_.returned(call.number, std::move(done), call.exceptions_before, [&] {
+  const auto path = [&] {
     return path_ && returns_to != 0 ? path_(returns_to, core) : std::string();
-  });
+  };
+  // By reference: a std::function of what it captures would be allocated at each return.
+  worst_.returned(call.number, std::move(done), call.exceptions_before, std::cref(path));
 }
 
 void Watch::enter_function(std::uint16_t number, const CoreState& core) {

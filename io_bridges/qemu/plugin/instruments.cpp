@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "io_bridges/qemu/plugin/instruments.hpp"
 
-#include <cstdio>
+#include "harness/base/text.hpp"
 
 namespace whirl::qemu {
 namespace {
@@ -64,10 +64,9 @@ void Instruments::report_unreachable_code(std::uint32_t address) {
   const board::MemoryBlock& ccm = machine_.board().part().ccm;
   if (ccm_reported_ || address - ccm.base >= ccm.size) return;
   ccm_reported_ = true;
-  char text[96];
-  std::snprintf(text, sizeof text, "code is fetched from CCM at 0x%08x: on the part, a bus fault",
-                address);
-  machine_.board().find({machine_.clock().core_now(), "core", text});
+  machine_.board().find(
+      {machine_.clock().core_now(), "core",
+       "code is fetched from CCM at " + hex(address) + ": on the part, a bus fault"});
 }
 
 void Instruments::code_thrown_away() {
@@ -111,7 +110,7 @@ board::CoreState Instruments::core_at(const Site& site) const {
 void Instruments::reached(const Site& site) {
   switch (site.kind) {
     case Kind::sleep:
-      return machine_.before_sleep(machine_.clock().at(site.time).now);
+      return machine_.before_sleep(site.time);
     case Kind::function:
       return enter_function(site);
     case Kind::return_site:

@@ -183,7 +183,7 @@ void Machine::take_exception() {
   const bool leaves = before.leaves_exception();
   std::uint32_t floating = leaves && board::has_floating_frame(before.pc) ? fpccr() : 0;
   api_.arm_v7m_cpu_do_interrupt(cpu_);
-  board::CoreState after = core_at(clock_->moment());
+  board::CoreState after = core_at({before.now, before.cycles});
   if (!leaves && board::has_floating_frame(after.lr)) floating = fpccr();
   clock_->exception(before, after, floating);
   const Moment now = clock_->moment();
@@ -253,8 +253,10 @@ void Machine::park_main_loop() {
 // idle" until all is accounted; the work itself then runs the board's events in the CPU's thread.
 // QEMU's clock stays behind meanwhile (moving it costs more than most events) and catches up before
 // anything reaches the core: interrupt lines and resets wait in `deferred_` until then.
-void Machine::before_sleep(io::Nanoseconds now) {
-  system_control_->before_sleep(now);
+void Machine::before_sleep(std::int64_t site) {
+  if (system_control_->sleeps_deeply()) {
+    system_control_->report_deep_sleep(clock_->at(site).now);
+  }
   work_before_sleep();
 }
 

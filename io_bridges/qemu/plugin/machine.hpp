@@ -34,7 +34,7 @@ class Machine final : public board::Emulator {
   // The machine exists, nothing has run: map, load, power on.
   Result<Done> build(const std::string& versions);
   // From the execution callback of a WFI: see the file's end.
-  void before_sleep(io::Nanoseconds now);
+  void before_sleep(std::int64_t site);  // for CoreClock::at
 
   board::Board& board() { return board_; }
   const Api& api() const { return api_; }

@@ -11,7 +11,7 @@ constexpr std::uint32_t kBase = 0xE000E000;
 constexpr std::uint32_t kSysTick = 0x010, kSysTick_end = 0x020;
 constexpr std::uint32_t kIpr = 0x400, kIpr_end = 0x4F0;
 constexpr std::uint32_t kAircr = 0xD0C, kScr = 0xD10, kShpr = 0xD18, kShpr_end = 0xD24;
-constexpr std::uint32_t kSleep_on_exit = 1u << 1, kSleep_deep = 1u << 2, kSend_event = 1u << 4;
+constexpr std::uint32_t kSleep_on_exit = 1u << 1, kSend_event = 1u << 4;
 constexpr std::uint32_t kDemcr = 0xDFC;
 constexpr std::uint32_t kTrcena = 1u << 24;
 constexpr std::uint32_t kVectKey = 0x05FA, kSysResetReq = 1u << 2;
@@ -104,8 +104,7 @@ std::uint32_t SystemControl::write(std::uint32_t offset, std::uint64_t value, un
   return api_.memory_region_dispatch_write(nvic_, offset, value, memory_op(size), attributes);
 }
 
-void SystemControl::before_sleep(io::Nanoseconds now) {
-  if ((scr_ & kSleep_deep) == 0) return;
+void SystemControl::report_deep_sleep(io::Nanoseconds now) {
   report_once(deep_reported_, now,
               "WFI with SLEEPDEEP set: Stop and Standby are not modelled, the core just sleeps");
 }

@@ -23,12 +23,16 @@ class SystemControl {
                 std::function<void(std::uint32_t address)> accessed);
 
   void map(MemoryRegion* parent, MemoryRegion& region);
-  void core_was_reset();                   // priorities back to the stored form of 0
-  void before_sleep(io::Nanoseconds now);  // reports the kind of sleep that is not modelled, once
+  void core_was_reset();  // priorities back to the stored form of 0
+  bool sleeps_deeply() const { return (scr_ & kSleep_deep) != 0; }
+  void report_deep_sleep(io::Nanoseconds now);  // which is not modelled; once
 
   std::uint32_t word(std::uint32_t offset);  // of QEMU's NVIC, from 0xE000E000
 
  private:
+  static constexpr std::uint32_t kSleep_deep = 1u << 2;  // of SCR
+
+  void report_once(bool& reported, io::Nanoseconds now, const char* what);
   static std::uint32_t read_hook(void*, hwaddr, std::uint64_t*, unsigned, Attributes);
   static std::uint32_t write_hook(void*, hwaddr, std::uint64_t, unsigned, Attributes);
   std::uint32_t read(std::uint32_t offset, std::uint64_t& value, unsigned size, Attributes);
@@ -39,7 +43,6 @@ class SystemControl {
   MemoryRegion* nvic_;
   std::function<void()> reset_request_;
   std::function<void(std::uint32_t)> accessed_;
-  void report_once(bool& reported, io::Nanoseconds now, const char* what);
   std::uint32_t demcr_ = 0, scr_ = 0;
   bool deep_reported_ = false, on_exit_reported_ = false;
 };
