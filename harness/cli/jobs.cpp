@@ -84,17 +84,33 @@ pid_t start(const PlanChoice& plan, const RunOptions& options, int output, int c
   return pid < 0 ? 0 : pid;
 }
 
-void print_all(int from) {
+// What a child printed; 0, or the error that kept it from being read to its end.
+int print_all(int from) {
   std::array<char, 4096> piece;
   lseek(from, 0, SEEK_SET);
+  int error = 0;
   for (;;) {
     const ssize_t n = read(from, piece.data(), piece.size());
     if (n < 0 && errno == EINTR) continue;
+    if (n < 0) error = errno;
     if (n <= 0) break;
     std::fwrite(piece.data(), 1, static_cast<std::size_t>(n), stdout);
   }
-  std::fflush(stdout);
   close(from);
+  return error;
+}
+
+const char* verdict_word(int code) {
+  switch (code) {
+    case 0:
+      return "PASS";
+    case 1:
+      return "FAIL";
+    case 3:
+      return "INCONCLUSIVE";
+    default:
+      return "ERROR";
+  }
 }
 
 int code_of(int status, const PlanChoice& plan) {
@@ -173,8 +189,16 @@ class Jobs {
     WHIRL_CHECK(pid >= 0, errno);
     const auto it = running_.find(pid);
     if (it == running_.end()) return;
-    print_all(it->second.output);
-    tally_.add(code_of(status, *it->second.plan));
+    const PlanChoice& plan = *it->second.plan;
+    const int error = print_all(it->second.output);
+    const int code = code_of(status, plan);
+    if (error != 0) {
+      std::printf(
+          "%s %s\n       what its process printed cannot be read: %s; its results are written\n",
+          verdict_word(code), plan.name.c_str(), std::strerror(error));
+    }
+    std::fflush(stdout);
+    tally_.add(code);
     running_.erase(it);
   }
 
