@@ -1,4 +1,4 @@
-# What `cmake --install build/host --prefix DIR` and CPack's .deb put where; harness/base/places.hpp finds
+# What `cmake --install build/host --prefix DIR` and CPack's .deb put where; base/places.hpp finds
 # it from the program. The images come from the firmware preset, which builds beside this one.
 include(GNUInstallDirs)
 install(TARGETS whirl RUNTIME DESTINATION bin)

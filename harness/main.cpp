@@ -1,8 +1,8 @@
 // whirl: the virtual board and its world, a flight or a thrust stand, put together.
 #include <cstdlib>
 
-#include "harness/base/interruption.hpp"
-#include "harness/base/places.hpp"
+#include "base/interruption.hpp"
+#include "base/places.hpp"
 #include "harness/cli/composition.hpp"
 #include "harness/cli/console.hpp"
 #include "harness/flight/flight_world.hpp"

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "harness/base/check.hpp"
+#include "base/check.hpp"
 
 namespace whirl::plant {
 namespace {

@@ -4,11 +4,11 @@
 #include <cmath>
 #include <vector>
 
-#include "harness/base/check.hpp"
+#include "base/check.hpp"
 #include "plant/air/air.hpp"
 #include "plant/airframe/contact_world.hpp"
-#include "plant/bounds.hpp"
-#include "plant/frames.hpp"
+#include "plant/base/bounds.hpp"
+#include "plant/base/frames.hpp"
 #include "plant/power_bus.hpp"
 #include "plant/rotor/rotor.hpp"
 

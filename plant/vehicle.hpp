@@ -14,7 +14,7 @@
 #include <functional>
 #include <memory>
 
-#include "harness/base/result.hpp"
+#include "base/result.hpp"
 #include "plant/air/air_params.hpp"
 #include "plant/airframe/airframe_params.hpp"
 #include "plant/battery/battery_params.hpp"

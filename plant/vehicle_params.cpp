@@ -1,4 +1,4 @@
-#include "plant/bounds.hpp"
+#include "plant/base/bounds.hpp"
 #include "plant/vehicle.hpp"
 
 namespace whirl::plant {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "harness/base/result.hpp"
-#include "io_bridges/link/messages.hpp"
+#include "base/result.hpp"
+#include "io_bridges/messages/messages.hpp"
 
 namespace whirl::results {
 

@@ -1,4 +1,4 @@
-#include "harness/base/check.hpp"
+#include "base/check.hpp"
 #include "results/page_text.hpp"
 
 namespace whirl::results {

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/base/result.hpp"
+#include "base/result.hpp"
 #include "results/event_log.hpp"
 #include "results/report.hpp"
 #include "results/truth_log.hpp"

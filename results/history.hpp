@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/base/result.hpp"
+#include "base/result.hpp"
 #include "results/report.hpp"
 
 namespace whirl::results {

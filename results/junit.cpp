@@ -7,7 +7,7 @@
 #include <pugixml.hpp>
 #include <sstream>
 
-#include "harness/base/text.hpp"
+#include "base/text.hpp"
 #include "results/folder.hpp"
 
 namespace whirl::results {

@@ -1,8 +1,8 @@
-// All texts of a JSON value as legal_text (harness/base/text.hpp) has them, so that it can be written.
+// All texts of a JSON value as legal_text (base/text.hpp) has them, so that it can be written.
 #pragma once
 #include <nlohmann/json.hpp>
 
-#include "harness/base/text.hpp"
+#include "base/text.hpp"
 
 namespace whirl::results {
 

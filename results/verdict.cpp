@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "harness/base/result.hpp"
+#include "base/result.hpp"
 
 namespace whirl::results {
 

@@ -2,28 +2,47 @@
 # Who may include whom (see the house rules in README).  layers.sh ROOT; prints each offence; exit 1 if any.
 #
 #   Each folder lists what its files may include of this project; the longest matching folder wins.
-#   Files under a tests/ or bench/ folder may look anywhere. A folder that no line names is an offence,
+#   No folder may include itself by way of others: what is on a circle cannot be understood, or tested,
+#   one after the other. Files under a tests/ or bench/ folder may look anywhere. A folder that no line names is an offence,
 #   and so is an include that hides what it means: <...> for a file of ours, "..", a macro.
 set -euo pipefail
 root=$(cd "$1" && pwd)
 
 rules() {
   cat <<'END'
-harness/base             harness/base/
-plant                    harness/base/ plant/
-io_bridges/protocols     harness/base/ io_bridges/protocols/ io_bridges/devices/
-io_bridges/devices       harness/base/ io_bridges/protocols/ io_bridges/devices/
-io_bridges/link          harness/base/ io_bridges/link/
+base                     base/
+plant                    base/ plant/
+plant/base               base/ plant/base/
+plant/air                base/ plant/air/ plant/base/
+plant/airframe           base/ plant/air/ plant/airframe/ plant/base/
+plant/battery            base/ plant/base/ plant/battery/
+plant/motor              base/ plant/base/ plant/motor/
+plant/rotor              base/ plant/rotor/
+plant/sensors            base/ plant/base/ plant/sensors/
+io_bridges/messages      base/ io_bridges/messages/
+io_bridges/protocols     base/ io_bridges/protocols/
+io_bridges/devices       base/ io_bridges/protocols/ io_bridges/devices/
+io_bridges/link          base/ io_bridges/link/
 io_bridges/qemu/cycles   io_bridges/qemu/cycles/
-io_bridges/qemu/stm32    harness/base/ io_bridges/protocols/ io_bridges/devices/ io_bridges/qemu/stm32/ io_bridges/qemu/cycles/flash_timing.hpp
-io_bridges/qemu/plugin   harness/base/ io_bridges/
-io_bridges/qemu/board    harness/base/ io_bridges/ plant/
-results                  harness/base/ io_bridges/link/ io_bridges/protocols/ results/
-harness                  harness/ io_bridges/protocols/ io_bridges/link/ io_bridges/devices/faults.hpp plant/ results/ firmware/esc/core/
-harness/target           harness/ io_bridges/
-harness/fuzz             harness/ io_bridges/ plant/ results/
-harness/flight           harness/ io_bridges/ plant/ results/ firmware/esc/core/
-harness/stand            harness/ io_bridges/ plant/ results/ firmware/esc/core/
+io_bridges/qemu/stm32    base/ io_bridges/protocols/ io_bridges/devices/ io_bridges/qemu/stm32/ io_bridges/qemu/cycles/flash_timing.hpp
+io_bridges/qemu/plugin   base/ io_bridges/
+io_bridges/qemu/board    base/ io_bridges/ plant/
+results                  base/ io_bridges/messages/ io_bridges/protocols/ results/
+harness                  base/ harness/
+harness/lua              base/ harness/lua/
+harness/metrics          harness/metrics/
+harness/world            base/ harness/world/ io_bridges/messages/
+harness/board            base/ harness/board/ harness/lua/
+harness/target           base/ harness/target/ io_bridges/
+harness/plan             base/ harness/board/ harness/lua/ harness/metrics/ harness/plan/ harness/world/ results/
+harness/executive        base/ harness/board/ harness/executive/ harness/lua/ harness/metrics/ harness/plan/ harness/target/ harness/world/ io_bridges/devices/faults.hpp io_bridges/messages/ results/
+harness/flight           base/ harness/flight/ harness/lua/ harness/world/ io_bridges/messages/ io_bridges/protocols/ plant/ firmware/esc/core/
+harness/stand            base/ harness/flight/ harness/lua/ harness/stand/ harness/world/ io_bridges/messages/ io_bridges/protocols/ plant/
+harness/sweep            base/ harness/flight/ harness/sweep/ plant/ results/
+harness/timing           base/ harness/target/ harness/timing/
+harness/calibrate        base/ harness/calibrate/ harness/lua/ harness/target/ harness/world/ io_bridges/protocols/ results/ firmware/esc/core/
+harness/cli              base/ harness/ plant/validation/ results/
+harness/fuzz             base/ harness/ io_bridges/ plant/ results/
 cmake/mutate             cmake/mutate/
 firmware                 firmware/
 firmware/esc/core        firmware/esc/core/
@@ -60,6 +79,26 @@ includes() {
       if (index(file, folder "/") == 1 && length(folder) > length(best)) best = folder
     return best
   }
+  function parent(path) { sub(/\/[^\/]*$/, "", path); return path }
+  function add_edge(file, name, from, to) {
+    from = parent(file); to = parent(name)
+    if (from != to && !((from, to) in edge)) uses[from] = uses[from] " " to
+    edge[from, to]
+  }
+  # Depth first from here: a folder that is met while it is still open lies on a circle.
+  function walk(folder, way, i, m, next_ones) {
+    if (state[folder] == "done") return
+    if (state[folder] == "open") {
+      way = substr(way, index(way, folder))
+      print way folder ": these folders include each other"
+      ++offences
+      return
+    }
+    state[folder] = "open"
+    m = split(uses[folder], next_ones, " ")
+    for (i = 1; i <= m; ++i) walk(next_ones[i], way folder " -> ")
+    state[folder] = "done"
+  }
   $1 == "file" {
     known = $2 ~ /\/(tests|bench)\// ? substr($2, 1, index($2, "/") - 1) in top : folder_of($2) != ""
     if (!known) offence("no rule names its folder")
@@ -82,6 +121,7 @@ includes() {
       next
     }
     best = folder_of($2)
+    add_edge($2, name)
     ok = 0
     m = split(allowed[best], prefixes, " ")
     for (i = 1; i <= m; ++i) if (index(name, prefixes[i]) == 1) ok = 1
@@ -89,6 +129,9 @@ includes() {
   }
   END {
     if (seen == 0) { print "no include seen: nothing was checked"; exit 1 }
+    m = 0
+    for (folder in uses) starts[++m] = folder
+    for (i = 1; i <= m; ++i) walk(starts[i], "")
     if (offences > 0) exit 1
     print seen " includes respect the layers"
   }'

@@ -25,6 +25,7 @@ TESTS = [
     (("harness/metrics/",), ["harness/metrics/metrics_test"]),
     (("io_bridges/",), ["io_bridges/qemu/board/watch_unit_test"]),
     (("results/",), ["results/results_test"]),
+    (("harness/board/",), ["harness/board/board_description_test"]),
     (("harness/executive/",), ["harness/executive/executive_test"]),
     (JUDGING, ["harness/tests/oracle/judging_test"]),
     (JUDGING, ["harness/tests/oracle/plan_oracle", "--count", "400"]),

@@ -1,9 +1,9 @@
 #include <gtest/gtest.h>
 
+#include "base/near.hpp"
 #include "firmware/control/attitude_controller.hpp"
 #include "firmware/estimation/attitude_filter.hpp"
 #include "firmware/estimation/ground_calibration.hpp"
-#include "harness/base/near.hpp"
 
 namespace fw {
 namespace {

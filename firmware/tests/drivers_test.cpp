@@ -5,9 +5,9 @@
 #include <map>
 #include <vector>
 
+#include "base/near.hpp"
 #include "firmware/drivers/esc_bus.hpp"
 #include "firmware/drivers/mpu6000.hpp"
-#include "harness/base/near.hpp"
 
 namespace fw {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <sstream>
 
-#include "harness/base/check.hpp"
+#include "base/check.hpp"
 #include "harness/lua/table.hpp"
 
 namespace whirl::calibrate {

@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "harness/executive/world.hpp"
 #include "harness/target/target.hpp"
+#include "harness/world/world.hpp"
 #include "io_bridges/protocols/esc_stream.hpp"
 
 namespace whirl::calibrate {

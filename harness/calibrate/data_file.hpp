@@ -5,7 +5,7 @@
 #pragma once
 #include <string>
 
-#include "harness/base/result.hpp"
+#include "base/result.hpp"
 #include "harness/calibrate/data.hpp"
 
 namespace whirl::calibrate {

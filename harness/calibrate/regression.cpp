@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "harness/base/check.hpp"
+#include "base/check.hpp"
 
 namespace whirl::calibrate {
 namespace {

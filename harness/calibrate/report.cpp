@@ -3,8 +3,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "base/text.hpp"
 #include "firmware/esc/core/thrust_model.hpp"
-#include "harness/base/text.hpp"
 
 namespace whirl::calibrate {
 namespace {

@@ -8,11 +8,11 @@
 #include <memory>
 #include <string>
 
-#include "harness/base/result.hpp"
-#include "harness/executive/board_file.hpp"
-#include "harness/executive/world.hpp"
+#include "base/result.hpp"
+#include "harness/board/board_file.hpp"
 #include "harness/plan/plan_file.hpp"
 #include "harness/target/target.hpp"
+#include "harness/world/world.hpp"
 
 namespace whirl::cli {
 

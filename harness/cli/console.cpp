@@ -10,7 +10,7 @@
 #include <sstream>
 #include <tuple>
 
-#include "harness/base/text.hpp"
+#include "base/text.hpp"
 #include "harness/cli/tally.hpp"
 
 namespace whirl::cli {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/base/result.hpp"
+#include "base/result.hpp"
 #include "harness/cli/options.hpp"
 
 namespace whirl::cli {

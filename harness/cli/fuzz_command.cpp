@@ -10,8 +10,8 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
-#include "harness/base/argv.hpp"
-#include "harness/base/places.hpp"
+#include "base/argv.hpp"
+#include "base/places.hpp"
 #include "harness/cli/console.hpp"
 #include "harness/cli/parser_fuzzers.hpp"
 #include "harness/target/fuzz_image.hpp"

@@ -2,7 +2,7 @@
 
 #include <cstdio>
 
-#include "harness/base/text.hpp"
+#include "base/text.hpp"
 #include "harness/cli/console.hpp"
 #include "results/history.hpp"
 

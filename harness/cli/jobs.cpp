@@ -14,9 +14,9 @@
 #include <cstring>
 #include <map>
 
-#include "harness/base/argv.hpp"
-#include "harness/base/interruption.hpp"
-#include "harness/base/outside_signal.hpp"
+#include "base/argv.hpp"
+#include "base/interruption.hpp"
+#include "base/outside_signal.hpp"
 #include "harness/cli/console.hpp"
 
 namespace whirl::cli {

@@ -11,8 +11,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "harness/base/argv.hpp"
-#include "harness/base/result.hpp"
+#include "base/argv.hpp"
+#include "base/result.hpp"
 #include "harness/cli/console.hpp"
 #include "harness/lua/sandbox.hpp"
 

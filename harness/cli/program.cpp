@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <tuple>
 
-#include "harness/base/mishap.hpp"
+#include "base/mishap.hpp"
 #include "harness/cli/calibrate_command.hpp"
 #include "harness/cli/composition.hpp"
 #include "harness/cli/console.hpp"

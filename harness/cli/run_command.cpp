@@ -2,7 +2,7 @@
 
 #include <cstdio>
 
-#include "harness/base/interruption.hpp"
+#include "base/interruption.hpp"
 #include "harness/cli/console.hpp"
 #include "harness/cli/find_plans.hpp"
 #include "harness/cli/jobs.hpp"

@@ -4,9 +4,9 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "harness/base/interruption.hpp"
-#include "harness/base/mishap.hpp"
-#include "harness/base/places.hpp"
+#include "base/interruption.hpp"
+#include "base/mishap.hpp"
+#include "base/places.hpp"
 #include "harness/cli/find_file.hpp"
 #include "harness/cli/versions.hpp"
 #include "results/folder.hpp"

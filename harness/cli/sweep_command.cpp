@@ -2,7 +2,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "harness/base/text.hpp"
+#include "base/text.hpp"
 #include "harness/cli/console.hpp"
 #include "harness/cli/find_plans.hpp"
 #include "harness/cli/page_command.hpp"

@@ -3,8 +3,8 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "harness/base/places.hpp"
-#include "harness/base/text.hpp"
+#include "base/places.hpp"
+#include "base/text.hpp"
 #include "harness/cli/console.hpp"
 #include "harness/cli/find_file.hpp"
 #include "harness/cli/find_plans.hpp"

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "harness/base/digest.hpp"
+#include "base/digest.hpp"
 #include "harness/cli/first_line.hpp"
 #include "harness/lua/sandbox.hpp"
 

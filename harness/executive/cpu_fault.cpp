@@ -1,6 +1,6 @@
 #include "harness/executive/cpu_fault.hpp"
 
-#include "harness/base/text.hpp"
+#include "base/text.hpp"
 
 namespace whirl {
 namespace {

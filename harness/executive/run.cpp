@@ -5,9 +5,9 @@
 #include <cstdio>
 #include <optional>
 
-#include "harness/base/digest.hpp"
-#include "harness/base/interruption.hpp"
-#include "harness/base/mishap.hpp"
+#include "base/digest.hpp"
+#include "base/interruption.hpp"
+#include "base/mishap.hpp"
 #include "harness/executive/clock_log.hpp"
 #include "harness/executive/cpu_fault.hpp"
 #include "harness/executive/task_table.hpp"

@@ -9,10 +9,10 @@
 #include <functional>
 #include <memory>
 
-#include "harness/executive/board_file.hpp"
-#include "harness/executive/world.hpp"
+#include "harness/board/board_file.hpp"
 #include "harness/plan/plan_file.hpp"
 #include "harness/target/target.hpp"
+#include "harness/world/world.hpp"
 #include "results/event_log.hpp"
 #include "results/report.hpp"
 #include "results/truth_log.hpp"

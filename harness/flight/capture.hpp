@@ -1,7 +1,7 @@
 // The motion-capture system as the radio sees it: the cameras' newest pose, passed on at the radio's
 // own rate and late.
 //
-//   In       true pose, frames W and B (plant/frames.hpp)
+//   In       true pose, frames W and B (plant/base/frames.hpp)
 //   Out      at most one pose per radio period, latency_ns after its exposure; none while it is
 //            occluded or out of the room (plant/sensors/motion_capture.hpp)
 #pragma once

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "harness/base/check.hpp"
+#include "base/check.hpp"
 #include "harness/lua/table.hpp"
 
 namespace whirl::flight {

@@ -19,11 +19,11 @@
 #include <string>
 #include <vector>
 
-#include "harness/executive/world.hpp"
 #include "harness/flight/capture.hpp"
 #include "harness/flight/native_esc.hpp"
 #include "harness/flight/station.hpp"
 #include "harness/flight/vehicle_file.hpp"
+#include "harness/world/world.hpp"
 #include "plant/vehicle.hpp"
 
 namespace whirl::flight {

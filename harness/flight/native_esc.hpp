@@ -23,7 +23,7 @@
 #include "firmware/esc/core/core.hpp"
 #include "firmware/esc/core/sensing.hpp"
 #include "harness/flight/zero_crossings.hpp"
-#include "io_bridges/link/messages.hpp"
+#include "io_bridges/messages/messages.hpp"
 #include "plant/sensors/current_shunt.hpp"
 #include "plant/vehicle.hpp"
 

@@ -4,7 +4,7 @@
 #include <map>
 #include <numbers>
 
-#include "harness/base/places.hpp"
+#include "base/places.hpp"
 #include "harness/lua/sandbox.hpp"
 #include "harness/lua/table.hpp"
 #include "plant/rotor/polar.hpp"

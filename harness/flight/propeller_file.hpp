@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "harness/base/result.hpp"
+#include "base/result.hpp"
 #include "plant/rotor/blade.hpp"
 
 namespace whirl::flight {

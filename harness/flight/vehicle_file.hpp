@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "harness/base/result.hpp"
+#include "base/result.hpp"
 #include "harness/flight/capture.hpp"
 #include "harness/flight/native_esc.hpp"
 #include "plant/rotor/blade.hpp"

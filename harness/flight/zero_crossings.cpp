@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "harness/base/check.hpp"
+#include "base/check.hpp"
 
 namespace whirl::flight {
 namespace {

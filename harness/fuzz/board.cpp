@@ -1,5 +1,5 @@
 // Fuzzes board files, up to what the board reads of them.
-#include "harness/executive/board_file.hpp"
+#include "harness/board/board_file.hpp"
 #include "harness/fuzz/input_file.hpp"
 #include "io_bridges/qemu/board/config.hpp"
 

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "harness/base/check.hpp"
+#include "base/check.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace whirl::io;

@@ -3,7 +3,7 @@
 
 #include <fstream>
 
-#include "harness/base/scratch_folder.hpp"
+#include "base/scratch_folder.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace whirl;

@@ -7,7 +7,7 @@
 #include <string>
 #include <tuple>
 
-#include "harness/base/check.hpp"
+#include "base/check.hpp"
 
 namespace whirl::fuzz {
 

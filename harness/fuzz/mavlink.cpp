@@ -1,7 +1,7 @@
 // Fuzzes MAVLink frames in a stream: what is taken is encoded and taken again as the same.
 #include "io_bridges/protocols/mavlink.hpp"
 
-#include "harness/base/check.hpp"
+#include "base/check.hpp"
 #include "io_bridges/protocols/mavlink_messages.hpp"
 
 namespace {

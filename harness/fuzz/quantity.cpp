@@ -2,7 +2,7 @@
 #include <cmath>
 #include <tuple>
 
-#include "harness/base/units.hpp"
+#include "base/units.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view text(reinterpret_cast<const char*>(data), size);

@@ -1,7 +1,7 @@
 // From a Lua value to a tree that no longer needs Lua.
 #include <lua.hpp>
 
-#include "harness/base/text.hpp"
+#include "base/text.hpp"
 #include "harness/lua/node.hpp"
 #include "harness/lua/sandbox.hpp"
 

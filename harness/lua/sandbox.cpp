@@ -9,7 +9,7 @@
 #include <lua.hpp>
 #include <utility>
 
-#include "harness/base/mishap.hpp"
+#include "base/mishap.hpp"
 #include "harness/lua/library.hpp"
 
 namespace whirl::lua {

@@ -17,7 +17,7 @@
 #include <memory>
 #include <string>
 
-#include "harness/base/result.hpp"
+#include "base/result.hpp"
 
 struct lua_State;
 

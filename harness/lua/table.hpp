@@ -19,8 +19,8 @@
 #include <string_view>
 #include <vector>
 
-#include "harness/base/result.hpp"
-#include "harness/base/units.hpp"
+#include "base/result.hpp"
+#include "base/units.hpp"
 
 namespace whirl::lua {
 

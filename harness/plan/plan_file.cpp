@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <lua.hpp>
 
-#include "harness/base/text.hpp"
+#include "base/text.hpp"
 #include "harness/lua/node.hpp"
 #include "harness/plan/raise.hpp"
 

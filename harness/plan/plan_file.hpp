@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/base/result.hpp"
+#include "base/result.hpp"
 #include "harness/lua/sandbox.hpp"
 #include "harness/lua/table.hpp"
 

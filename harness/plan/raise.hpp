@@ -2,7 +2,7 @@
 #pragma once
 #include <string>
 
-#include "harness/base/result.hpp"
+#include "base/result.hpp"
 
 struct lua_State;
 

@@ -15,9 +15,9 @@
 #include <string>
 #include <vector>
 
-#include "harness/executive/board_file.hpp"
-#include "harness/executive/world.hpp"
+#include "harness/board/board_file.hpp"
 #include "harness/plan/plan_file.hpp"
+#include "harness/world/world.hpp"
 #include "results/event_log.hpp"
 #include "results/report.hpp"
 #include "results/truth_log.hpp"

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/executive/world.hpp"
+#include "harness/world/world.hpp"
 #include "io_bridges/protocols/esc_stream.hpp"
 
 namespace whirl::stand {

@@ -5,9 +5,9 @@
 #pragma once
 #include <cstdint>
 
-#include "harness/base/result.hpp"
+#include "base/result.hpp"
 #include "harness/lua/table.hpp"
-#include "io_bridges/link/messages.hpp"
+#include "io_bridges/messages/messages.hpp"
 
 namespace whirl::stand {
 

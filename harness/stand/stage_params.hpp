@@ -10,7 +10,7 @@
 #include <map>
 #include <string>
 
-#include "harness/base/result.hpp"
+#include "base/result.hpp"
 #include "harness/lua/table.hpp"
 
 namespace whirl::stand {

@@ -13,7 +13,7 @@
 #include <memory>
 #include <string>
 
-#include "harness/base/result.hpp"
+#include "base/result.hpp"
 #include "harness/lua/table.hpp"
 #include "harness/stand/stage_params.hpp"
 #include "io_bridges/protocols/esc_codec.hpp"

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <sstream>
 
-#include "harness/base/check.hpp"
+#include "base/check.hpp"
 #include "harness/lua/table.hpp"
 
 namespace whirl::stand {

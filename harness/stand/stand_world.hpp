@@ -20,11 +20,11 @@
 #include <string>
 #include <vector>
 
-#include "harness/executive/world.hpp"
 #include "harness/stand/esc_line.hpp"
 #include "harness/stand/pulse_output.hpp"
 #include "harness/stand/stand_params.hpp"
 #include "harness/stand/throttle.hpp"
+#include "harness/world/world.hpp"
 #include "plant/battery/battery.hpp"
 #include "plant/rotor/rotor.hpp"
 #include "plant/sensors/load_cell.hpp"

@@ -11,7 +11,7 @@
 #include <span>
 #include <vector>
 
-#include "io_bridges/link/messages.hpp"
+#include "io_bridges/messages/messages.hpp"
 #include "io_bridges/protocols/esc_codec.hpp"
 
 namespace whirl::stand {

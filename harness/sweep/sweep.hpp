@@ -8,7 +8,7 @@
 #include <memory>
 #include <vector>
 
-#include "harness/base/result.hpp"
+#include "base/result.hpp"
 #include "harness/flight/vehicle_file.hpp"
 #include "plant/rotor/blade.hpp"
 #include "results/charts.hpp"

@@ -6,7 +6,7 @@
 #include <initializer_list>
 #include <iterator>
 
-#include "harness/base/random.hpp"
+#include "base/random.hpp"
 
 namespace whirl {
 namespace {

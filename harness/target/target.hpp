@@ -13,8 +13,8 @@
 #include <utility>
 #include <vector>
 
-#include "harness/base/result.hpp"
-#include "io_bridges/link/messages.hpp"
+#include "base/result.hpp"
+#include "io_bridges/messages/messages.hpp"
 
 namespace whirl {
 

@@ -15,9 +15,9 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
-#include "harness/base/interruption.hpp"
-#include "harness/base/outside_signal.hpp"
-#include "harness/base/places.hpp"
+#include "base/interruption.hpp"
+#include "base/outside_signal.hpp"
+#include "base/places.hpp"
 #include "io_bridges/link/channel.hpp"
 #include "io_bridges/qemu/board/parts.hpp"
 

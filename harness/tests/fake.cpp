@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "harness/base/interruption.hpp"
+#include "base/interruption.hpp"
 #include "harness/lua/table.hpp"
 #include "io_bridges/devices/faults.hpp"
 #include "results/folder.hpp"

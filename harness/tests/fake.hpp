@@ -7,7 +7,7 @@
 //   World    height answers a take-off as a first-order lag (tau 200 ms), thrust a command as one of
 //            50 ms; a gust moves `east` and it comes back with tau 500 ms
 #pragma once
-#include "harness/base/scratch_folder.hpp"
+#include "base/scratch_folder.hpp"
 #include "harness/cli/composition.hpp"
 
 namespace whirl::test {

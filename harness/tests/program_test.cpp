@@ -1,7 +1,7 @@
 // The program as a user meets it: plans in, verdicts, exit codes, messages and results out.
 #include <gtest/gtest.h>
 
-#include "harness/base/near.hpp"
+#include "base/near.hpp"
 #include "harness/tests/plans.hpp"
 
 namespace whirl::test {

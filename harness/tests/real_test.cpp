@@ -12,7 +12,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "harness/base/scratch_folder.hpp"
+#include "base/scratch_folder.hpp"
 
 namespace {
 

@@ -4,8 +4,8 @@
 
 #include <filesystem>
 
-#include "harness/base/interruption.hpp"
-#include "harness/base/near.hpp"
+#include "base/interruption.hpp"
+#include "base/near.hpp"
 #include "harness/tests/plans.hpp"
 
 namespace whirl::test {

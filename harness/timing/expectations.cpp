@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "harness/base/text.hpp"
+#include "base/text.hpp"
 #include "harness/timing/fields.hpp"
 
 namespace whirl::timing {

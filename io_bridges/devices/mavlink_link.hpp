@@ -16,7 +16,7 @@
 #include <span>
 #include <vector>
 
-#include "harness/base/random.hpp"
+#include "base/random.hpp"
 #include "io_bridges/devices/bus.hpp"
 #include "io_bridges/protocols/mavlink.hpp"
 

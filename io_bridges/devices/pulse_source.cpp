@@ -1,6 +1,6 @@
 #include "io_bridges/devices/pulse_source.hpp"
 
-#include "harness/base/check.hpp"
+#include "base/check.hpp"
 
 namespace whirl::io {
 

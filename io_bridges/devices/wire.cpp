@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "harness/base/check.hpp"
+#include "base/check.hpp"
 
 namespace whirl::io {
 

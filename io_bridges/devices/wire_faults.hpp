@@ -7,7 +7,7 @@
 #include <memory>
 #include <vector>
 
-#include "harness/base/random.hpp"
+#include "base/random.hpp"
 #include "io_bridges/devices/faults.hpp"
 #include "io_bridges/devices/i2c_bus.hpp"
 

@@ -13,7 +13,7 @@
 #include <span>
 #include <string>
 
-#include "harness/base/result.hpp"
+#include "base/result.hpp"
 #include "io_bridges/link/spin_policy.hpp"
 
 namespace whirl::io {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "harness/base/check.hpp"
+#include "base/check.hpp"
 #include "io_bridges/protocols/crc.hpp"
 
 namespace whirl::io {

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "plant/frames.hpp"
+#include "plant/base/frames.hpp"
 
 namespace whirl::plant {
 namespace {

@@ -13,7 +13,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "harness/base/random.hpp"
+#include "base/random.hpp"
 #include "plant/air/air_params.hpp"
 
 namespace whirl::plant {

@@ -1,6 +1,6 @@
 #include "plant/airframe/airframe_params.hpp"
 
-#include "plant/bounds.hpp"
+#include "plant/base/bounds.hpp"
 
 namespace whirl::plant {
 

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/base/result.hpp"
+#include "base/result.hpp"
 
 namespace whirl::plant {
 

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "plant/frames.hpp"
+#include "plant/base/frames.hpp"
 
 namespace whirl::plant {
 namespace {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "harness/base/check.hpp"
-#include "plant/bounds.hpp"
+#include "base/check.hpp"
+#include "plant/base/bounds.hpp"
 
 namespace whirl::plant {
 

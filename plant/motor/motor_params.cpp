@@ -1,6 +1,6 @@
 #include "plant/motor/motor_params.hpp"
 
-#include "plant/bounds.hpp"
+#include "plant/base/bounds.hpp"
 
 namespace whirl::plant {
 

@@ -12,7 +12,7 @@
 #pragma once
 #include <string>
 
-#include "harness/base/result.hpp"
+#include "base/result.hpp"
 
 namespace whirl::plant {
 

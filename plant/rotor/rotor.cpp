@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "harness/base/check.hpp"
+#include "base/check.hpp"
 #include "plant/rotor/rotor_state.hpp"
 #include "plant/rotor/torsion.hpp"
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <vector>
 
-#include "harness/base/check.hpp"
-#include "plant/bounds.hpp"
+#include "base/check.hpp"
+#include "plant/base/bounds.hpp"
 #include "plant/sensors/noise.hpp"
 
 namespace whirl::plant {

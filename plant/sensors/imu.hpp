@@ -15,7 +15,7 @@
 #include <memory>
 #include <string>
 
-#include "harness/base/result.hpp"
+#include "base/result.hpp"
 
 namespace whirl::plant {
 

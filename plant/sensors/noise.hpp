@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <string>
 
-#include "harness/base/random.hpp"
+#include "base/random.hpp"
 
 namespace whirl::plant {
 

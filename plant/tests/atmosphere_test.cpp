@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "harness/base/near.hpp"
+#include "base/near.hpp"
 
 namespace whirl::plant {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "harness/base/near.hpp"
+#include "base/near.hpp"
 
 namespace whirl::plant {
 namespace {

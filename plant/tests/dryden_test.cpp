@@ -6,7 +6,7 @@
 #include <functional>
 #include <vector>
 
-#include "harness/base/near.hpp"
+#include "base/near.hpp"
 
 namespace whirl::plant {
 namespace {

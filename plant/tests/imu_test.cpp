@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "harness/base/near.hpp"
+#include "base/near.hpp"
 #include "plant/tests/allan.hpp"
 
 namespace whirl::plant {

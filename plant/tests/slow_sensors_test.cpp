@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "harness/base/near.hpp"
+#include "base/near.hpp"
 #include "plant/sensors/barometer.hpp"
 #include "plant/sensors/current_shunt.hpp"
 #include "plant/sensors/gps.hpp"

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "harness/base/near.hpp"
-#include "harness/base/random.hpp"
+#include "base/near.hpp"
+#include "base/random.hpp"
 
 namespace whirl::plant {
 namespace {

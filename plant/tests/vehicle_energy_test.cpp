@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "harness/base/near.hpp"
-#include "harness/base/random.hpp"
+#include "base/near.hpp"
+#include "base/random.hpp"
 #include "plant/rotor/rotor.hpp"
 #include "plant/rotor/tests/test_blades.hpp"
 #include "plant/tests/quadratic_rotor.hpp"

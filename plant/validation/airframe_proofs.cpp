@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "plant/airframe/contact_world.hpp"
-#include "plant/frames.hpp"
+#include "plant/base/frames.hpp"
 #include "plant/validation/validation.hpp"
 #include "plant/vehicle.hpp"
 

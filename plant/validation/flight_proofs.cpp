@@ -1,7 +1,7 @@
 // The lumped drag coefficient as flight data would show it: specific force against air speed.
 #include <cmath>
 
-#include "plant/frames.hpp"
+#include "plant/base/frames.hpp"
 #include "plant/rotor/rotor.hpp"
 #include "plant/validation/validation.hpp"
 #include "plant/vehicle.hpp"

@@ -5,7 +5,7 @@
 #include <limits>
 #include <map>
 
-#include "harness/base/check.hpp"
+#include "base/check.hpp"
 #include "plant/rotor/polar.hpp"
 #include "plant/rotor/section_rules.hpp"
 #include "plant/rotor/twist_fit.hpp"

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <fstream>
 
-#include "harness/base/scratch_folder.hpp"
+#include "base/scratch_folder.hpp"
 
 namespace whirl::results {
 namespace {

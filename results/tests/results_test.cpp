@@ -9,8 +9,8 @@
 #include <set>
 #include <sstream>
 
-#include "harness/base/scratch_folder.hpp"
-#include "harness/base/text.hpp"
+#include "base/scratch_folder.hpp"
+#include "base/text.hpp"
 #include "results/charts.hpp"
 #include "results/folder.hpp"
 #include "results/tests/sample.hpp"

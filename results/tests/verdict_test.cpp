@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "harness/base/result.hpp"
+#include "base/result.hpp"
 #include "results/tests/sample.hpp"
 
 namespace whirl::results {

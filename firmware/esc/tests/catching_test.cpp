@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "harness/base/near.hpp"
+#include "base/near.hpp"
 #include "plant/motor/switched_motor.hpp"
 
 namespace fw::esc {

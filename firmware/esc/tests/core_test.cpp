@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "harness/base/near.hpp"
+#include "base/near.hpp"
 
 namespace fw::esc {
 namespace {

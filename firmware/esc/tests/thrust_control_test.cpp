@@ -4,10 +4,10 @@
 #include <random>
 #include <vector>
 
+#include "base/near.hpp"
 #include "firmware/esc/core/core.hpp"
 #include "firmware/esc/core/power_balance.hpp"
 #include "firmware/esc/core/thrust_demand.hpp"
-#include "harness/base/near.hpp"
 
 namespace fw::esc {
 namespace {

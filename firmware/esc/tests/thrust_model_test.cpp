@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "harness/base/near.hpp"
+#include "base/near.hpp"
 
 namespace fw::esc {
 namespace {

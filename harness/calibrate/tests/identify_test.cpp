@@ -6,8 +6,8 @@
 #include <fstream>
 #include <numbers>
 
-#include "harness/base/random.hpp"
-#include "harness/base/scratch_folder.hpp"
+#include "base/random.hpp"
+#include "base/scratch_folder.hpp"
 #include "harness/calibrate/data_file.hpp"
 #include "harness/calibrate/report.hpp"
 

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "harness/base/random.hpp"
+#include "base/random.hpp"
 
 namespace whirl::calibrate {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <fstream>
 
-#include "harness/base/scratch_folder.hpp"
+#include "base/scratch_folder.hpp"
 
 namespace whirl::calibrate {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "harness/base/near.hpp"
+#include "base/near.hpp"
 
 namespace whirl {
 namespace {

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "harness/base/near.hpp"
+#include "base/near.hpp"
 #include "harness/flight/tests/paths.hpp"
 #include "harness/lua/table.hpp"
 #include "io_bridges/protocols/esc_codec.hpp"

@@ -11,7 +11,7 @@
 #include <numbers>
 #include <vector>
 
-#include "harness/base/near.hpp"
+#include "base/near.hpp"
 #include "io_bridges/protocols/esc_codec.hpp"
 #include "plant/motor/averaged_motor.hpp"
 

@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "harness/base/near.hpp"
-#include "harness/base/scratch_folder.hpp"
+#include "base/near.hpp"
+#include "base/scratch_folder.hpp"
 #include "plant/rotor/twist_fit.hpp"
 
 namespace whirl::flight {

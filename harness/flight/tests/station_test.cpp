@@ -6,7 +6,7 @@
 #include <numbers>
 #include <vector>
 
-#include "harness/base/near.hpp"
+#include "base/near.hpp"
 
 namespace whirl::flight {
 namespace {

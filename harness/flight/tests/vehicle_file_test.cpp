@@ -6,8 +6,8 @@
 #include <fstream>
 #include <sstream>
 
-#include "harness/base/near.hpp"
-#include "harness/base/scratch_folder.hpp"
+#include "base/near.hpp"
+#include "base/scratch_folder.hpp"
 #include "harness/flight/tests/paths.hpp"
 
 namespace whirl::flight {

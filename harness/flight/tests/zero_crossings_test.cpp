@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "harness/base/near.hpp"
+#include "base/near.hpp"
 
 namespace whirl::flight {
 namespace {

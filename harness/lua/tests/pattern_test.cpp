@@ -5,7 +5,7 @@
 #include <lua.hpp>
 #include <memory>
 
-#include "harness/base/random.hpp"
+#include "base/random.hpp"
 #include "harness/lua/sandbox.hpp"
 
 namespace whirl::lua {

@@ -1,6 +1,6 @@
 #include "harness/lua/table.hpp"
 
-#include "harness/base/near.hpp"
+#include "base/near.hpp"
 
 namespace whirl::lua {
 namespace {

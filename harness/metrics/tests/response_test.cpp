@@ -5,7 +5,7 @@
 #include <numbers>
 #include <vector>
 
-#include "harness/base/near.hpp"
+#include "base/near.hpp"
 
 namespace whirl::metrics {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "harness/base/near.hpp"
+#include "base/near.hpp"
 
 namespace whirl::metrics {
 namespace {

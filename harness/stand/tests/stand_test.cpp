@@ -6,7 +6,7 @@
 #include <numbers>
 #include <vector>
 
-#include "harness/base/near.hpp"
+#include "base/near.hpp"
 #include "harness/stand/stand_world.hpp"
 #include "plant/motor/motor_params.hpp"
 

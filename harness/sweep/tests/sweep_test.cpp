@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "harness/base/near.hpp"
+#include "base/near.hpp"
 #include "plant/rotor/rotor.hpp"
 
 namespace whirl::sweep {

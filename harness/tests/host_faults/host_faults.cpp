@@ -28,7 +28,7 @@
 #include <thread>
 #include <vector>
 
-#include "harness/base/scratch_folder.hpp"
+#include "base/scratch_folder.hpp"
 #include "harness/tests/host_faults/site_table.hpp"
 
 namespace whirl::host_faults {

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "harness/base/near.hpp"
+#include "base/near.hpp"
 #include "harness/tests/oracle/by_hand.hpp"
 
 namespace whirl::oracle {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <map>
 
-#include "harness/base/near.hpp"
+#include "base/near.hpp"
 #include "harness/tests/oracle/by_hand.hpp"
 
 namespace whirl::oracle {

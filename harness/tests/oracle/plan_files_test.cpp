@@ -3,7 +3,7 @@
 
 #include <fstream>
 
-#include "harness/base/scratch_folder.hpp"
+#include "base/scratch_folder.hpp"
 #include "harness/plan/plan_file.hpp"
 
 namespace whirl::plan {

@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "harness/base/scratch_folder.hpp"
+#include "base/scratch_folder.hpp"
 #include "harness/tests/oracle/judged.hpp"
 
 namespace whirl::oracle {

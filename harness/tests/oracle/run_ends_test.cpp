@@ -5,8 +5,8 @@
 #include <chrono>
 #include <cmath>
 
-#include "harness/base/interruption.hpp"
-#include "harness/base/near.hpp"
+#include "base/interruption.hpp"
+#include "base/near.hpp"
 #include "harness/tests/oracle/by_hand.hpp"
 #include "io_bridges/devices/faults.hpp"
 

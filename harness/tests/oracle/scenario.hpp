@@ -14,10 +14,10 @@
 #include <string>
 #include <vector>
 
-#include "harness/base/random.hpp"
-#include "harness/base/units.hpp"
+#include "base/random.hpp"
+#include "base/units.hpp"
 #include "harness/lua/sandbox.hpp"
-#include "io_bridges/link/messages.hpp"
+#include "io_bridges/messages/messages.hpp"
 
 namespace whirl::oracle {
 

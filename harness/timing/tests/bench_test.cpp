@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "harness/base/scratch_folder.hpp"
+#include "base/scratch_folder.hpp"
 
 namespace whirl {
 namespace {

@@ -6,7 +6,7 @@
 #include <complex>
 #include <numbers>
 
-#include "harness/base/near.hpp"
+#include "base/near.hpp"
 
 namespace whirl::io {
 namespace {

@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "harness/base/check.hpp"
+#include "base/check.hpp"
 
 namespace whirl::io {
 namespace {

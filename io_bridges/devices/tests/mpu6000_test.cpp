@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "harness/base/near.hpp"
+#include "base/near.hpp"
 #include "io_bridges/devices/i2c_bus.hpp"
 #include "io_bridges/devices/tests/mpu6000_bench.hpp"
 

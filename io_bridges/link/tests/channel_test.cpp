@@ -12,7 +12,7 @@
 #include <tuple>
 #include <vector>
 
-#include "io_bridges/link/messages.hpp"
+#include "io_bridges/messages/messages.hpp"
 
 namespace whirl::io {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "harness/base/near.hpp"
+#include "base/near.hpp"
 
 namespace whirl::io {
 namespace {

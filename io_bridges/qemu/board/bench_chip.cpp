@@ -4,9 +4,9 @@
 #include <new>
 #include <stdexcept>
 
-#include "harness/base/check.hpp"
-#include "harness/base/digest.hpp"
-#include "harness/base/text.hpp"
+#include "base/check.hpp"
+#include "base/digest.hpp"
+#include "base/text.hpp"
 
 namespace whirl::board {
 namespace {

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <tuple>
 
-#include "harness/base/text.hpp"
+#include "base/text.hpp"
 #include "io_bridges/devices/faults.hpp"
 #include "io_bridges/qemu/board/chip_factory.hpp"
 #include "io_bridges/qemu/board/post_mortem.hpp"

@@ -13,7 +13,7 @@
 
 #include "io_bridges/devices/event_queue.hpp"
 #include "io_bridges/link/channel.hpp"
-#include "io_bridges/link/messages.hpp"
+#include "io_bridges/messages/messages.hpp"
 #include "io_bridges/qemu/board/code_hang.hpp"
 #include "io_bridges/qemu/board/config.hpp"
 #include "io_bridges/qemu/board/cortex_m.hpp"

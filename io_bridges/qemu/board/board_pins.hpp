@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/base/result.hpp"
+#include "base/result.hpp"
 #include "io_bridges/qemu/board/config.hpp"
 #include "io_bridges/qemu/stm32/chip_model.hpp"
 

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "harness/base/text.hpp"
+#include "base/text.hpp"
 #include "io_bridges/qemu/board/board.hpp"
 #include "io_bridges/qemu/board/post_mortem.hpp"
 

@@ -1,6 +1,6 @@
 #include "io_bridges/qemu/board/chip_factory.hpp"
 
-#include "harness/base/check.hpp"
+#include "base/check.hpp"
 #include "io_bridges/qemu/board/bench_chip.hpp"
 #include "io_bridges/qemu/stm32/stm32f103.hpp"
 #include "io_bridges/qemu/stm32/stm32f405.hpp"

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "io_bridges/devices/event_queue.hpp"
-#include "io_bridges/link/messages.hpp"
+#include "io_bridges/messages/messages.hpp"
 #include "io_bridges/qemu/board/emulator.hpp"
 #include "io_bridges/qemu/board/image.hpp"
 

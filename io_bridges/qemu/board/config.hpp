@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-#include "harness/base/result.hpp"
+#include "base/result.hpp"
 
 namespace whirl::board {
 

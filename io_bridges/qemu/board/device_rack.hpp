@@ -16,9 +16,9 @@
 #include <memory>
 #include <vector>
 
-#include "harness/base/result.hpp"
+#include "base/result.hpp"
 #include "io_bridges/devices/faults.hpp"
-#include "io_bridges/link/messages.hpp"
+#include "io_bridges/messages/messages.hpp"
 #include "io_bridges/qemu/board/config.hpp"
 #include "io_bridges/qemu/stm32/chip_model.hpp"
 

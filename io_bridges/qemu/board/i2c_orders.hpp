@@ -9,7 +9,7 @@
 
 #include "io_bridges/devices/event_queue.hpp"
 #include "io_bridges/devices/i2c_master.hpp"
-#include "io_bridges/link/messages.hpp"
+#include "io_bridges/messages/messages.hpp"
 
 namespace whirl::board {
 

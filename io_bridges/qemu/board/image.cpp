@@ -13,8 +13,8 @@
 #include <optional>
 #include <sstream>
 
-#include "harness/base/digest.hpp"
-#include "harness/base/text.hpp"
+#include "base/digest.hpp"
+#include "base/text.hpp"
 
 namespace whirl::board {
 namespace {

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/base/result.hpp"
+#include "base/result.hpp"
 #include "io_bridges/qemu/board/parts.hpp"
 
 namespace whirl::board {

@@ -8,9 +8,9 @@
 #include <map>
 #include <string>
 
-#include "harness/base/result.hpp"
+#include "base/result.hpp"
 #include "io_bridges/devices/mpu6000.hpp"
-#include "io_bridges/link/messages.hpp"
+#include "io_bridges/messages/messages.hpp"
 #include "plant/sensors/imu.hpp"
 
 namespace whirl::board {

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "io_bridges/link/messages.hpp"
+#include "io_bridges/messages/messages.hpp"
 #include "io_bridges/qemu/board/image.hpp"
 #include "io_bridges/qemu/board/parts.hpp"
 

@@ -17,10 +17,10 @@
 #include <map>
 #include <string>
 
-#include "harness/base/result.hpp"
+#include "base/result.hpp"
 #include "io_bridges/devices/event_queue.hpp"
 #include "io_bridges/devices/wire.hpp"
-#include "io_bridges/link/messages.hpp"
+#include "io_bridges/messages/messages.hpp"
 #include "io_bridges/qemu/stm32/chip_model.hpp"
 #include "plant/motor/switched_motor.hpp"
 #include "plant/sensors/current_shunt.hpp"

@@ -1,5 +1,5 @@
 // From a board's description and its images to what a board process is made of.
-#include "harness/base/text.hpp"
+#include "base/text.hpp"
 #include "io_bridges/qemu/board/board.hpp"
 
 namespace whirl::board {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "io_bridges/devices/wire.hpp"
-#include "io_bridges/link/messages.hpp"
+#include "io_bridges/messages/messages.hpp"
 
 namespace whirl::board {
 

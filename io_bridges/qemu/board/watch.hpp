@@ -20,7 +20,7 @@
 #include <vector>
 
 #include "io_bridges/devices/event_queue.hpp"
-#include "io_bridges/link/messages.hpp"
+#include "io_bridges/messages/messages.hpp"
 #include "io_bridges/qemu/board/stacks.hpp"
 #include "io_bridges/qemu/board/worst_calls.hpp"
 

@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "harness/base/result.hpp"
+#include "base/result.hpp"
 #include "io_bridges/qemu/board/core_timing.hpp"
 #include "io_bridges/qemu/board/watch.hpp"
 #include "io_bridges/qemu/plugin/plugin_api.hpp"

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "harness/base/check.hpp"
+#include "base/check.hpp"
 #include "io_bridges/qemu/plugin/operand_cost.hpp"
 #include "io_bridges/qemu/plugin/tcg.hpp"
 

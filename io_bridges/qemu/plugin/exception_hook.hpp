@@ -9,7 +9,7 @@
 #pragma once
 #include <functional>
 
-#include "harness/base/result.hpp"
+#include "base/result.hpp"
 #include "io_bridges/qemu/plugin/qemu_api.hpp"
 
 namespace whirl::qemu {

@@ -14,7 +14,7 @@
 #pragma once
 #include <cstdint>
 
-#include "harness/base/result.hpp"
+#include "base/result.hpp"
 #include "io_bridges/qemu/plugin/qemu_api.hpp"
 
 namespace whirl::qemu {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "io_bridges/qemu/plugin/instruments.hpp"
 
-#include "harness/base/text.hpp"
+#include "base/text.hpp"
 
 namespace whirl::qemu {
 namespace {

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "harness/base/check.hpp"
+#include "base/check.hpp"
 #include "io_bridges/qemu/plugin/qemu_api.hpp"
 
 namespace whirl::qemu::tcg {

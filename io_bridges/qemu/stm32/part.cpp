@@ -1,6 +1,6 @@
 #include "io_bridges/qemu/stm32/part.hpp"
 
-#include "harness/base/check.hpp"
+#include "base/check.hpp"
 
 namespace whirl::stm32 {
 

@@ -6,7 +6,7 @@
 #pragma once
 #include <cstdint>
 
-#include "harness/base/random.hpp"
+#include "base/random.hpp"
 #include "io_bridges/qemu/stm32/irq_line.hpp"
 #include "io_bridges/qemu/stm32/peripheral.hpp"
 

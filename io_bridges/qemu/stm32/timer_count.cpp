@@ -2,7 +2,7 @@
 //
 //   A run goes in one direction and ends one step before a turn: overflow, underflow, or the
 //   wrap of a counter that was above ARR. Matches inside a run and at turns set flags and OCxREF.
-#include "harness/base/check.hpp"
+#include "base/check.hpp"
 #include "io_bridges/qemu/stm32/timer.hpp"
 
 namespace whirl::stm32 {

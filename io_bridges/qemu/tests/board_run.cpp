@@ -3,7 +3,7 @@
 #include <cstdlib>
 #include <sstream>
 
-#include "harness/base/digest.hpp"
+#include "base/digest.hpp"
 
 namespace whirl::board_test {
 

@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "harness/base/digest.hpp"
+#include "base/digest.hpp"
 #include "harness/target/virtual_board.hpp"
 
 namespace {

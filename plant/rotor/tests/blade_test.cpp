@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <functional>
 
-#include "harness/base/near.hpp"
+#include "base/near.hpp"
 #include "plant/rotor/tests/test_blades.hpp"
 #include "plant/rotor/twist_fit.hpp"
 

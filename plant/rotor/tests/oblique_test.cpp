@@ -1,5 +1,5 @@
 // The rotor in oblique flow and on a turning body: signs, symmetries and closed forms.
-#include "harness/base/near.hpp"
+#include "base/near.hpp"
 #include "plant/rotor/ring_loads.hpp"
 #include "plant/rotor/tests/test_blades.hpp"
 

@@ -1,6 +1,6 @@
 #include "plant/rotor/polar.hpp"
 
-#include "harness/base/near.hpp"
+#include "base/near.hpp"
 #include "plant/rotor/tests/test_blades.hpp"
 
 namespace whirl::plant {

@@ -1,7 +1,7 @@
 // The whole envelope and beyond: nothing that a plan can do may bring the rotor to nonsense.
 #include <limits>
 
-#include "harness/base/near.hpp"
+#include "base/near.hpp"
 #include "plant/rotor/tests/test_blades.hpp"
 
 namespace whirl::plant {

@@ -1,6 +1,6 @@
 #include "plant/rotor/rotor.hpp"
 
-#include "harness/base/near.hpp"
+#include "base/near.hpp"
 #include "plant/rotor/tests/test_blades.hpp"
 
 namespace whirl::plant {

@@ -1,5 +1,5 @@
 // Rotors that nobody in the house has flown: other sizes, blade counts, pitches, materials, speeds.
-#include "harness/base/near.hpp"
+#include "base/near.hpp"
 #include "plant/rotor/section_rules.hpp"
 #include "plant/rotor/tests/test_blades.hpp"
 

@@ -1,7 +1,7 @@
 // The soft blade: stiffness by its closed form, and what measured soft blades do.
 #include "plant/rotor/torsion.hpp"
 
-#include "harness/base/near.hpp"
+#include "base/near.hpp"
 #include "plant/rotor/rotor_state.hpp"
 #include "plant/rotor/tests/test_blades.hpp"
 #include "plant/rotor/twist_fit.hpp"

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/base/scratch_folder.hpp"
+#include "base/scratch_folder.hpp"
 #include "io_bridges/qemu/board/image.hpp"
 
 namespace whirl::board {

@@ -8,7 +8,7 @@
 #include <memory>
 #include <vector>
 
-#include "harness/base/near.hpp"
+#include "base/near.hpp"
 
 namespace whirl::board {
 namespace {

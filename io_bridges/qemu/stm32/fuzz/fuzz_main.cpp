@@ -11,7 +11,7 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "harness/base/check.hpp"
+#include "base/check.hpp"
 #include "io_bridges/qemu/stm32/fuzz/register_fuzz.hpp"
 
 namespace {

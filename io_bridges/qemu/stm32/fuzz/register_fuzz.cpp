@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "harness/base/check.hpp"
-#include "harness/base/digest.hpp"
+#include "base/check.hpp"
+#include "base/digest.hpp"
 #include "io_bridges/qemu/stm32/chip_model.hpp"
 #include "io_bridges/qemu/stm32/stm32f103.hpp"
 #include "io_bridges/qemu/stm32/stm32f405.hpp"

@@ -1,0 +1,138 @@
+#include "harness/board/board_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "base/near.hpp"
+#include "base/scratch_folder.hpp"
+
+namespace whirl {
+namespace {
+
+using nlohmann::json;
+
+Result<Board> read_text(const std::string& text) {
+  const ScratchFolder folder;
+  const std::string path = folder.file("board.lua");
+  std::ofstream(path) << text;
+  return read_board(path);
+}
+
+std::string board_with(const std::string& more) {
+  return "return { board = 'b', mcu = 'stm32f405rg', hse = '24 MHz', " + more + " }";
+}
+
+constexpr const char* kDevices = R"(lse = '32768 Hz', timing = '16 ns', devices = {
+  { name = 'imu', type = 'mpu6000', bus = 'spi1', cs = 'PB0', int = 'PC5',
+    params = { noise = '5 %', note = 'words', count = 3, on = true, axes = { 1, 2, 3 }, deep = { rate = '1 kHz' } } },
+  { name = 'esc1', type = 'esc_i2c', bus = 'i2c3', address = 0x08, motor = 1 },
+  { name = 'esc2', type = 'esc_i2c', bus = 'i2c3', address = 0x77, motor = 4 },
+  { name = 'far', type = 'esc_i2c', bus = 'i2c2', address = 0x77 },
+  { name = 'radio', type = 'mavlink_link', bus = 'usart2', baud = '57600 baud' } },
+  pins = { { name = 'led', pin = 'PA1' } }, watch = { 'f', 'g' })";
+
+TEST(BoardDescription, GivesItsDevicesByNameAndNumber) {
+  const auto board = read_text(board_with(kDevices));
+  ASSERT_TRUE(board) << board.error().message();
+  const Board& b = board.value();
+  EXPECT_EQ(b.name, "b");
+  EXPECT_EQ(b.mcu, "stm32f405rg");
+  EXPECT_EQ(b.hse_Hz, 24e6);
+  EXPECT_EQ(b.lse_Hz, 32768.0);
+  EXPECT_EQ(b.ns_per_instruction, 16);
+  EXPECT_EQ(b.number("imu"), 0);
+  EXPECT_EQ(b.number("radio"), 4);
+  EXPECT_EQ(b.number("nobody"), -1);
+  EXPECT_EQ(b.find("nobody"), nullptr);
+  EXPECT_EQ(b.find("imu"), &b.devices[0]);
+  EXPECT_EQ(b.find("esc2")->address, 0x77);
+  EXPECT_EQ(b.find("esc2")->motor, 4);
+  EXPECT_EQ(b.find("imu")->address, -1);
+  EXPECT_EQ(b.find("imu")->motor, 0);
+  EXPECT_EQ(b.watch_number("f"), 0);
+  EXPECT_EQ(b.watch_number("g"), 1);
+  EXPECT_EQ(b.watch_number("h"), -1);
+}
+
+TEST(BoardDescription, TellsTheBoardsProcessAllInSI) {
+  const auto board = read_text(board_with(kDevices));
+  ASSERT_TRUE(board);
+  const json told = json::parse(board_json(board.value(), {"i.elf", 7, 2'000'000, true, 1234}));
+  EXPECT_EQ(told["board"], "b");
+  EXPECT_EQ(told["mcu"], "stm32f405rg");
+  EXPECT_EQ(told["hse_Hz"], 24e6);
+  EXPECT_EQ(told["lse_Hz"], 32768.0);
+  EXPECT_EQ(told["image"], "i.elf");
+  EXPECT_EQ(told["ns_per_instruction"], 16);
+  EXPECT_EQ(told["seed"], 7);
+  EXPECT_EQ(told["sync_ns"], 2'000'000);
+  EXPECT_EQ(told["gdb"], true);
+  EXPECT_EQ(told["gdb_port"], 1234);
+  EXPECT_EQ(told["watch"], (json{"f", "g"}));
+  EXPECT_EQ(told["pins"], (json::array({{{"name", "led"}, {"pin", "PA1"}}})));
+  ASSERT_EQ(told["devices"].size(), 5u);
+  const json& imu = told["devices"][0];
+  EXPECT_EQ(imu["name"], "imu");
+  EXPECT_EQ(imu["type"], "mpu6000");
+  EXPECT_EQ(imu["bus"], "spi1");
+  EXPECT_EQ(imu["cs"], "PB0");
+  EXPECT_EQ(imu["int"], "PC5");
+  EXPECT_FALSE(imu.contains("address"));
+  EXPECT_EQ(imu["params"], (json{{"noise", 0.05},
+                                 {"note", "words"},
+                                 {"count", 3.0},
+                                 {"on", true},
+                                 {"axes", {1.0, 2.0, 3.0}},
+                                 {"deep", {{"rate", 1000.0}}}}));
+  EXPECT_EQ(told["devices"][1]["address"], 8);
+  EXPECT_EQ(told["devices"][1]["motor"], 1);
+  EXPECT_EQ(told["devices"][1]["params"], json::object());
+  EXPECT_EQ(told["devices"][4]["baud"], 57600.0);
+}
+
+TEST(BoardDescription, WithoutThemItTakesTheDefaults) {
+  const auto board = read_text(board_with(""));
+  ASSERT_TRUE(board) << board.error().message();
+  EXPECT_EQ(board.value().ns_per_instruction, 0);
+  EXPECT_EQ(board.value().lse_Hz, 0.0);
+}
+
+TEST(BoardDescription, RefusesDoublesAndWhatIsOutOfRange) {
+  const auto two = [](const std::string& a, const std::string& b) {
+    return read_text(
+        board_with("devices = { { type = 't', " + a + " }, { type = 't', " + b + " } }"));
+  };
+  struct Bad {
+    Result<Board> board;
+    const char* words;
+  };
+  const Bad kAll[] = {
+      {two("name = 'a', bus = 'i2c1'", "name = 'a', bus = 'i2c2'"), "two devices are called 'a'"},
+      {two("name = 'a', bus = 'i2c1', address = 9", "name = 'b', bus = 'i2c1', address = 9"),
+       "a and b share one address on i2c1"},
+      {two("name = 'a', bus = 'i2c1', address = 7", "name = 'b', bus = 'i2c1'"), "address"},
+      {two("name = 'a', bus = 'i2c1', address = 0x78", "name = 'b', bus = 'i2c1'"), "address"},
+      {two("name = 'a', bus = 'i2c1', motor = 0", "name = 'b', bus = 'i2c1'"), "motor"},
+      {two("name = 'a', bus = 'i2c1', motor = 5", "name = 'b', bus = 'i2c1'"), "motor"},
+      {two("name = 'a', bus = 'i2c1', baud = '0 baud'", "name = 'b', bus = 'i2c1'"), "baud"},
+      {two("name = 'a', bus = 'i2c1', colour = 1", "name = 'b', bus = 'i2c1'"), "unknown key"},
+      {read_text(board_with("timing = '0.5 ns'")), "timing"},
+      {read_text(board_with("timing = '2 us'")), "timing"},
+      {read_text("return { board = 'b', mcu = 'm', hse = '0 Hz' }"), "hse"},
+      {read_text("return { board = 'b', hse = '1 Hz' }"), "mcu"},
+      {read_text("return {"), "board.lua"},
+  };
+  for (const Bad& bad : kAll) {
+    ASSERT_FALSE(bad.board) << bad.words;
+    EXPECT_NE(bad.board.error().message().find(bad.words), std::string::npos)
+        << bad.board.error().message();
+  }
+  EXPECT_TRUE(
+      two("name = 'a', bus = 'i2c1', address = 9", "name = 'b', bus = 'i2c2', address = 9"));
+  EXPECT_TRUE(two("name = 'a', bus = 'spi1'", "name = 'b', bus = 'spi1'"));
+}
+
+}  // namespace
+}  // namespace whirl

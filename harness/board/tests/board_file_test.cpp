@@ -1,0 +1,219 @@
+// Board files: what reaches the board's process, and each mistake in one sentence.
+#include "harness/board/board_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "base/near.hpp"
+#include "base/scratch_folder.hpp"
+
+namespace whirl {
+namespace {
+
+Result<Board> read(const std::string& keys) {
+  const ScratchFolder folder;
+  const std::string path = folder.file("b.lua");
+  std::ofstream(path, std::ios::binary)
+      << "return { board = \"b\", mcu = \"stm32f405rg\", hse = \"8 MHz\", " << keys << " }";
+  return read_board(path);
+}
+std::string complaint(const std::string& keys) {
+  const auto board = read(keys);
+  return board ? "" : board.error().message();
+}
+nlohmann::json json_of(const Board& board) {
+  return nlohmann::json::parse(board_json(board, {.image = "i.elf"}));
+}
+
+TEST(BoardFile, ACrystalStartsAfterTwoMillisecondsUnlessTheFileKnowsBetter) {
+  EXPECT_EQ(json_of(read("").value())["hse_start_ns"], 2'000'000);
+  const Board quick = read(R"(hse_start = "0.2 ms")").value();
+  EXPECT_EQ(json_of(quick)["hse_start_ns"], 200'000);
+  EXPECT_EQ(quick.timing_profile(), "CPU cycles (+-10 %), crystal ready after 0.2 ms");
+}
+
+TEST(BoardFile, TimePassesByCyclesUnlessTheFileFixesIt) {
+  EXPECT_EQ(json_of(read("").value())["ns_per_instruction"], 0);
+  EXPECT_EQ(json_of(read(R"(timing = "cycles")").value())["ns_per_instruction"], 0);
+  const Board fixed = read(R"(timing = "8 ns")").value();
+  EXPECT_EQ(json_of(fixed)["ns_per_instruction"], 8);
+  EXPECT_EQ(fixed.timing_profile(), "8 ns per instruction, crystal ready after 2 ms");
+  EXPECT_NE(complaint(R"(timing = "8 instructions")").find("timing"), std::string::npos);
+}
+
+TEST(BoardFile, OscillatorsAreWhatTheySayUnlessTheFileKnowsBetter) {
+  EXPECT_EQ(json_of(read("").value())["hsi_error"], 0.0);
+  EXPECT_EQ(json_of(read("").value())["hse_error"], 0.0);
+  const Board off = read(R"(hsi_error = "-1 %", hse_error = "50 ppm")").value();
+  EXPECT_TRUE(near(json_of(off)["hsi_error"].get<double>(), -0.01, round_off(2, 0.01)));
+  EXPECT_TRUE(near(json_of(off)["hse_error"].get<double>(), 5e-5, round_off(2, 5e-5)));
+  EXPECT_EQ(off.timing_profile(),
+            "CPU cycles (+-10 %), crystal ready after 2 ms, +50 ppm off, HSI -1 % off");
+}
+
+TEST(BoardFile, PinsCarryTheirResistorAndTheirBus) {
+  const Board board = read(R"(pins = { { name = "c", pin = "PB8", bus = "i2c1.scl", pull = "up" },
+                                       { name = "d", pin = "PB9" } })")
+                          .value();
+  const auto pins = json_of(board)["pins"];
+  EXPECT_EQ(pins[0]["bus"], "i2c1.scl");
+  EXPECT_EQ(pins[0]["pull"], "up");
+  EXPECT_FALSE(pins[1].contains("pull"));
+}
+
+TEST(BoardFile, ABootLoaderLiesBesideTheFileAndTheStartIsAnAddress) {
+  const auto json = json_of(read(R"(boot_image = "boot.elf", start = 0x08004000)").value());
+  EXPECT_NE(json["boot_image"].get<std::string>().find("/boot.elf"), std::string::npos);
+  EXPECT_EQ(json["start"], 0x08004000);
+}
+
+TEST(BoardFile, WhatSharesAPinIsRefused) {
+  const std::string imu =
+      R"({ name = "a", type = "mpu6000", bus = "spi1", cs = "PB0", int = "PC5" })";
+  const auto with = [&](const std::string& other) {
+    return complaint("devices = { " + imu + ", " + other + " }");
+  };
+  EXPECT_EQ(with(R"({ name = "b", type = "mpu6000", bus = "spi1", cs = "PB1", int = "PC4" })"), "");
+  EXPECT_NE(with(R"({ name = "b", type = "mpu6000", bus = "spi1", cs = "PB0", int = "PC4" })")
+                .find("a and b are on one pin, PB0"),
+            std::string::npos);
+  EXPECT_NE(with(R"({ name = "b", type = "pulse_source", bus = "PC5", motor = 1 })")
+                .find("on one pin, PC5"),
+            std::string::npos);
+  EXPECT_EQ(with(R"({ name = "b", type = "jumper", bus = "pins", cs = "PB0", int = "PA1" })"), "");
+  EXPECT_NE(complaint(R"(pins = { { name = "x", pin = "PB1" }, { name = "y", pin = "PB1" } })")
+                .find("listed twice"),
+            std::string::npos);
+  EXPECT_NE(complaint(R"(pins = { { name = "x", pin = "PB1" }, { name = "x", pin = "PB2" } })")
+                .find("two pins are called so"),
+            std::string::npos);
+}
+
+TEST(BoardFile, FiguresOutsideOfWhatExistsAreRefused) {
+  for (const char* baud : {"1e-300 baud", "1e300 baud", "0 baud"}) {
+    const std::string line =
+        std::string(R"(devices = { { name = "t", type = "serial", bus = "usart1", baud = ")") +
+        baud + "\" } }";
+    EXPECT_NE(complaint(line).find("baud"), std::string::npos) << baud;
+  }
+  EXPECT_NE(complaint(R"(hse_start = "2 s")").find("hse_start"), std::string::npos);
+}
+
+// JSON is UTF-8, and a library that throws on other bytes must not end the program.
+TEST(BoardFile, BytesThatAreNoUtf8AreRefused) {
+  EXPECT_NE(complaint("watch = { \"f\\xFF\" }").find("UTF-8"), std::string::npos);
+  EXPECT_NE(complaint("devices = { { name = \"d\\xC3\", type = \"serial\", bus = \"usart1\" } }")
+                .find("UTF-8"),
+            std::string::npos);
+  EXPECT_NE(complaint("pins = { { name = \"p\\x80\", pin = \"PB1\" } }").find("UTF-8"),
+            std::string::npos);
+  for (const char* key : {"board", "mcu"}) {
+    EXPECT_NE(complaint(std::string(key) + " = \"b\\xFF\"").find("UTF-8"), std::string::npos)
+        << key;
+  }
+  const std::string text = board_json(read("").value(), {.image = "a\xFF.elf"});
+  EXPECT_TRUE(nlohmann::json::accept(text));
+}
+
+// A limit is met, and what lies just beyond it is refused by its key.
+TEST(BoardFile, EachLimitBelongsToItsRange) {
+  struct Edge {
+    std::string key, inside, outside;
+  };
+  const Edge kEdges[] = {{"lse", "'0 Hz'", "'-0.5 Hz'"},
+                         {"hse_start", "'1 us'", "'0.995 us'"},
+                         {"hse_start", "'1 s'", "'1.005 s'"},
+                         {"start", "0", "-1"},
+                         {"start", "0xFFFFFFFF", "0x100000000"},
+                         {"timing", "'1 ns'", "'0.995 ns'"},
+                         {"timing", "'512 ns'", "'1024 ns'"},
+                         {"timing", "'16 ns'", "'15 ns'"},
+                         {"hsi_error", "'5 %'", "'5.01 %'"},
+                         {"hsi_error", "'-5 %'", "'-5.01 %'"},
+                         {"hse_error", "'1000 ppm'", "'1001 ppm'"},
+                         {"hse_error", "'-1000 ppm'", "'-1001 ppm'"},
+                         {"hse_error", "'0.1 %'", "'8 MHz'"}};
+  for (const Edge& edge : kEdges) {
+    EXPECT_EQ(complaint(edge.key + " = " + edge.inside), "");
+    EXPECT_NE(complaint(edge.key + " = " + edge.outside).find(edge.key), std::string::npos)
+        << edge.key << " = " << edge.outside;
+  }
+  const Edge kOfDevices[] = {{"baud", "'50 baud'", "'49.9 baud'"},
+                             {"baud", "'12e6 baud'", "'12.1e6 baud'"},
+                             {"address", "0x08", "0x07"},
+                             {"address", "0x77", "0x78"},
+                             {"motor", "1", "0"},
+                             {"motor", "4", "5"}};
+  for (const Edge& edge : kOfDevices) {
+    const auto with = [&](const std::string& value) {
+      return complaint("devices = { { name = 'd', type = 't', bus = 'i2c1', " + edge.key + " = " +
+                       value + " } }");
+    };
+    EXPECT_EQ(with(edge.inside), "");
+    EXPECT_NE(with(edge.outside).find(edge.key), std::string::npos) << edge.outside;
+  }
+}
+
+TEST(BoardFile, WhatItSaysInSIIsExact) {
+  EXPECT_EQ(read("").value().start, 0u);
+  EXPECT_EQ(read("start = 0xFFFFFFFF").value().start, 0xFFFFFFFFu);
+  EXPECT_EQ(read("timing = '512 ns'").value().ns_per_instruction, 512);
+  EXPECT_NE(complaint("timing = '7.6 ns'").find("a power of two"), std::string::npos);
+  EXPECT_EQ(read("lse = '0.5 Hz'").value().lse_Hz, 0.5);
+  EXPECT_TRUE(near(read("hse_start = '5 us'").value().hse_start_s, 5e-6, round_off(2, 5e-6)));
+  EXPECT_EQ(json_of(read("hse_start = '5 us'").value())["hse_start_ns"], 5'000);
+}
+
+TEST(BoardFile, ParametersKeepTheirShape) {
+  const Board board = read(R"(devices = { { name = "d", type = "t", bus = "pins", params =
+      { one = { 5 }, none = {}, off = false, inner = { time = "2 ms" } } } })")
+                          .value();
+  EXPECT_EQ(json_of(board)["devices"][0]["params"],
+            (nlohmann::json{{"one", nlohmann::json::array({5.0})},
+                            {"none", nlohmann::json::object()},
+                            {"off", false},
+                            {"inner", {{"time", 0.002}}}}));
+}
+
+TEST(BoardFile, APinIsOneDevicesHoweverTheyNameIt) {
+  const std::string sensor =
+      R"({ name = "a", type = "mpu6000", bus = "spi1", cs = "PB0", int = "PC5" })";
+  const std::string level = R"({ name = "a", type = "volts", bus = "PA0" })";
+  struct Pair {
+    std::string first, second, pin;
+  };
+  const Pair kPairs[] = {
+      {level, R"({ name = "b", type = "volts", bus = "PA0" })", "PA0"},
+      {level, R"({ name = "b", type = "pulse_source", bus = "PA0" })", "PA0"},
+      {level, R"({ name = "b", type = "jumper", bus = "pins", cs = "PA1", int = "PA0" })", "PA0"},
+      {sensor, R"({ name = "b", type = "mpu6000", bus = "spi1", cs = "PC5", int = "PC4" })", "PC5"},
+      {sensor, R"({ name = "b", type = "mpu6000", bus = "spi1", cs = "PB1", int = "PC5" })", "PC5"},
+      {sensor, R"({ name = "b", type = "mpu6000", bus = "spi1", cs = "PB1", int = "PB0" })", "PB0"},
+      {sensor, R"({ name = "b", type = "jumper", bus = "pins", cs = "PA1", int = "PB0" })", "PB0"},
+  };
+  for (const auto& [first, second, pin] : kPairs) {
+    for (const std::string& both : {first + ", " + second, second + ", " + first}) {
+      EXPECT_NE(complaint("devices = { " + both + " }").find("are on one pin, " + pin),
+                std::string::npos)
+          << both;
+    }
+  }
+  // Two that no pin joins, and the third pair of three.
+  EXPECT_EQ(
+      complaint("devices = { " + level + R"(, { name = "b", type = "volts", bus = "PA1" } })"), "");
+  EXPECT_NE(complaint(R"(devices = { { name = "x", type = "t", bus = "pins" },
+      { name = "y", type = "t", bus = "pins" }, { name = "y", type = "t", bus = "pins" } })")
+                .find("two devices are called 'y'"),
+            std::string::npos);
+}
+
+TEST(BoardFile, AResistorPullsUpOrDown) {
+  EXPECT_EQ(complaint(R"(pins = { { name = "c", pin = "PB8", pull = "down" } })"), "");
+  EXPECT_NE(complaint(R"(pins = { { name = "c", pin = "PB8", pull = "sideways" } })").find("pull"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace whirl

@@ -1,0 +1,253 @@
+// What crosses between the harness and a target (virtual board or physical board), on one time
+// base.
+//
+//   Units    SI; times are virtual nanoseconds since power-up of the run
+//   Frames   B: body, forward-right-down, as in plant/base/frames.hpp
+//   Layout   plain structs, fixed-size, native byte order: both ends run on one host
+//   Digest   of a run is taken over all messages, both ways, in order
+#pragma once
+#include <array>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <type_traits>
+#include <vector>
+
+namespace whirl::io {
+
+enum class Kind : std::uint16_t {
+  // Harness to target.
+  body_motion = 1,  // BodyMotion: what the sensors on the board feel from here on
+  esc_state = 2,    // EscState, port = motor number 1..4
+  uart_frame = 3,   // bytes to send into UART `port` from t_ns on
+  fault = 4,        // FaultCommand + name text
+  end_of_run = 5,   // empty
+  shaft_load = 6,   // ShaftLoad: air, brake and supply of a power stage, from here on
+  i2c_order = 7,    // I2cOrder + bytes to write, port = bus number: not before t_ns
+  pulse_train = 8,  // PulseTrain, port = motor number: on its throttle pin, from here on
+  // Target to harness.
+  esc_setpoint = 32,       // EscSetpoint, port = motor number
+  uart_received = 33,      // bytes the board has sent on UART `port`; t_ns: the last stop bit
+  i2c_transaction = 34,    // BusTransaction + bytes, port = bus number
+  spi_transaction = 35,    // BusTransaction + bytes (at most 32 kept), port = bus number
+  data_ready = 36,         // port = device number: an interrupt line of a sensor rose
+  finding = 37,            // text "where\0what"
+  cpu_fault = 38,          // CpuFault + text (symbolised backtrace, one frame per line)
+  fault_applied = 39,      // port = fault number
+  function_call = 40,      // FunctionCall, port = watch number
+  interrupt_latency = 41,  // InterruptLatency, port = exception number
+  statistics = 42,     // text, JSON: watchers' summaries, unanswered registers; at the end of a run
+  board_reset = 43,    // ResetCause in port
+  clock_setup = 44,    // ClockSetup: what the firmware set in RCC
+  busy_time = 45,      // BusyTime: about ten a second
+  shaft_state = 46,    // ShaftState: of a power stage, at each boundary
+  i2c_reply = 47,      // I2cReplyHead + bytes read, port = bus number; t_ns: the STOP
+  shoot_through = 48,  // ShootThrough, port = leg 0..2: both switches were on until t_ns
+  uart_delivered = 49,  // a uart_frame has passed the line to the board; t_ns: the last stop bit
+};
+
+// Ports of board_reset: stm32::ResetCause by number.
+inline constexpr std::uint16_t kResetByIndependentWatchdog = 3, kResetByWindowWatchdog = 4;
+
+struct Header {
+  std::int64_t t_ns = 0;
+  Kind kind{};
+  std::uint16_t port = 0;
+  std::uint32_t size = 0;  // of the payload that follows
+};
+static_assert(sizeof(Header) == 16);
+
+struct BodyMotion {  // of the body's reference point (centre of mass), at t_ns
+  double specific_force_B_mps2[3] = {0, 0, 0};  // what an ideal accelerometer reads
+  double w_WB_B_radps[3] = {0, 0, 0};
+  double alpha_WB_B_radps2[3] = {0, 0, 0};
+  double rotor_speed_radps[4] = {0, 0, 0, 0};  // for vibration
+  double magnetic_field_B_T[3] = {0, 0, 0};
+  double static_pressure_Pa = 101325.0;
+  double air_temperature_K = 288.15;
+  double bus_voltage_V = 16.4;
+};
+
+struct EscState {
+  double bus_current_A = 0.0;  // filtered, as the ESC reports it
+  double speed_rpm = 0.0;      // mechanical
+  std::uint8_t flags = 0;      // esc protocol, status flags
+  std::uint8_t pad[7] = {};
+};
+
+struct EscSetpoint {
+  std::uint16_t value = 0;  // 0..2047 as on the wire
+  std::uint8_t valid = 0;   // 1: accepted; 0: rejected (length, CRC, upper bits)
+  std::uint8_t pad[5] = {};
+  std::int64_t start_ns = 0;  // START of the write that carried it; Header::t_ns is its STOP
+};
+
+struct BusTransaction {
+  std::int64_t start_ns = 0;  // START or chip select; Header::t_ns is STOP or deselect
+  std::uint16_t address = 0;  // I2C address; SPI: device number
+  std::uint8_t read = 0;
+  std::uint8_t acked = 1;  // every byte that wanted an acknowledge got one
+  std::uint32_t length = 0;
+};
+
+struct FaultCommand {  // the name follows as text, for messages to people
+  std::uint32_t number = 0;
+  std::uint32_t kind = 0;  // FaultKind of io_bridges/devices/faults.hpp
+  std::int64_t start_ns = 0;
+  std::int64_t end_ns = 0;
+  std::int32_t bus = 0;
+  std::int32_t address = 0;
+  double value = 0.0;
+  std::int32_t axis = 0;  // sensors: 0..2 accelerometer x y z, 3..5 gyro x y z
+  std::int32_t pad = 0;
+};
+
+struct CpuFault {
+  std::uint32_t exception = 0;  // 3 HardFault, 4 MemManage, 5 BusFault, 6 UsageFault;
+                                // 254, 255: board::StoppedCore
+  std::uint32_t pc = 0, lr = 0, sp = 0, xpsr = 0, cfsr = 0, hfsr = 0, mmfar = 0, bfar = 0;
+  std::uint32_t r[13] = {};
+};
+
+struct FunctionCall {
+  std::int64_t entry_ns = 0;  // Header::t_ns is the return
+  // Without what preempted it; -1: the run ended before it returned.
+  std::int64_t execution_ns = 0;
+  // Of the interrupt whose handler called it: from the request to the handler's first instruction.
+  std::int64_t latency_ns = -1;  // -1: called from no interrupt, or from one that nobody requested
+  // Of HCLK, as it was; -1: not known, or no code of the core's.
+  std::int64_t execution_cycles = -1, response_cycles = -1;
+};
+
+struct InterruptLatency {
+  std::int64_t raised_ns = 0;  // Header::t_ns is the first instruction of the handler
+};
+
+struct BusyTime {  // of (since_ns, Header::t_ns]
+  std::int64_t since_ns = 0;
+  std::int64_t busy_ns = 0;  // outside of sleep; interrupts included
+};
+
+struct ShaftLoad {
+  double torque_Nm_s2 = 0.0;  // of the air, over the square of speed
+  double brake_Nm = 0.0;      // holds the shaft once it stands
+  double source_V = 0.0;      // of the supply, behind its resistance
+  double source_ohm = 0.0;
+};
+
+struct ShaftState {  // means and sums of the time since the last boundary, states at this one
+  double speed_radps = 0.0;
+  double angle_rad = 0.0;         // electrical, 0..2 pi
+  double air_torque_Nm = 0.0;     // mean
+  double source_current_A = 0.0;  // mean, out of the supply
+  double bridge_current_A = 0.0;  // mean, into the bridge
+  double bridge_peak_A = 0.0;     // largest mean of a 50 us window
+  double winding_peak_A = 0.0;    // largest magnitude
+  double bus_voltage_V = 0.0;     // at this instant
+  double bus_highest_V = 0.0, bus_lowest_V = 0.0;
+  double electrical_in_J = 0.0, copper_J = 0.0, diode_J = 0.0, no_load_J = 0.0;
+  double magnetic_J = 0.0, kinetic_J = 0.0, air_J = 0.0;
+};
+
+struct I2cOrder {
+  std::uint16_t address = 0;
+  std::uint16_t read = 0;    // bytes to read after the written ones
+  std::uint32_t number = 0;  // comes back in the reply
+};
+
+struct PulseTrain {  // high for width once per period; width 0: low
+  std::int64_t width_ns = 0;
+  std::int64_t period_ns = 20'000'000;
+  std::int64_t glitch_ns = 0;  // the line inverted for so long, so long after each rising edge
+  std::int64_t glitch_after_ns = 0;
+};
+
+struct I2cReplyHead {
+  std::uint32_t number = 0;
+  std::uint8_t acked = 0;
+  std::uint8_t timed_out = 0;
+  std::uint8_t pad[2] = {};
+  std::int64_t stretched_ns = 0;  // the longest that SCL was held
+};
+
+struct ShootThrough {
+  std::int64_t start_ns = 0;
+};
+
+struct ClockSetup {
+  double sysclk_Hz = 0, hclk_Hz = 0, pclk1_Hz = 0, pclk2_Hz = 0;
+};
+
+// A batch of messages in one flat buffer, appended in order of time.
+class Batch {
+ public:
+  void clear() { bytes_.clear(); }
+  bool empty() const { return bytes_.empty(); }
+  std::span<const std::uint8_t> bytes() const { return bytes_; }
+  void assign(std::span<const std::uint8_t> bytes) { bytes_.assign(bytes.begin(), bytes.end()); }
+
+  void add(Kind kind, std::uint16_t port, std::int64_t t_ns, const void* payload,
+           std::uint32_t size) {
+    const Header header{t_ns, kind, port, size};
+    append(&header, sizeof header);
+    append(payload, size);
+  }
+  template <typename T>
+  requires std::is_trivially_copyable_v<T>
+  void add(Kind kind, std::uint16_t port, std::int64_t t_ns, const T& payload) {
+    add(kind, port, t_ns, &payload, sizeof payload);
+  }
+  template <typename T>
+  requires std::is_trivially_copyable_v<T>
+  void add(Kind kind, std::uint16_t port, std::int64_t t_ns, const T& head, const void* tail,
+           std::uint32_t tail_size) {
+    const Header header{t_ns, kind, port, static_cast<std::uint32_t>(sizeof head) + tail_size};
+    append(&header, sizeof header);
+    append(&head, sizeof head);
+    append(tail, tail_size);
+  }
+
+ private:
+  void append(const void* data, std::size_t size) {
+    const auto* first = static_cast<const std::uint8_t*>(data);
+    bytes_.insert(bytes_.end(), first, first + size);
+  }
+  std::vector<std::uint8_t> bytes_;
+};
+
+// Walks a batch: for (Reader r(bytes); r.next();) switch (r.header().kind) ...
+class Reader {
+ public:
+  explicit Reader(std::span<const std::uint8_t> bytes) : rest_(bytes) {}
+
+  bool next() {
+    if (rest_.size() < sizeof header_) return false;
+    std::memcpy(&header_, rest_.data(), sizeof header_);
+    if (rest_.size() - sizeof header_ < header_.size) return false;
+    payload_ = rest_.subspan(sizeof header_, header_.size);
+    rest_ = rest_.subspan(sizeof header_ + header_.size);
+    return true;
+  }
+  bool complete() const { return rest_.empty(); }  // after the walk: nothing was cut off
+  const Header& header() const { return header_; }
+  std::span<const std::uint8_t> payload() const { return payload_; }
+
+  template <typename T>
+  requires std::is_trivially_copyable_v<T> T as()
+  const {  // short payloads are zero-extended
+    T value{};
+    std::memcpy(&value, payload_.data(),
+                payload_.size() < sizeof value ? payload_.size() : sizeof value);
+    return value;
+  }
+  std::span<const std::uint8_t> tail_after(std::size_t head) const {
+    return payload_.size() > head ? payload_.subspan(head) : std::span<const std::uint8_t>{};
+  }
+
+ private:
+  std::span<const std::uint8_t> rest_;
+  std::span<const std::uint8_t> payload_;
+  Header header_{};
+};
+
+}  // namespace whirl::io
