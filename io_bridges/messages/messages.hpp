@@ -15,7 +15,7 @@
 
 namespace whirl::io {
 
-enum class Kind : std::uint16_t {
+enum class Kind : std::uint8_t {
   // Harness to target.
   body_motion = 1,  // BodyMotion: what the sensors on the board feel from here on
   esc_state = 2,    // EscState, port = motor number 1..4
@@ -52,6 +52,7 @@ inline constexpr std::uint16_t kResetByIndependentWatchdog = 3, kResetByWindowWa
 struct Header {
   std::int64_t t_ns = 0;
   Kind kind{};
+  std::uint8_t board = 0;  // of a run with several: its place in the list of nodes
   std::uint16_t port = 0;
   std::uint32_t size = 0;  // of the payload that follows
 };
@@ -188,7 +189,7 @@ class Batch {
 
   void add(Kind kind, std::uint16_t port, std::int64_t t_ns, const void* payload,
            std::uint32_t size) {
-    const Header header{t_ns, kind, port, size};
+    const Header header{t_ns, kind, 0, port, size};
     append(&header, sizeof header);
     append(payload, size);
   }
@@ -201,7 +202,7 @@ class Batch {
   requires std::is_trivially_copyable_v<T>
   void add(Kind kind, std::uint16_t port, std::int64_t t_ns, const T& head, const void* tail,
            std::uint32_t tail_size) {
-    const Header header{t_ns, kind, port, static_cast<std::uint32_t>(sizeof head) + tail_size};
+    const Header header{t_ns, kind, 0, port, static_cast<std::uint32_t>(sizeof head) + tail_size};
     append(&header, sizeof header);
     append(&head, sizeof head);
     append(tail, tail_size);
