@@ -1,7 +1,9 @@
 # How targets are declared in this house.
-#   whirl_library(name SOURCES ... LINK ...)    static, position independent (the board is a plug-in)
-#   whirl_test(name SOURCES ... LINK ... LABELS ...)   a GoogleTest executable; label host: needs the
-#                                               images, QEMU or a fast build, so no sanitizers
+#   whirl_library(name SOURCES ... LINK ... [HEAVY])   static, position independent (the board is a plug-in);
+#                                               HEAVY: optimized even where only the tests count
+#   whirl_test(name SOURCES ... LINK ... LABELS ... [HEAVY] [COST s])   a GoogleTest executable; label host:
+#                                               needs the images, QEMU or a fast build, so no sanitizers;
+#                                               COST: the longest ones start first
 include_guard()
 include(cmake/mutate.cmake)
 
@@ -15,21 +17,51 @@ target_compile_options(whirl_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow
                        -ffile-prefix-map=${PROJECT_SOURCE_DIR}/=)
 if(WHIRL_SANITIZE)
   target_compile_options(whirl_options INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=all
-                         -fno-omit-frame-pointer -O1)
+                         -fno-omit-frame-pointer)
   target_link_options(whirl_options INTERFACE -fsanitize=address,undefined)
 endif()
 
 if(WHIRL_FUZZ)
   target_compile_options(whirl_options INTERFACE -fsanitize=fuzzer-no-link)
 endif()
+# Where only the tests count, what is not marked HEAVY is built without optimization, which halves its build.
+set(WHIRL_LIGHT "")
+if(WHIRL_SANITIZE AND NOT WHIRL_FUZZ)
+  set(WHIRL_LIGHT -O0)
+endif()
+# More than half of the time of such a build goes into reading the same headers again. A precompiled header
+# serves targets of the same options only.
+function(whirl_precompile name)
+  add_library(${name} OBJECT ${CMAKE_BINARY_DIR}/precompiled.cpp)
+  target_link_libraries(${name} PRIVATE whirl_options ${ARGN})
+  target_precompile_headers(${name} PRIVATE ${PROJECT_SOURCE_DIR}/cmake/precompiled.hpp)
+endfunction()
+if(WHIRL_PRECOMPILE)
+  file(WRITE ${CMAKE_BINARY_DIR}/precompiled.cpp "")
+  whirl_precompile(whirl_precompiled)
+  target_compile_options(whirl_precompiled PRIVATE ${WHIRL_LIGHT})
+  whirl_precompile(whirl_precompiled_heavy)
+  set_target_properties(whirl_precompiled whirl_precompiled_heavy PROPERTIES POSITION_INDEPENDENT_CODE ON)
+  whirl_precompile(whirl_precompiled_tests GTest::gtest)
+  target_compile_options(whirl_precompiled_tests PRIVATE ${WHIRL_LIGHT})
+  target_precompile_headers(whirl_precompiled_tests PRIVATE <gtest/gtest.h>)
+endif()
 
 function(whirl_library name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
+  cmake_parse_arguments(ARG "HEAVY" "" "SOURCES;LINK" ${ARGN})
   if(ARG_SOURCES)
     whirl_mutated_sources(${name} sources ${ARG_SOURCES})
     add_library(${name} STATIC ${sources})
     target_link_libraries(${name} PUBLIC whirl_options ${ARG_LINK})
     set_target_properties(${name} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+    set(suffix _heavy)
+    if(NOT ARG_HEAVY)
+      set(suffix "")
+      target_compile_options(${name} PRIVATE ${WHIRL_LIGHT})
+    endif()
+    if(WHIRL_PRECOMPILE)
+      target_precompile_headers(${name} REUSE_FROM whirl_precompiled${suffix})
+    endif()
   else()
     add_library(${name} INTERFACE)
     target_link_libraries(${name} INTERFACE whirl_options ${ARG_LINK})
@@ -42,15 +74,24 @@ add_custom_target(whirl_program)
 add_custom_target(whirl_host_tests)
 
 function(whirl_test name)
-  cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;LINK;LABELS" ${ARGN})
+  cmake_parse_arguments(ARG "HEAVY" "TIMEOUT;COST" "SOURCES;LINK;LABELS" ${ARGN})
   if(NOT ARG_TIMEOUT)
     set(ARG_TIMEOUT 300)
   endif()
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE whirl_options ${ARG_LINK} GTest::gtest GTest::gtest_main)
+  if(NOT ARG_HEAVY)
+    target_compile_options(${name} PRIVATE ${WHIRL_LIGHT})
+    if(WHIRL_PRECOMPILE)
+      target_precompile_headers(${name} REUSE_FROM whirl_precompiled_tests)
+    endif()
+  endif()
   # One ctest per executable: a process start per case costs more than the cases do.
   add_test(NAME ${name} COMMAND ${name} --gtest_brief=1)
   set_tests_properties(${name} PROPERTIES TIMEOUT ${ARG_TIMEOUT} LABELS "${ARG_LABELS}")
+  if(ARG_COST)
+    set_tests_properties(${name} PROPERTIES COST ${ARG_COST})
+  endif()
   if("host" IN_LIST ARG_LABELS)
     add_dependencies(whirl_host_tests ${name})
   endif()

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "base/json_text.hpp"
 #include "results/legal_json.hpp"
 #include "results/page_text.hpp"
 
@@ -49,7 +50,7 @@ std::string charts_html(const std::string& title, const std::string& about,
   data["charts"] = ordered_json::array();
   for (const Chart& chart : charts) data["charts"].push_back(chart_json(chart));
   make_legal(data);
-  return fill_page(kChartsPage, data.dump());
+  return fill_page(kChartsPage, text_of(data));
 }
 
 std::string figures_text(const std::vector<Chart>& charts) {

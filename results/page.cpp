@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "base/json_text.hpp"
 #include "results/folder.hpp"
 #include "results/page_text.hpp"
 
@@ -68,7 +69,7 @@ double dma_wait_s(const ordered_json& board) {
 }  // namespace
 
 std::string page_html(const Report& report, const TruthLog& truth) {
-  auto data = ordered_json::parse(run_json(report));
+  auto data = parse_ordered_json(run_json(report));
   data["stacks"] = stacks_of(data["board"]);
   data["watched"] = data["board"].is_object()
                         ? data["board"].value("watched", ordered_json::array())
@@ -79,7 +80,7 @@ std::string page_html(const Report& report, const TruthLog& truth) {
   data["signals"] = ordered_json::array();
   for (std::size_t i = 0; i < truth.columns().size(); ++i)
     data["signals"].push_back(curve(truth, i));
-  return fill_page(kRunPage, data.dump());
+  return fill_page(kRunPage, text_of(data));
 }
 
 }  // namespace whirl::results

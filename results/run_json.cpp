@@ -2,6 +2,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "base/json_text.hpp"
 #include "results/folder.hpp"
 #include "results/legal_json.hpp"
 
@@ -139,10 +140,10 @@ std::string run_json(const Report& r) {
     out["histograms"].push_back(
         {{"name", h.name}, {"unit", h.unit}, {"limit", h.limit}, {"samples", h.samples}});
   }
-  const auto board = ordered_json::parse(r.statistics_json, nullptr, false);
+  const auto board = parse_ordered_json(r.statistics_json);
   out["board"] = board.is_discarded() ? ordered_json(nullptr) : board;
   make_legal(out);
-  return out.dump(2) + "\n";
+  return text_of(out, 2) + "\n";
 }
 
 }  // namespace whirl::results

@@ -43,6 +43,7 @@ harness/timing           base/ harness/target/ harness/timing/
 harness/calibrate        base/ harness/calibrate/ harness/lua/ harness/target/ harness/world/ io_bridges/protocols/ results/ firmware/esc/core/
 harness/cli              base/ harness/ plant/validation/ results/
 harness/fuzz             base/ harness/ io_bridges/ plant/ results/
+cmake                    cmake/
 cmake/mutate             cmake/mutate/
 firmware                 firmware/
 firmware/esc/core        firmware/esc/core/

@@ -43,8 +43,8 @@ int doctor_command(const std::string& root) {
   e.tool("gdb-multiarch", "gdb-multiarch   (only for whirl run --gdb)");
   e.tool("cmake", "cmake");
   e.tool("ninja", "ninja-build");
-  e.tool("clang-format-14", "clang-format-14   (only for whirl test)");
-  e.tool("clang-tidy-14", "clang-tidy-14   (only for whirl test)");
+  e.tool("clang-format-14", "clang-format-14   (only for whirl test and lint)");
+  e.tool("clang-tidy-14", "clang-tidy-14   (only for whirl lint)");
   e.line(std::filesystem::exists("/dev/shm"), "/dev/shm", "shared memory for the board",
          "mount a tmpfs at /dev/shm");
   std::printf(e.missing() == 0 ? "all there\n" : "%d missing\n", e.missing());

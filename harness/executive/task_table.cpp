@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/json_text.hpp"
 #include "harness/metrics/timing.hpp"
 
 namespace whirl {
@@ -61,7 +62,7 @@ std::vector<results::TaskRow> task_table(const std::vector<std::string>& watch,
 }
 
 std::vector<results::InterruptRow> interrupt_table(const results::EventLog& events) {
-  const auto board = nlohmann::json::parse(events.statistics, nullptr, false);
+  const auto board = parse_json(events.statistics);
   const auto handlers =
       board.is_object() ? board.value("handlers", nlohmann::json::object()) : nlohmann::json();
   std::vector<results::InterruptRow> rows;

@@ -16,6 +16,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/interruption.hpp"
+#include "base/json_text.hpp"
 #include "base/outside_signal.hpp"
 #include "base/places.hpp"
 #include "io_bridges/link/channel.hpp"
@@ -110,7 +111,7 @@ struct Launch {
 };
 
 Result<Launch> read_launch(const std::string& board_json) {
-  const auto json = nlohmann::json::parse(board_json, nullptr, false);
+  const auto json = parse_json(board_json);
   if (!json.is_object()) return Error{ErrorKind::internal, "board", "description is not JSON", ""};
   const std::string mcu = json.value("mcu", "");
   const board::Part* part = board::find_part(mcu);

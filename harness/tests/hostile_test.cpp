@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <pugixml.hpp>
 
+#include "base/json_text.hpp"
 #include "harness/tests/fake.hpp"
 
 namespace whirl::test {
@@ -24,7 +25,7 @@ Outcome run_body(const FakeRoot& root, const std::string& body) {
 }
 
 json results_of(const FakeRoot& root) {
-  return json::parse(root.read("results/runs/latest/run.json"));
+  return parse_json(root.read("results/runs/latest/run.json"));
 }
 
 struct Refused {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "base/json_text.hpp"
 #include "harness/tests/fake.hpp"
 
 namespace whirl::test {
@@ -30,7 +31,7 @@ inline Ran run_plan(const std::string& text, std::vector<std::string> more = {})
   words.insert(words.end(), more.begin(), more.end());
   Ran ran{whirl(root, words), nullptr};
   const std::string file = root.read("results/runs/latest/run.json");
-  if (!file.empty()) ran.run = json::parse(file);
+  if (!file.empty()) ran.run = parse_json(file);
   return ran;
 }
 
@@ -39,7 +40,7 @@ inline const json& expectation(const json& run, const std::string& name) {
   for (const json& e : run["expectations"]) {
     if (e["name"] == name) return e;
   }
-  ADD_FAILURE() << "no expectation called " << name << " in " << run["expectations"].dump(1);
+  ADD_FAILURE() << "no expectation called " << name << " in " << text_of(run["expectations"], 1);
   return kNone;
 }
 

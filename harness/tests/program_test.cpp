@@ -1,6 +1,7 @@
 // The program as a user meets it: plans in, verdicts, exit codes, messages and results out.
 #include <gtest/gtest.h>
 
+#include "base/json_text.hpp"
 #include "base/near.hpp"
 #include "harness/tests/plans.hpp"
 
@@ -280,7 +281,7 @@ TEST(Program, JsonOnStandardOutputIsTheRunsOwnFile) {
   root.write("test_plans/p.lua",
              plan_text("t:wait \"1 s\" t:expect(t:value \"tilt\"):at_most \"1 rad\""));
   const Outcome outcome = whirl(root, {"run", "--json"});
-  EXPECT_EQ(json::parse(outcome.out), json::parse(root.read("results/runs/latest/run.json")));
+  EXPECT_EQ(parse_json(outcome.out), parse_json(root.read("results/runs/latest/run.json")));
 }
 
 TEST(Program, HistoryRemembersTheMargins) {

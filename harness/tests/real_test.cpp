@@ -12,6 +12,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "base/json_text.hpp"
 #include "base/scratch_folder.hpp"
 
 namespace {
@@ -49,8 +50,7 @@ class Real : public ::testing::Test {
     const int status = pclose(pipe);
     outcome.code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
     const auto brace = outcome.text.find('{');
-    outcome.run =
-        json::parse(brace == std::string::npos ? "" : outcome.text.substr(brace), nullptr, false);
+    outcome.run = whirl::parse_json(brace == std::string::npos ? "" : outcome.text.substr(brace));
     return outcome;
   }
 

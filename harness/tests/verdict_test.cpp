@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "base/interruption.hpp"
+#include "base/json_text.hpp"
 #include "base/near.hpp"
 #include "harness/tests/plans.hpp"
 
@@ -123,7 +124,7 @@ TEST(Verdict, AnInterruptedRunEndsInOrder) {
   EXPECT_NE(outcome.out.find("interrupted by signal TERM"), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.out.find("0 passed, 1 inconclusive, 1 not run"), std::string::npos);
   EXPECT_NE(outcome.out.find("-p-interrupted/index.html"), std::string::npos);
-  const json run = json::parse(root.read("results/runs/latest/run.json"));
+  const json run = parse_json(root.read("results/runs/latest/run.json"));
   EXPECT_EQ(run["verdict"], "inconclusive");
   EXPECT_TRUE(near(run["virtual_s"], 0.051, stated(1e-9, "at once")));
   EXPECT_EQ(whirl(root, {"history", "p"}).code, 0);

@@ -9,6 +9,7 @@
 #include <set>
 #include <sstream>
 
+#include "base/json_text.hpp"
 #include "base/scratch_folder.hpp"
 #include "base/text.hpp"
 #include "results/charts.hpp"
@@ -79,7 +80,7 @@ TEST(Junit, ABadRunIsAnErrorOfItsLastCase) {
 }
 
 TEST(RunJson, WritesNullForWhatCouldNotBeMeasured) {
-  const auto json = nlohmann::json::parse(run_json(sample()));
+  const auto json = parse_json(run_json(sample()));
   EXPECT_TRUE(json["expectations"][1]["measured"].is_null());
   EXPECT_EQ(json["expectations"][0]["limit"], 5.0);
   EXPECT_EQ(json["verdict"], "fail");
@@ -107,7 +108,7 @@ TEST(Results, AnyBytesGiveWellFormedFiles) {
   const std::string xml = junit_xml({&r});
   ASSERT_TRUE(document.load_string(xml.c_str()));
   EXPECT_EQ(xml, legal_text(xml));
-  const auto json = nlohmann::json::parse(run_json(r));
+  const auto json = parse_json(run_json(r));
   EXPECT_EQ(json["plan"], legal_text(bytes));
   EXPECT_EQ(legal_text(page_html(r, truth())), page_html(r, truth()));
   const std::string charts = charts_html(bytes, bytes,
@@ -146,7 +147,7 @@ TEST(Truth, ALongRunKeepsEveryThirdRowInItsFile) {
 
 nlohmann::json data_of(const std::string& page) {
   const auto begin = page.find("application/json\">") + 18;
-  return nlohmann::json::parse(page.substr(begin, page.find("</script>", begin) - begin));
+  return parse_json(page.substr(begin, page.find("</script>", begin) - begin));
 }
 
 TEST(Page, IsOneFileWithoutNetworkAndKeepsEverySpike) {
@@ -264,7 +265,7 @@ TEST(RunFolder, WhatCannotBeWrittenIsAReasonAndTheRestIsThere) {
   ASSERT_EQ(exit_code(passed), 0);
   EXPECT_FALSE(write_run(made.value(), passed, truth(), EventLog()));
   EXPECT_EQ(exit_code(passed), 3);
-  const auto json = nlohmann::json::parse(contents(made.value().file("run.json")));
+  const auto json = parse_json(contents(made.value().file("run.json")));
   EXPECT_EQ(json["verdict"], "inconclusive");
   EXPECT_NE(json["reason"].get<std::string>().find("results lost"), std::string::npos);
   EXPECT_NE(contents(made.value().file("junit.xml")).find("results lost"), std::string::npos);

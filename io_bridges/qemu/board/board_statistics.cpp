@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "base/json_text.hpp"
 #include "base/text.hpp"
 #include "io_bridges/qemu/board/board.hpp"
 #include "io_bridges/qemu/board/post_mortem.hpp"
@@ -114,7 +115,7 @@ void Board::add_statistics() {
   if (watch_.stacks().count() > 1) statistics["task_stacks"] = task_stacks();
   statistics["watched"] = watched_calls();
   statistics["handlers"] = handlers();
-  const std::string text = statistics.dump();
+  const std::string text = text_of(statistics);
   happened_.add(io::Kind::statistics, 0, events_.now(), text.data(),
                 static_cast<std::uint32_t>(text.size()));
 }

@@ -122,20 +122,18 @@ void Machine::reset_core(stm32::ResetCause cause) {
 }
 
 void Machine::queue_reset(stm32::ResetCause cause) {
-  struct Order {
-    Machine* machine;
-    stm32::ResetCause cause;
-  };
+  queued_resets_.push_back(cause);
   api_.async_run_on_cpu(
       cpu_,
       [](Cpu*, WorkData data) {
-        const std::unique_ptr<Order> order(static_cast<Order*>(data.pointer));
-        Machine& self = *order->machine;
+        Machine& self = *static_cast<Machine*>(data.pointer);
+        const stm32::ResetCause why = self.queued_resets_.front();
+        self.queued_resets_.pop_front();
         self.api_.qemu_devices_reset(kGuestReset);
         self.system_control_->core_was_reset();
-        self.board_.core_was_reset(order->cause);
+        self.board_.core_was_reset(why);
       },
-      WorkData{.pointer = new Order{this, cause}});
+      WorkData{.pointer = this});
 }
 
 bool Machine::read_bus(std::uint32_t address, void* to, std::size_t size) {

@@ -15,6 +15,7 @@
 //             waits by it counts as busy; option bytes and OTP cannot be written
 #pragma once
 #include <chrono>
+#include <deque>
 #include <memory>
 #include <string>
 #include <vector>
@@ -131,6 +132,7 @@ class Machine final : public board::Emulator {
   io::Nanoseconds slept_ns_ = 0, asleep_since_ns_ = -1, sleep_now_ns_ = 0;
   std::chrono::steady_clock::time_point gave_way_{};  // host's clock: moves nothing in the guest
   std::vector<Deferred> deferred_;                    // in order
+  std::deque<stm32::ResetCause> queued_resets_;       // that QEMU will act on
 };
 
 }  // namespace whirl::qemu

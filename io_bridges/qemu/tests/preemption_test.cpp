@@ -5,6 +5,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "base/json_text.hpp"
 #include "io_bridges/qemu/tests/board_run.hpp"
 
 namespace whirl::board_test {
@@ -75,7 +76,7 @@ TEST(Preemption, TheLongestCallIsToldWithItsCallersAndWhatCameBetween) {
   const BoardRun run = run_for({image("preempted"), watch}, 1);
   const auto statistics = run.of(io::Kind::statistics);
   ASSERT_EQ(statistics.size(), 1u);
-  const auto said = nlohmann::json::parse(run.text_of(*statistics[0])).at("watched");
+  const auto said = parse_json(run.text_of(*statistics[0])).at("watched");
   ASSERT_EQ(said.size(), watch.size());
   const auto& work = said[0].at("worst_response");
   EXPECT_EQ(said[0].at("name"), "work");
@@ -90,12 +91,12 @@ TEST(Preemption, TheLongestCallIsToldWithItsCallersAndWhatCameBetween) {
     const auto line = call.at("path").at(frame).get<std::string>();
     return line.substr(0, line.find('+'));
   };
-  ASSERT_EQ(work.at("path").size(), 2u) << work.dump();
+  ASSERT_EQ(work.at("path").size(), 2u) << text_of(work);
   EXPECT_EQ(function(work, 0), "main");
   EXPECT_EQ(function(work, 1), "reset_handler");
   // In order of their numbers, each with what it ran itself.
   const int ran[] = {205, 615, 615, 619};
-  ASSERT_EQ(work.at("between").size(), 4u) << work.dump();
+  ASSERT_EQ(work.at("between").size(), 4u) << text_of(work);
   for (int i = 0; i < 4; ++i) {
     const auto& one = work.at("between")[static_cast<std::size_t>(i)];
     EXPECT_EQ(one.at("exception"), "exception " + std::to_string(44 + i) + " (irq" +
@@ -105,7 +106,7 @@ TEST(Preemption, TheLongestCallIsToldWithItsCallersAndWhatCameBetween) {
   }
   const auto& spin = said[1].at("worst_execution");  // the first of 30 that are equal
   EXPECT_EQ(spin.at("in"), "thread");
-  ASSERT_EQ(spin.at("path").size(), 3u) << spin.dump();
+  ASSERT_EQ(spin.at("path").size(), 3u) << text_of(spin);
   EXPECT_EQ(function(spin, 0), "work");
   EXPECT_EQ(function(spin, 1), "main");
   const auto& handler = said[2].at("worst_response");
@@ -138,12 +139,12 @@ TEST(Rtos, EachTaskHasItsStack) {
   const BoardRun run = run_for({image("rtos"), {}}, 50);
   const auto statistics = run.of(io::Kind::statistics);
   ASSERT_EQ(statistics.size(), 1u);
-  const auto said = nlohmann::json::parse(run.text_of(*statistics[0]));
+  const auto said = parse_json(run.text_of(*statistics[0]));
   std::map<std::string, int> used;
   for (const auto& stack : said.at("task_stacks")) used[stack.at("stack")] = stack.at("used_bytes");
   const std::map<std::string, int> counted = {
       {"fast_stack", 100}, {"slow_stack", 400 + 64}, {"idle_stack", 64}};
-  EXPECT_EQ(used, counted) << said.dump();
+  EXPECT_EQ(used, counted) << text_of(said);
 }
 
 }  // namespace
