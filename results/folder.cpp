@@ -106,34 +106,63 @@ Result<Done> write_text(const std::string& path, const std::string& text) {
   return Error{ErrorKind::host, path, "cannot be written: " + why, "is the disk full?"};
 }
 
+namespace {
+
+// Writes files one after the other; one that cannot be written whole is a reason of the report.
+class Filing {
+ public:
+  Filing(const RunFolder& folder, Report& report) : folder_(folder), report_(report) {}
+
+  template <typename Write>
+  void keep(const std::string& name, Write write) {
+    const Result<Done> written = write(folder_.file(name));
+    if (written) return;
+    whole_ = false;
+    std::error_code ignored;
+    fs::remove(folder_.file(name), ignored);  // half of it would only take room
+    report_.reasons.push_back({Blame::host, "results lost: " + written.error().message()});
+  }
+  void keep_text(const std::string& name, const std::string& text) {
+    keep(name, [&](const std::string& path) { return write_text(path, text); });
+  }
+  bool whole() const { return whole_; }
+
+ private:
+  const RunFolder& folder_;
+  Report& report_;
+  bool whole_ = true;
+};
+
+}  // namespace
+
 bool write_run(const RunFolder& folder, Report& report, const TruthLog& truth,
                const EventLog& events) {
   const auto begin = std::chrono::steady_clock::now();
-  bool whole = true;
-  const auto keep = [&](const std::string& name, auto write) {
-    const Result<Done> written = write(folder.file(name));
-    if (written) return;
-    whole = false;
-    std::error_code ignored;
-    fs::remove(folder.file(name), ignored);  // half of it would only take room
-    report.reasons.push_back({Blame::host, "results lost: " + written.error().message()});
-  };
-  keep("truth.csv", [&](const std::string& path) { return truth.write_csv(path); });
-  keep("bus.csv", [&](const std::string& path) { return events.write_bus_csv(path); });
-  keep(events.telemetry_name(),
-       [&](const std::string& path) { return events.write_telemetry(path); });
+  Filing filing(folder, report);
+  filing.keep("truth.csv", [&](const std::string& path) { return truth.write_csv(path); });
+  filing.keep("bus.csv", [&](const std::string& path) { return events.write_bus_csv(path); });
+  filing.keep(events.telemetry_name(),
+              [&](const std::string& path) { return events.write_telemetry(path); });
   conclude(report);  // what was lost is in what follows
-  keep("junit.xml",
-       [&](const std::string& path) { return write_text(path, junit_xml({&report})); });
-  keep("index.html",
-       [&](const std::string& path) { return write_text(path, page_html(report, truth)); });
+  filing.keep_text("junit.xml", junit_xml({&report}));
+  filing.keep_text("index.html", page_html(report, truth));
   report.host.results_s =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   report.host.total_s += report.host.results_s;  // a run is not over before it is filed
   conclude(report);
-  keep("run.json", [&](const std::string& path) { return write_text(path, run_json(report)); });
+  filing.keep_text("run.json", run_json(report));
   conclude(report);
-  return whole;
+  return filing.whole();
+}
+
+bool write_refusal(const RunFolder& folder, Report& report) {
+  conclude(report);
+  Filing filing(folder, report);
+  filing.keep_text("junit.xml", junit_xml({&report}));
+  filing.keep_text("index.html", page_html(report, TruthLog({}, 1'000'000)));
+  filing.keep_text("run.json", run_json(report));
+  conclude(report);
+  return filing.whole();
 }
 
 }  // namespace whirl::results

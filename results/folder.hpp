@@ -41,6 +41,9 @@ class RunFolder {
 bool write_run(const RunFolder& folder, Report& report, const TruthLog& truth,
                const EventLog& events);
 
+// Of a run that was refused before it began: run.json, junit.xml and the page with the reason.
+bool write_refusal(const RunFolder& folder, Report& report);
+
 // The parts, for tests and for --json.
 std::string run_json(const Report& report);
 std::string junit_xml(const std::vector<const Report*>& reports);

@@ -14,7 +14,7 @@ constexpr const char* kSchema = R"sql(
 CREATE TABLE IF NOT EXISTS run (
   id INTEGER PRIMARY KEY, at TEXT NOT NULL DEFAULT (datetime('now', 'localtime')),
   plan TEXT NOT NULL, verdict TEXT NOT NULL, reason TEXT NOT NULL, seed TEXT NOT NULL,
-  digest TEXT NOT NULL, virtual_s REAL NOT NULL, host_s REAL NOT NULL);
+  digest TEXT NOT NULL, virtual_s REAL NOT NULL, host_s REAL NOT NULL, inputs TEXT NOT NULL DEFAULT '');
 CREATE TABLE IF NOT EXISTS expectation (
   run INTEGER NOT NULL REFERENCES run(id), name TEXT NOT NULL, verdict TEXT NOT NULL,
   measured REAL, margin REAL, unit TEXT NOT NULL);
@@ -58,6 +58,7 @@ class History {
     return sqlite3_errmsg(raw());
   }
   int schema();
+  bool has_inputs();
   void prepare_schema();
 
   std::string file_, fault_;
@@ -136,6 +137,11 @@ int History::schema() {
   return version.next() ? version.integer(0) : 0;
 }
 
+bool History::has_inputs() {
+  Statement column(*this, "SELECT 1 FROM pragma_table_info('run') WHERE name = 'inputs'");
+  return column.next();
+}
+
 void History::prepare_schema() {
   const int found = schema();
   if (found == kHistory_schema || !good()) return;
@@ -143,19 +149,29 @@ void History::prepare_schema() {
     return refuse("was written by a newer whirl (schema " + std::to_string(found) +
                   ", this one knows " + std::to_string(kHistory_schema) + ")");
   }
-  // New, or of before schemas had numbers.
+  // New, or of before schemas had numbers, or of one that did not keep the inputs.
   run("BEGIN IMMEDIATE");
   run(kSchema);
+  if (!has_inputs() && good()) run("ALTER TABLE run ADD COLUMN inputs TEXT NOT NULL DEFAULT ''");
   run(("PRAGMA user_version = " + std::to_string(kHistory_schema)).c_str());
   run("COMMIT");
 }
 
+std::string inputs_of(const Report& r) {
+  std::string all;
+  for (const auto& [what, version] : r.versions) {
+    const bool is_input = what == "image" || what == "plan" || what == "board" || what == "vehicle";
+    if (is_input) all += (all.empty() ? "" : ", ") + version;
+  }
+  return all;
+}
+
 void insert(History& history, const Report& r) {
   Statement run(history,
-                "INSERT INTO run(plan, verdict, reason, seed, digest, virtual_s, host_s) "
-                "VALUES (?, ?, ?, ?, ?, ?, ?)");
+                "INSERT INTO run(plan, verdict, reason, seed, digest, virtual_s, host_s, inputs) "
+                "VALUES (?, ?, ?, ?, ?, ?, ?, ?)");
   run.bind(r.plan).bind(name(r.verdict)).bind(r.reason).bind(std::to_string(r.seed)).bind(r.digest);
-  run.bind(r.virtual_s).bind(r.host.total_s).next();
+  run.bind(r.virtual_s).bind(r.host.total_s).bind(inputs_of(r)).next();
   const sqlite3_int64 id = sqlite3_last_insert_rowid(history.raw());
   Statement row(history, "INSERT INTO expectation VALUES (?, ?, ?, ?, ?, ?)");
   for (const Expectation& e : r.expectations) {
@@ -197,8 +213,8 @@ Result<std::vector<PastExpectation>> recall(const std::string& file, const std::
   History& history = opened.value();
   check_integrity(history);
   Statement query(history, R"sql(
-    SELECT at, plan, name, verdict, unit, seed, measured, margin FROM (
-      SELECT run.at, run.id, plan, name, e.verdict, unit, seed, measured, margin,
+    SELECT at, plan, name, verdict, unit, seed, measured, margin, inputs FROM (
+      SELECT run.at, run.id, plan, name, e.verdict, unit, seed, measured, margin, inputs,
              row_number() OVER (PARTITION BY plan, name ORDER BY run.id DESC) AS age
       FROM expectation e JOIN run ON run.id = e.run
       WHERE (?1 = '' OR plan = ?1) AND (?2 = '' OR instr(name, ?2) > 0))
@@ -207,7 +223,7 @@ Result<std::vector<PastExpectation>> recall(const std::string& file, const std::
   std::vector<PastExpectation> rows;
   while (query.next()) {
     rows.push_back({query.text(0), query.text(1), query.text(2), query.text(3), query.text(4),
-                    query.text(5), query.real(6), query.real(7)});
+                    query.text(5), query.real(6), query.real(7), query.text(8)});
   }
   if (!history.good()) return history.error();
   return rows;

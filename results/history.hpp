@@ -19,9 +19,12 @@ struct PastExpectation {
   std::string when;  // host time of the run
   std::string plan, name, verdict, unit, seed;
   double measured = 0, margin = 0;  // NaN: could not be measured
+  // Of image, plan, board and vehicle of the run, "flight.elf fnv1a64:...", one after the other; empty in
+  // rows of before they were kept.
+  std::string inputs;
 };
 
-inline constexpr int kHistory_schema = 1;
+inline constexpr int kHistory_schema = 2;
 inline constexpr std::chrono::milliseconds kHistory_patience{3000};
 
 Result<Done> remember(const std::string& file, const Report& report,

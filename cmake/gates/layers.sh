@@ -29,6 +29,7 @@ io_bridges/qemu/plugin   base/ io_bridges/
 io_bridges/qemu/board    base/ io_bridges/ plant/
 results                  base/ io_bridges/messages/ io_bridges/protocols/ results/
 harness                  base/ harness/
+harness/job              base/ harness/job/
 harness/lua              base/ harness/lua/
 harness/metrics          harness/metrics/
 harness/world            base/ harness/world/ io_bridges/messages/

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <numeric>
 #include <sstream>
 #include <tuple>
 
@@ -109,7 +110,7 @@ void clear_progress() {
 std::string outcome(const Finished& finished) {
   const results::Report& r = finished.report;
   std::string text = word(r.verdict) + r.plan;
-  if (!finished.folder.empty()) {
+  if (!r.digest.empty()) {  // it ran
     std::size_t passed = 0;
     for (const auto& e : r.expectations) passed += e.verdict == results::Verdict::pass ? 1 : 0;
     text += "  " + std::to_string(passed) + "/" + std::to_string(r.expectations.size()) +
@@ -126,6 +127,10 @@ std::string outcome(const Finished& finished) {
     text += "       " + shown_path(finished.folder + "/index.html") + "\n";
   }
   return text;
+}
+
+std::size_t Tally::plans() const {
+  return std::accumulate(counts_.begin(), counts_.end(), not_run_);
 }
 
 std::string Tally::summary() const {

@@ -12,14 +12,16 @@ int history_command(const HistoryOptions& options, const std::string& results) {
   const auto rows =
       results::recall(results + "/history.sqlite", options.plan, options.expectation, options.last);
   if (!rows) return complain(rows.error());
-  std::string shown;
+  std::string shown, inputs;
   for (const results::PastExpectation& row : rows.value()) {
     const std::string head = printable_line(row.plan + ": " + row.name);
     if (head != shown) std::printf("%s%s\n", shown.empty() ? "" : "\n", head.c_str());
+    const bool changed = head == shown && row.inputs != inputs;
     shown = head;
-    std::printf("  %s  %-12s measured %-10.4g margin %-10.4g %-6s seed %s\n", row.when.c_str(),
+    inputs = row.inputs;
+    std::printf("  %s  %-12s measured %-10.4g margin %-10.4g %-6s seed %s%s\n", row.when.c_str(),
                 row.verdict.c_str(), row.measured, row.margin, printable_line(row.unit).c_str(),
-                row.seed.c_str());
+                row.seed.c_str(), changed ? "  (other inputs than the run before)" : "");
   }
   return 0;
 }

@@ -1,14 +1,13 @@
 #include "harness/cli/jobs.hpp"
 
+#include <fcntl.h>
 #include <sched.h>
 #include <signal.h>
-#include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -17,7 +16,10 @@
 #include "base/argv.hpp"
 #include "base/interruption.hpp"
 #include "base/outside_signal.hpp"
-#include "harness/cli/console.hpp"
+#include "harness/cli/job_command.hpp"
+#include "harness/cli/memory_file.hpp"
+#include "harness/job/job.hpp"
+#include "results/read_run.hpp"
 
 namespace whirl::cli {
 namespace {
@@ -25,7 +27,7 @@ namespace {
 struct Child {
   const PlanChoice* plan = nullptr;
   std::size_t slot = 0;  // among those that run
-  int output = -1;       // a nameless file in memory: no pipe that could fill up, no folder needed
+  MemoryFile output, report;
 };
 
 // A run is two processes that wait for each other in turn. Where there are not two cores for each job,
@@ -49,25 +51,28 @@ void keep_to(int core) {
   sched_setaffinity(0, sizeof only, &only);
 }
 
-std::vector<std::string> arguments(const PlanChoice& plan, const RunOptions& options) {
-  std::vector<std::string> all{"whirl", "run", "--only", plan.name};
-  if (options.seed) all.insert(all.end(), {"--seed", std::to_string(*options.seed)});
-  if (!options.out.empty()) all.insert(all.end(), {"--out", options.out});
-  if (options.keep) all.emplace_back("--keep");
-  if (options.twice) all.emplace_back("--twice");
-  if (options.json) all.emplace_back("--json");
-  all.insert(all.end(), {"--", plan.file});
-  return all;
+Job job_of(const PlanChoice& plan, const RunOptions& options, const std::string& results) {
+  return {plan.file, plan.name,    options.seed, options.settings,
+          results,   options.keep, options.twice};
 }
 
 // In the child: nothing but the other program.
-[[noreturn]] void become(std::vector<std::string> words, int output, pid_t parent, int core) {
+[[noreturn]] void become(int job, int output, int report, pid_t parent, int core) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) _exit(3);  // it died before we asked
   if (core >= 0) keep_to(core);
   setpgid(0, 0);  // a terminal's interrupt reaches it through the parent, once
+  lseek(job, 0, SEEK_SET);
+  dup2(job, STDIN_FILENO);
   dup2(output, STDOUT_FILENO);
   dup2(output, STDERR_FILENO);
+  // The last one: what has its number by chance is not needed any more.
+  if (report == kReport_fd) {
+    fcntl(report, F_SETFD, 0);
+  } else {
+    dup2(report, kReport_fd);
+  }
+  std::vector<std::string> words{"whirl", "job"};
   std::vector<char*> argv = argv_of(words);
   execv("/proc/self/exe", argv.data());
   dprintf(STDERR_FILENO, "whirl: cannot start itself: %s\n", std::strerror(errno));
@@ -75,29 +80,14 @@ std::vector<std::string> arguments(const PlanChoice& plan, const RunOptions& opt
 }
 
 // 0: none could be started, errno says why. core: to keep to; negative: any.
-pid_t start(const PlanChoice& plan, const RunOptions& options, int output, int core) {
-  const std::vector<std::string> words = arguments(plan, options);
+pid_t start(const Job& job, const Child& child, int core) {
+  const MemoryFile order("whirl-job");
+  if (!order.is_open() || !write_whole(order.fd(), job_text(job))) return 0;
   std::fflush(stdout);
   const pid_t parent = getpid();
   const pid_t pid = fork();
-  if (pid == 0) become(words, output, parent, core);
+  if (pid == 0) become(order.fd(), child.output.fd(), child.report.fd(), parent, core);
   return pid < 0 ? 0 : pid;
-}
-
-// What a child printed; 0, or the error that kept it from being read to its end.
-int print_all(int from) {
-  std::array<char, 4096> piece;
-  lseek(from, 0, SEEK_SET);
-  int error = 0;
-  for (;;) {
-    const ssize_t n = read(from, piece.data(), piece.size());
-    if (n < 0 && errno == EINTR) continue;
-    if (n < 0) error = errno;
-    if (n <= 0) break;
-    std::fwrite(piece.data(), 1, static_cast<std::size_t>(n), stdout);
-  }
-  close(from);
-  return error;
 }
 
 const char* verdict_word(int code) {
@@ -113,23 +103,27 @@ const char* verdict_word(int code) {
   }
 }
 
-int code_of(int status, const PlanChoice& plan) {
+int code_of(int status) {
   if (WIFEXITED(status)) return WEXITSTATUS(status);
+  return is_from_outside(WTERMSIG(status)) ? 3 : 4;
+}
+
+std::string words_for_end(int status) {
+  if (WIFEXITED(status)) return "";
   const int signal = WTERMSIG(status);
-  const bool from_outside = is_from_outside(signal);
-  std::printf("%s %s\n       its process was ended by signal %d (%s)\n",
-              from_outside ? "INCONCLUSIVE" : "ERROR", plan.name.c_str(), signal,
-              strsignal(signal));
-  return from_outside ? 3 : 4;
+  return "its process was ended by signal " + std::to_string(signal) + " (" + strsignal(signal) +
+         ")";
 }
 
 class Jobs {
  public:
   // The longest plans first, as far as their time-outs tell: the last one to end runs alone.
-  Jobs(const std::vector<PlanChoice>& plans, const RunOptions& options, Tally& tally)
+  Jobs(const std::vector<PlanChoice>& plans, const RunOptions& options, const std::string& results,
+       Outcomes& outcomes)
       : plans_(plans),
         options_(options),
-        tally_(tally),
+        results_(results),
+        outcomes_(outcomes),
         cores_(cores_for(static_cast<std::size_t>(options.jobs))) {
     std::stable_sort(plans_.begin(), plans_.end(), [](const PlanChoice& a, const PlanChoice& b) {
       return a.timeout_ns > b.timeout_ns;
@@ -153,21 +147,21 @@ class Jobs {
   // False: not now; a child that ends may make room.
   bool start_next() {
     const PlanChoice& plan = plans_[next_];
-    const int output = memfd_create("whirl-outcome", MFD_CLOEXEC);
     const std::size_t slot = free_slot();
     const int core = cores_.empty() ? -1 : cores_[slot % cores_.size()];
-    const pid_t pid = output < 0 ? 0 : start(plan, options_, output, core);
+    Child child{&plan, slot, MemoryFile("whirl-outcome"), MemoryFile("whirl-report")};
+    const bool files = child.output.is_open() && child.report.is_open();
+    const pid_t pid = files ? start(job_of(plan, options_, results_), child, core) : 0;
     if (pid != 0) {
-      running_[pid] = {&plan, slot, output};
+      running_.emplace(pid, std::move(child));
       ++next_;
       return true;
     }
     const int why = errno;
-    if (output >= 0) close(output);
     if (!running_.empty()) return false;
-    std::printf("INCONCLUSIVE %s\n       cannot start a process for it: %s\n", plan.name.c_str(),
-                std::strerror(why));
-    tally_.add(3);
+    const std::string what = std::string("cannot start a process for it: ") + std::strerror(why);
+    std::printf("INCONCLUSIVE %s\n       %s\n", plan.name.c_str(), what.c_str());
+    outcomes_.add_lost(plan.name, plan.file, 3, what);
     ++next_;
     return true;
   }
@@ -189,21 +183,42 @@ class Jobs {
     WHIRL_CHECK(pid >= 0, errno);
     const auto it = running_.find(pid);
     if (it == running_.end()) return;
-    const PlanChoice& plan = *it->second.plan;
-    const int error = print_all(it->second.output);
-    const int code = code_of(status, plan);
-    if (error != 0) {
-      std::printf(
-          "%s %s\n       what its process printed cannot be read: %s; its results are written\n",
-          verdict_word(code), plan.name.c_str(), std::strerror(error));
-    }
-    std::fflush(stdout);
-    tally_.add(code);
+    take_in(it->second, status);
     running_.erase(it);
   }
 
+  void take_in(const Child& child, int status) {
+    std::string output, text;
+    if (!read_whole(child.output.fd(), output)) {
+      std::printf("whirl: what the process of %s printed cannot be read: %s\n",
+                  child.plan->name.c_str(), std::strerror(errno));
+    }
+    std::fwrite(output.data(), 1, output.size(), stdout);
+    const bool is_read = read_whole(child.report.fd(), text);
+    const std::string unread = is_read ? "" : std::strerror(errno);
+    const auto report = read_job_report(text);
+    const auto run = report ? results::read_run(report.value().run) : report.error();
+    if (is_read && run && code_of(status) == report.value().exit_code) {
+      return outcomes_.add(run.value(), report.value().outcome, report.value().run);
+    }
+    lose(*child.plan, status, unread);
+  }
+
+  // The process gave its exit code, or not even that.
+  void lose(const PlanChoice& plan, int status, const std::string& unread) {
+    int code = code_of(status);
+    std::string what = words_for_end(status);
+    if (what.empty()) {
+      what = "its report " + (unread.empty() ? "was not written" : "cannot be read: " + unread);
+    }
+    if (code == 0) code = 3;  // its line in the history is lost
+    std::printf("%s %s\n       %s\n", verdict_word(code), plan.name.c_str(), what.c_str());
+    std::fflush(stdout);
+    outcomes_.add_lost(plan.name, plan.file, code, what);
+  }
+
   void pass_interruption_on() {
-    tally_.add_not_run(plans_.size() - next_);
+    outcomes_.add_not_run(plans_.size() - next_);
     next_ = plans_.size();
     if (passed_on_) return;
     for (const auto& [pid, child] : running_) kill(pid, interrupted_by());
@@ -212,7 +227,8 @@ class Jobs {
 
   std::vector<PlanChoice> plans_;
   const RunOptions& options_;
-  Tally& tally_;
+  const std::string& results_;
+  Outcomes& outcomes_;
   const std::vector<int> cores_;  // for the slots; empty: each job goes where it likes
   std::map<pid_t, Child> running_;
   std::size_t next_ = 0;
@@ -222,8 +238,8 @@ class Jobs {
 }  // namespace
 
 void run_in_processes(const std::vector<PlanChoice>& plans, const RunOptions& options,
-                      Tally& tally) {
-  Jobs(plans, options, tally).run();
+                      const std::string& results, Outcomes& outcomes) {
+  Jobs(plans, options, results, outcomes).run();
 }
 
 }  // namespace whirl::cli

@@ -5,18 +5,20 @@
 //              waits for one of them and tries again
 //   Order      the longest first, as their time-outs tell
 //   Cores      where there are not two for each job, a job keeps to one
+//   Exchange   a Job goes in, a JobReport comes back (harness/job/job.hpp); results and history are written
+//              here and not by the children, but for the run's own folder
 //   Life       the children end with this process, however it ends
 #pragma once
 #include <vector>
 
 #include "harness/cli/find_plans.hpp"
 #include "harness/cli/options.hpp"
-#include "harness/cli/tally.hpp"
+#include "harness/cli/outcomes.hpp"
 
 namespace whirl::cli {
 
 // Outcomes are printed whole, in the order in which plans end.
 void run_in_processes(const std::vector<PlanChoice>& plans, const RunOptions& options,
-                      Tally& tally);
+                      const std::string& results, Outcomes& outcomes);
 
 }  // namespace whirl::cli

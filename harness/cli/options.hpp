@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "harness/job/job.hpp"
+
 namespace whirl::cli {
 
 struct RunOptions {
@@ -19,6 +21,7 @@ struct RunOptions {
   std::string out;  // where results go; empty: results/ of the house
   std::string tag;
   std::string only;  // the plan of this name
+  std::vector<Setting> settings;
 };
 
 }  // namespace whirl::cli

@@ -11,6 +11,7 @@
 #include "harness/cli/doctor.hpp"
 #include "harness/cli/fuzz_command.hpp"
 #include "harness/cli/history_command.hpp"
+#include "harness/cli/job_command.hpp"
 #include "harness/cli/page_command.hpp"
 #include "harness/cli/run_command.hpp"
 
@@ -121,6 +122,8 @@ int run_chosen(int argc, char** argv, Composition composition) {
   fuzz->add_option("--seeds", fuzzing.seeds, "so many of each");
   fuzz->add_option("--first", fuzzing.first, "the first seed (default 0)");
 
+  auto* job = app.add_subcommand("job", "one run, for whirl itself")->group("");
+
   auto* doctor = app.add_subcommand("doctor", "check tools and versions");
 
   try {
@@ -143,6 +146,7 @@ int run_chosen(int argc, char** argv, Composition composition) {
     return calibrate_esc_command(calibration, composition);
   }
   if (*fuzz) return fuzz_command(fuzzing);
+  if (*job) return job_command(composition);
   if (*doctor) return doctor_command(composition.root);
   return run_command(options, composition);
 }

@@ -118,17 +118,12 @@ void run_again(const PlanChoice& choice, const RunOptions& options, const Compos
   report.reasons.push_back(results::reason_of(again.error(), "in the second run: "));
 }
 
-// Files the run. Whatever goes wrong here is a reason beside those of the run.
-Finished file(RunFolder& folder, RunRecord record, const RunOptions& options) {
-  results::Report& report = record.report;
+// Gives the folder its name. Whatever goes wrong while it is written is a reason beside those of the run.
+template <typename Write>
+Finished file(RunFolder& folder, results::Report report, Write write) {
   std::string path;
   try {
-    bool whole = results::write_run(folder, report, record.truth, record.events);
-    if (options.keep) {
-      const auto kept = results::write_text(folder.file("board.json"), record.board_text);
-      whole = whole && kept.ok();
-      if (!kept) report.reasons.push_back(results::reason_of(kept.error()));
-    }
+    const bool whole = write(report);
     const auto published = folder.publish(interrupted_by() != 0 ? "interrupted"
                                           : whole               ? ""
                                                                 : "incomplete");
@@ -141,6 +136,23 @@ Finished file(RunFolder& folder, RunRecord record, const RunOptions& options) {
   return {std::move(report), path};
 }
 
+Finished file_run(RunFolder& folder, RunRecord record, const RunOptions& options) {
+  return file(folder, std::move(record.report), [&](results::Report& report) {
+    bool whole = results::write_run(folder, report, record.truth, record.events);
+    if (options.keep) {
+      const auto kept = results::write_text(folder.file("board.json"), record.board_text);
+      whole = whole && kept.ok();
+      if (!kept) report.reasons.push_back(results::reason_of(kept.error()));
+    }
+    return whole;
+  });
+}
+
+Finished file_refusal(RunFolder& folder, results::Report report) {
+  return file(folder, std::move(report),
+              [&folder](results::Report& filed) { return results::write_refusal(folder, filed); });
+}
+
 }  // namespace
 
 Finished run_one(const PlanChoice& choice, const RunOptions& options,
@@ -149,7 +161,7 @@ Finished run_one(const PlanChoice& choice, const RunOptions& options,
     auto folder = RunFolder::create(composition.results, choice.name);
     if (!folder) return {refused(choice, options, folder.error()), ""};
     auto record = run_record(choice, options, composition, progress);
-    if (!record) return {refused(choice, options, record.error()), ""};
+    if (!record) return file_refusal(folder.value(), refused(choice, options, record.error()));
     results::Report& report = record.value().report;
     if (options.twice && interrupted_by() == 0) {
       try {
@@ -159,7 +171,7 @@ Finished run_one(const PlanChoice& choice, const RunOptions& options,
       }
     }
     results::conclude(report);
-    return file(folder.value(), std::move(record.value()), options);
+    return file_run(folder.value(), std::move(record.value()), options);
   } catch (...) {
     return {refused(choice, options, error_of_current_exception()), ""};
   }

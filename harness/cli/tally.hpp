@@ -20,6 +20,9 @@ class Tally {
     not_run_ += plans;
     code_ = results::worse_exit_code(code_, 3);
   }
+  std::size_t plans() const;  // that ran, or were to run
+  // Something beside the plans went wrong.
+  void worsen(int exit_code) { code_ = results::worse_exit_code(code_, exit_code); }
   int code() const { return code_; }
   std::string summary() const;  // "23 passed, 1 failed, 1 bad input"
 

@@ -265,6 +265,40 @@ TEST(Program, OfSeveralPlansTheWorstCounts) {
   EXPECT_EQ(whirl(root, {"run"}).code, 4);
 }
 
+std::size_t times(const std::string& text, const std::string& what) {
+  std::size_t n = 0;
+  for (auto at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) ++n;
+  return n;
+}
+
+// For a server that shows tests: one file of all, with those that never ran.
+TEST(Program, OneJunitFileHoldsAllPlansOfACommand) {
+  FakeRoot root;
+  root.write("test_plans/a.lua",
+             plan_text("t:wait \"1 s\" t:expect(t:value \"tilt\"):at_most \"1 rad\""));
+  root.write("test_plans/b.lua", plan_text("", "no_such_image"));
+  root.write("test_plans/c.lua", "plan");
+  EXPECT_EQ(whirl(root, {"run"}).code, 2);
+  const std::string merged = root.read("results/junit.xml");
+  EXPECT_EQ(times(merged, "<testsuite "), 3u) << merged;
+  EXPECT_EQ(times(merged, "<error "), 2u) << merged;
+  EXPECT_NE(merged.find("'no_such_image' is not there"), std::string::npos) << merged;
+}
+
+TEST(Program, ARunThatIsRefusedLeavesItsFolder) {
+  FakeRoot root;
+  root.write("test_plans/b.lua", plan_text("", "no_such_image"));
+  const Outcome outcome = whirl(root, {"run"});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_NE(outcome.out.find("index.html"), std::string::npos) << outcome.out;
+  for (const char* file : {"run.json", "junit.xml", "index.html"}) {
+    EXPECT_NE(root.read(std::string("results/runs/latest/") + file).find("'no_such_image'"),
+              std::string::npos)
+        << file;
+  }
+  EXPECT_EQ(root.read("results/runs/latest/truth.csv"), "");
+}
+
 TEST(Program, TagsChooseAndListShows) {
   FakeRoot root;
   root.write("test_plans/a.lua",

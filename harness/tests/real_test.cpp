@@ -153,6 +153,28 @@ TEST_F(Real, OutputThatIsLostIsNoPass) {
             0);
 }
 
+// What runs in processes of their own is told, remembered and merged like what runs here.
+TEST_F(Real, JobsComeBackWhole) {
+  const std::string head = "vehicle = \"hp_quad\", timeout = \"3 s\", run = function(t) ";
+  write("a.lua", "plan \"a\" { image = \"flight\", " + head + kSecond + " end }");
+  write("b.lua", "plan \"b\" { image = \"flight\", " + head +
+                     "t:wait \"1 s\" t:expect(t:value \"height\"):at_least \"50 m\" end }");
+  write("c.lua", "plan \"c\" { image = \"nowhere\", " + head + kSecond + " end }");
+  const std::string out = folder_.file("results");
+  const std::string files =
+      folder_.file("a.lua") + " " + folder_.file("b.lua") + " " + folder_.file("c.lua");
+  const Outcome apart = whirl("run --jobs 2 " + files);
+  expect_told(apart, 2, "1 passed, 1 failed, 1 bad input");
+  EXPECT_NE(apart.text.find("FAIL b"), std::string::npos) << apart.text;
+  std::ifstream in(out + "/junit.xml");
+  const std::string merged((std::istreambuf_iterator<char>(in)), {});
+  for (const char* suite : {"name=\"a\"", "name=\"b\"", "name=\"c\"", "at least 50 m", "nowhere"}) {
+    EXPECT_NE(merged.find(suite), std::string::npos) << suite;
+  }
+  expect_told(whirl("history"), 0, "a: tilt");
+  EXPECT_EQ(std::distance(fs::directory_iterator(out + "/runs"), fs::directory_iterator()), 4);
+}
+
 TEST_F(Real, AMissingImageIsNamed) {
   expect_told(run("nowhere", kSecond), 2, "'nowhere' is not there");
 }

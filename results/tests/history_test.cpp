@@ -75,9 +75,9 @@ TEST(History, ADamagedFileSaysSoInsteadOfNothing) {
 TEST(History, ANewerSchemaIsLeftAloneAndNamed) {
   const ScratchFolder folder;
   const std::string file = folder.file("history.sqlite");
-  run_sql(file, "CREATE TABLE run(other TEXT); PRAGMA user_version = 2");
+  run_sql(file, "CREATE TABLE run(other TEXT); PRAGMA user_version = 3");
   for (const Error& error : {remember(file, run()).error(), recall(file, "", "", 1).error()}) {
-    EXPECT_EQ(error.what, "was written by a newer whirl (schema 2, this one knows 1)");
+    EXPECT_EQ(error.what, "was written by a newer whirl (schema 3, this one knows 2)");
   }
 }
 
@@ -88,6 +88,22 @@ TEST(History, AFileFromBeforeSchemasHadNumbersIsTakenOn) {
   run_sql(file, "PRAGMA user_version = 0");
   ASSERT_TRUE(remember(file, run()).ok());
   EXPECT_EQ(recall(file, "", "height", 5).value().size(), 2u);
+}
+
+// As schema 1 had it: without the inputs.
+TEST(History, AFileOfTheFirstSchemaGetsItsInputs) {
+  const ScratchFolder folder;
+  const std::string file = folder.file("history.sqlite");
+  ASSERT_TRUE(remember(file, run()).ok());
+  run_sql(file, "ALTER TABLE run DROP COLUMN inputs; PRAGMA user_version = 1");
+  Report r = run();
+  r.versions = {{"qemu", "7.2"}, {"image", "a.elf 1"}, {"plan", "p.lua 2"}, {"vehicle", "v.lua 3"}};
+  ASSERT_TRUE(remember(file, r).ok());
+  const auto rows = recall(file, "", "height", 5);
+  ASSERT_TRUE(rows.ok()) << rows.error().message();
+  ASSERT_EQ(rows.value().size(), 2u);
+  EXPECT_EQ(rows.value()[0].inputs, "");
+  EXPECT_EQ(rows.value()[1].inputs, "a.elf 1, p.lua 2, v.lua 3");
 }
 
 TEST(History, AFileWithOtherColumnsNamesTheFault) {

@@ -135,10 +135,9 @@ class Driver {
   }
 
  private:
-  // With its expectation, or, where what the process printed is lost, with its verdict and that.
+  // With its expectation, or, where the report of its process is lost, with its verdict and that.
   static bool is_told(const std::string& text) {
-    const bool lost = text.find("FAIL fails\n       what its process printed cannot be read") !=
-                      std::string::npos;
+    const bool lost = text.find("FAIL fails\n       its report") != std::string::npos;
     return lost || text.find("it flies high") != std::string::npos;
   }
 

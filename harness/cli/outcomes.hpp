@@ -1,0 +1,38 @@
+// What came out of the plans of one command: told, counted, in the history, and merged in one junit.xml.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "base/result.hpp"
+#include "harness/cli/run_one.hpp"
+#include "harness/cli/tally.hpp"
+
+namespace whirl::cli {
+
+class Outcomes {
+ public:
+  // results: the folder of runs, where history and the merged junit.xml go.
+  Outcomes(std::string results, bool json) : results_(std::move(results)), json_(json) {}
+
+  // What is printed is the report's run.json, or `text`.
+  void add(const results::Report& report, const std::string& text, const std::string& run_json);
+  // A plan file that cannot be read: a testcase, and the error on standard error.
+  void add_refused(const Error& error);
+  void add_not_run(std::size_t plans) { tally_.add_not_run(plans); }
+  // Of a process without a report: its plan is a testcase all the same.
+  void add_lost(const std::string& plan, const std::string& file, int code,
+                const std::string& what);
+
+  // Writes RESULTS/junit.xml, says what came of all, and gives the exit code.
+  int finish();
+
+ private:
+  void file(const results::Report& report, int code);
+
+  std::string results_;
+  bool json_;
+  Tally tally_;
+  std::vector<results::Report> reports_;
+};
+
+}  // namespace whirl::cli
