@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <sstream>
 
-#include "harness/lua/sandbox.hpp"
+#include "base/whole_file.hpp"
 
 namespace whirl::calibrate {
 namespace {
@@ -88,7 +88,7 @@ std::string data_text(const StandData& data) {
 }
 
 Result<StandData> read_data(const std::string& path) {
-  const auto whole = lua::read_whole_file(path);
+  const auto whole = read_whole_file(path);
   if (!whole) return whole.error();
   std::istringstream file(whole.value());
   StandData data;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "base/rpm.hpp"
 #include "base/text.hpp"
 #include "firmware/esc/core/thrust_model.hpp"
 
@@ -131,7 +132,7 @@ std::string table(const Calibration& c) {
   const std::vector<double> errors = found_back(c.rotor);
   for (std::size_t i = 0; i < errors.size(); ++i) {
     const RotorPoint& p = c.rotor.points[i];
-    text += format("  %6.2f %6.0f %8.3f %7.3f  ", p.wind_mps, p.speed_radps * 9.549297, p.thrust_N,
+    text += format("  %6.2f %6.0f %8.3f %7.3f  ", p.wind_mps, rpm_of(p.speed_radps), p.thrust_N,
                    p.kappa);
     text +=
         std::isnan(errors[i]) ? "power does not tell\n" : format("%6.2f %%\n", 100.0 * errors[i]);

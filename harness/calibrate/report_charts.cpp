@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "base/rpm.hpp"
 #include "harness/calibrate/report.hpp"
 
 namespace whirl::calibrate {
@@ -50,7 +51,7 @@ void add_fit(std::vector<Chart>& charts, const std::string& group, const Fit& fi
 
 std::vector<Chart> charts(const Calibration& c) {
   std::vector<Chart> all;
-  const auto rpm = [](const auto& p) { return p.speed_radps * 9.549297; };
+  const auto rpm = [](const auto& p) { return rpm_of(p.speed_radps); };
   const std::vector<SteadyPoint> working = working_points(c.data);
   add_fit(all, "Current sense", c.sense.fit, {c.sense.gain, c.sense.offset},
           "bus current by the stand's ammeter / A",

@@ -13,8 +13,8 @@
 
 #include "base/argv.hpp"
 #include "base/result.hpp"
+#include "base/whole_file.hpp"
 #include "harness/cli/console.hpp"
-#include "harness/lua/sandbox.hpp"
 
 namespace whirl::cli {
 namespace {
@@ -104,7 +104,7 @@ std::string behind(const std::string& log, const std::string& mark) {
 }
 
 Outcome outcome_of(const Parser& p, int status) {
-  const auto log = lua::read_whole_file(p.log);
+  const auto log = read_whole_file(p.log);
   const std::string text = log ? log.value() : "";
   Outcome o{behind(text, "stat::number_of_executed_units:"),
             behind(text, "stat::average_exec_per_sec:"), behind(text, "stat::new_units_added:"),

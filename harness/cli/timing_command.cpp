@@ -5,11 +5,11 @@
 
 #include "base/places.hpp"
 #include "base/text.hpp"
+#include "base/whole_file.hpp"
 #include "harness/cli/console.hpp"
 #include "harness/cli/find_file.hpp"
 #include "harness/cli/find_plans.hpp"
 #include "harness/cli/page_command.hpp"
-#include "harness/lua/sandbox.hpp"
 #include "harness/timing/capture.hpp"
 #include "harness/timing/judge.hpp"
 #include "results/charts.hpp"
@@ -79,7 +79,7 @@ Result<Judged> judged(const timing::Report& report, const std::string& root) {
   for (const Subject& subject : kSubjects) {
     if (report.part != subject.part) continue;
     const std::string path = root + "/io_bridges/qemu/data/timing_" + report.part + ".txt";
-    const auto text = lua::read_whole_file(path);
+    const auto text = read_whole_file(path);
     if (!text) return text.error();
     const auto table = timing::read_expectations(text.value(), path);
     if (!table) return table.error();
@@ -201,7 +201,7 @@ int timing_command(const TimingOptions& options, const Composition& composition)
   if (options.file.empty()) {
     reports = measure(composition);
   } else {
-    const auto text = lua::read_whole_file(options.file);
+    const auto text = read_whole_file(options.file);
     if (!text) return complain(text.error());
     reports = timing::read_reports(text.value(), options.file);
   }

@@ -1,11 +1,11 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "base/whole_file.hpp"
 #include "harness/cli/console.hpp"
 #include "harness/cli/find_plans.hpp"
 #include "harness/cli/page_command.hpp"
 #include "harness/flight/propeller_file.hpp"
-#include "harness/lua/sandbox.hpp"
 #include "plant/validation/rotor_proofs.hpp"
 #include "plant/validation/validation.hpp"
 #include "results/charts.hpp"
@@ -38,7 +38,7 @@ int validate_command(const Composition& composition) {
   const std::string& root = composition.root;
   Result<Done> readable = Done{};
   const auto read = [&](const std::string& path) {
-    auto text = lua::read_whole_file(root + "/plant/data/" + path);
+    auto text = read_whole_file(root + "/plant/data/" + path);
     if (text) return text.value();
     if (readable) readable = text.error();
     return std::string();

@@ -6,8 +6,8 @@
 #include <fstream>
 
 #include "base/digest.hpp"
+#include "base/whole_file.hpp"
 #include "harness/cli/first_line.hpp"
-#include "harness/lua/sandbox.hpp"
 
 namespace whirl::cli {
 namespace {
@@ -27,7 +27,7 @@ std::string cpu_model() {
 
 void add_files(Versions& versions, const Versions& files) {
   for (const auto& [role, path] : files) {
-    const auto text = lua::read_whole_file(path);
+    const auto text = read_whole_file(path);
     if (!text) continue;
     Digest digest;
     digest.add_bytes(text.value().data(), text.value().size());

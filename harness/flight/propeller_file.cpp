@@ -5,7 +5,8 @@
 #include <numbers>
 
 #include "base/places.hpp"
-#include "harness/lua/sandbox.hpp"
+#include "base/rpm.hpp"
+#include "base/whole_file.hpp"
 #include "harness/lua/table.hpp"
 #include "plant/rotor/polar.hpp"
 #include "plant/rotor/section_rules.hpp"
@@ -23,7 +24,7 @@ Result<std::shared_ptr<const plant::PolarFamily>> load_polar(const lua::Table& f
     return Error{ErrorKind::bad_input, place, "polar '" + name + "' is nowhere to be found",
                  "put it beside this file, or name one of plant/data/polars"};
   }
-  const auto text = lua::read_whole_file(path);
+  const auto text = read_whole_file(path);
   if (!text) return text.error();
   auto polar = plant::read_polar(text.value(), path);
   if (!polar) return polar.error();
@@ -71,8 +72,8 @@ Result<std::shared_ptr<const plant::Blade>> read_propeller(const std::string& pa
   }
   if (t.has("static")) {
     for (const lua::Table& s : t.tables("static")) {
-      d.static_points.push_back({s.number("rpm", lua::above(0.0)) * std::numbers::pi / 30.0,
-                                 s.number("CT", lua::above(0.0))});
+      d.static_points.push_back(
+          {radps_of(s.number("rpm", lua::above(0.0))), s.number("CT", lua::above(0.0))});
     }
   }
   std::vector<std::pair<double, std::string>> polars;

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <sstream>
 
+#include "base/rpm.hpp"
 #include "firmware/esc/core/parameters.hpp"
 #include "harness/flight/propeller_file.hpp"
 #include "harness/lua/table.hpp"
@@ -52,7 +53,7 @@ void read_gear(const Table& t, plant::ContactParams& c) {
 
 void read_motor(const Table& t, plant::MotorParams& m) {
   const double kv = t.number("kv_rpm_per_V", above(0.0));
-  if (kv > 0.0) m.torque_constant_NmpA = 30.0 / (std::numbers::pi * kv);
+  if (kv > 0.0) m.torque_constant_NmpA = torque_constant_NmpA_of(kv);
   m.resistance_ohm = t.quantity("resistance", Dimension::resistance, above(0.0));
   m.winding_resistance_ohm = t.quantity_or("winding_resistance", Dimension::resistance,
                                            m.winding_resistance_ohm, above(0.0));

@@ -3,6 +3,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -20,8 +21,9 @@ struct Node {
   std::string text;
   std::map<std::string, std::unique_ptr<Node>, std::less<>> fields;
   std::vector<std::unique_ptr<Node>> list;
-  std::string path;            // "frame.arm", "devices[2].name"
-  mutable bool asked = false;  // somebody read it
+  std::string path;                                  // "frame.arm", "devices[2].name"
+  mutable bool asked = false;                        // somebody read it
+  mutable std::set<std::string, std::less<>> known;  // the keys that were asked for in it
 };
 
 struct Document {

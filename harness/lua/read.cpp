@@ -2,6 +2,7 @@
 #include <lua.hpp>
 
 #include "base/text.hpp"
+#include "base/whole_file.hpp"
 #include "harness/lua/node.hpp"
 #include "harness/lua/sandbox.hpp"
 

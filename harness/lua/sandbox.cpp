@@ -4,12 +4,11 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <lua.hpp>
 #include <utility>
 
 #include "base/mishap.hpp"
+#include "base/whole_file.hpp"
 #include "harness/lua/library.hpp"
 
 namespace whirl::lua {
@@ -21,7 +20,6 @@ constexpr int kHookStep = 1'000;
 constexpr std::size_t kLarge_block_B = 64u << 10;
 constexpr std::size_t kBytes_per_instruction = 64;  // moved, compared or searched
 constexpr std::size_t kLongest_source_B = 1u << 20;
-constexpr std::uintmax_t kLargest_file_B = 64u << 20;
 
 std::string chunk_name(const std::string& name) {
   return "@" + fs::path(name).filename().string();
@@ -277,22 +275,6 @@ Error Sandbox::to_error(const std::string& message) {
   const auto what = message.find_first_not_of(' ', second + 1);
   return {ErrorKind::bad_input, message.substr(0, second),
           what == std::string::npos ? "" : message.substr(what), ""};
-}
-
-Result<std::string> read_whole_file(const std::string& path) {
-  std::error_code status;
-  const fs::file_status file = fs::status(path, status);
-  const auto refused = [&](const char* what) {
-    return Error{ErrorKind::bad_input, path, what, ""};
-  };
-  if (fs::is_directory(file)) return refused("is a folder, not a file");
-  if (fs::exists(file) && !fs::is_regular_file(file)) return refused("is no plain file");
-  if (fs::exists(file) && fs::file_size(path, status) > kLargest_file_B) {
-    return refused("is larger than 64 MiB");
-  }
-  std::ifstream in(path, std::ios::binary);
-  if (!in) return refused("no such file, or not readable");
-  return std::string(std::istreambuf_iterator<char>(in), {});
 }
 
 }  // namespace whirl::lua

@@ -62,7 +62,4 @@ class Sandbox {
   std::unique_ptr<Inner> inner_;
 };
 
-// Of plain files up to 64 MiB: a pipe or a device might never end.
-Result<std::string> read_whole_file(const std::string& path);
-
 }  // namespace whirl::lua

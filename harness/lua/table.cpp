@@ -62,17 +62,28 @@ int line_of(const std::string& source, std::string_view key) {
   return found;
 }
 
-const Node* unknown_below(const Node& node, const std::vector<std::string>& except = {}) {
+// A value that nobody asked for, and the table that it is in. Null: there is none.
+struct Unknown {
+  const Node *table = nullptr, *value = nullptr;
+};
+
+Unknown unknown_below(const Node& node, const std::vector<std::string>& except = {}) {
   for (const auto& [key, child] : node.fields) {
     if (std::find(except.begin(), except.end(), key) != except.end()) continue;
-    if (!child->asked) return child.get();
-    if (const Node* found = unknown_below(*child)) return found;
+    if (!child->asked) return {&node, child.get()};
+    if (const Unknown found = unknown_below(*child); found.value != nullptr) return found;
   }
   for (const auto& child : node.list) {
     if (!child->asked) continue;  // a list is read as a whole or not at all
-    if (const Node* found = unknown_below(*child)) return found;
+    if (const Unknown found = unknown_below(*child); found.value != nullptr) return found;
   }
-  return nullptr;
+  return {};
+}
+
+std::string known_keys(const Node& table) {
+  std::string all;
+  for (const std::string& key : table.known) all += (all.empty() ? "known here: " : ", ") + key;
+  return all;
 }
 
 std::string_view last_part(std::string_view path) {
@@ -83,6 +94,7 @@ std::string_view last_part(std::string_view path) {
 }  // namespace
 
 const Node* Table::find(std::string_view key) const {
+  node_->known.emplace(key);
   const auto it = node_->fields.find(key);
   if (it == node_->fields.end()) return nullptr;
   it->second->asked = true;
@@ -96,6 +108,7 @@ const Node* Table::need(std::string_view key, const char* kind) const {
 }
 
 bool Table::has(std::string_view key) const {
+  node_->known.emplace(key);
   return node_->fields.find(key) != node_->fields.end();
 }
 
@@ -340,13 +353,15 @@ Result<Done> Table::finish() const {
 
 Result<Done> Table::finish_except(const std::vector<std::string>& keys) const {
   if (doc_->first) return *doc_->first;
-  const Node* node = unknown_below(doc_->root, keys);
-  if (node == nullptr) return Done{};
-  const std::string key(last_part(node->path));
+  const Unknown unknown = unknown_below(doc_->root, keys);
+  if (unknown.value == nullptr) return Done{};
+  const std::string& path = unknown.value->path;
+  const std::string key(last_part(path));
   const int line = doc_->call_place.empty() ? line_of(doc_->source, key) : 0;
   std::string where = doc_->call_place.empty() ? doc_->file : doc_->call_place;
   if (line != 0) where += ":" + std::to_string(line);
-  return Error{ErrorKind::bad_input, where, "unknown key '" + node->path + "'", ""};
+  return Error{ErrorKind::bad_input, where, "unknown key '" + path + "'",
+               known_keys(*unknown.table)};
 }
 
 }  // namespace whirl::lua

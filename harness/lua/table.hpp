@@ -9,7 +9,8 @@
 //   Errors   kept, not returned: a getter that fails gives 0 or empty, and finish() tells the first
 //            failure with file, line (where the key stands in one place only) and the path of the
 //            key
-//   Unknown  keys that nobody asked for, in any table that was reached, are errors of finish()
+//   Unknown  keys that nobody asked for, in any table that was reached, are errors of finish(), which
+//            lists those that were
 //   Order    keys() is sorted; nothing depends on Lua's hash order
 #pragma once
 #include <cstdint>

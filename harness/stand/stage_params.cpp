@@ -1,8 +1,8 @@
 #include "harness/stand/stage_params.hpp"
 
 #include <nlohmann/json.hpp>
-#include <numbers>
 
+#include "base/rpm.hpp"
 #include "plant/motor/motor_params.hpp"
 
 namespace whirl::stand {
@@ -34,7 +34,7 @@ void read_motor(const lua::Table& t, StageParams& params) {
   if (t.flag_or("swap_wires", false)) params["swap_wires"] = 1.0;
   if (t.has("kv_rpm_per_V")) {
     const double kv = t.number("kv_rpm_per_V", lua::between(10.0, 1e5));
-    if (kv > 0.0) params["torque_constant"] = 30.0 / (std::numbers::pi * kv);
+    if (kv > 0.0) params["torque_constant"] = torque_constant_NmpA_of(kv);
   }
 }
 

@@ -4,10 +4,10 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
-#include <numbers>
 #include <sstream>
 
 #include "base/check.hpp"
+#include "base/rpm.hpp"
 #include "harness/lua/table.hpp"
 
 namespace whirl::stand {
@@ -16,7 +16,6 @@ namespace {
 constexpr double kStep_s = 1e-3;
 constexpr std::int64_t kStep_ns = 1'000'000;
 constexpr double kSlow_radps = 20.0;  // below, loads go with the square of speed
-constexpr double kRpm = 30.0 / std::numbers::pi;
 
 struct Wish {
   const char* key;
@@ -26,7 +25,7 @@ struct Wish {
 };
 const Wish kWishes[] = {
     {"duty", Dimension::ratio, 100.0, {io::EscMode::duty}},
-    {"speed", Dimension::angular_rate, kRpm, {io::EscMode::rpm}},
+    {"speed", Dimension::angular_rate, kRpm_per_radps, {io::EscMode::rpm}},
     {"thrust", Dimension::force, 1.0, {io::EscMode::thrust_by_rpm, io::EscMode::thrust_by_power}},
     {"power", Dimension::power, 1.0, {io::EscMode::power}},
 };
@@ -202,7 +201,7 @@ std::vector<std::uint32_t> StandWorld::applied_faults() const {
 
 std::string StandWorld::status() const {
   char text[80];
-  std::snprintf(text, sizeof text, "%.0f rpm, %.2f N, %.1f A", shaft_.speed_radps * kRpm,
+  std::snprintf(text, sizeof text, "%.0f rpm, %.2f N, %.1f A", rpm_of(shaft_.speed_radps),
                 loads_.thrust_N, shaft_.bridge_current_A);
   return text;
 }
@@ -242,7 +241,7 @@ void StandWorld::name_signals() {
   add_signal("told_current", D::current, "by the ESC over I2C",
              [this] { return throttle_.told().current_A; });
   add_signal("told_speed", D::angular_rate, "by the ESC over I2C",
-             [this] { return throttle_.told().speed_rpm / kRpm; });
+             [this] { return radps_of(throttle_.told().speed_rpm); });
   add_signal("esc_flags", D::none, "status byte", [this] { return throttle_.told().flags; });
   add_signal("armed", D::none, "1: the ESC says so", [this] {
     const double flags = throttle_.told().flags;

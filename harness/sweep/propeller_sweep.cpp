@@ -1,6 +1,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/rpm.hpp"
 #include "harness/sweep/sweep.hpp"
 #include "plant/rotor/rotor.hpp"
 
@@ -12,8 +13,6 @@ using plant::RotorConditions;
 using plant::RotorLoads;
 using results::Chart;
 using results::ChartCurve;
-
-constexpr double kRpm = std::numbers::pi / 30.0;  // rad/s
 
 struct Columns {  // what the charts of one sweep share
   std::vector<double> x, thrust_N, torque_Nm, power_W, merit, drag_N, ct, cp;
@@ -47,7 +46,7 @@ void add_static(std::vector<Chart>& charts, const Rotor& rotor, const Options& o
   for (int i = 4; i <= 40; ++i) {
     RotorConditions c;
     c.omega_radps = o.top_speed_radps * i / 40.0;
-    columns.add(c.omega_radps / kRpm, c, rotor.steady(c), radius_m(rotor.blade()));
+    columns.add(rpm_of(c.omega_radps), c, rotor.steady(c), radius_m(rotor.blade()));
   }
   const std::string group = "Static, over speed", x = "speed / rpm";
   charts.push_back(columns.chart(group, "Thrust", x, "thrust / N", columns.thrust_N));
@@ -65,7 +64,7 @@ void add_inflow(std::vector<Chart>& charts, const Rotor& rotor, double omega_rad
     columns.add(inflow_mps, c, rotor.steady(c), radius_m(rotor.blade()));
   }
   const std::string group =
-      "Over axial inflow at " + std::to_string(std::lround(omega_radps / kRpm)) + " rpm";
+      "Over axial inflow at " + std::to_string(std::lround(rpm_of(omega_radps))) + " rpm";
   const std::string x = "inflow from above / (m/s)";
   charts.push_back(columns.chart(group, "Thrust", x, "thrust / N", columns.thrust_N));
   charts.push_back(columns.chart(group, "Shaft power", x, "power / W", columns.power_W));
@@ -89,8 +88,8 @@ void add_advance(std::vector<Chart>& charts, const Rotor& rotor, double omega_ra
     c.v_AP_P_mps = {0.01 * i * tip_mps, 0.0, 0.0};
     columns.add(0.01 * i, c, rotor.steady(c), radius_m(rotor.blade()));
   }
-  const std::string group =
-      "Over advance ratio at " + std::to_string(std::lround(omega_radps / kRpm)) + " rpm, edgewise";
+  const std::string group = "Over advance ratio at " +
+                            std::to_string(std::lround(rpm_of(omega_radps))) + " rpm, edgewise";
   const std::string x = "advance ratio (speed over tip speed)";
   charts.push_back(columns.chart(group, "Thrust", x, "thrust / N", columns.thrust_N));
   charts.push_back(columns.chart(group, "Shaft power", x, "power / W", columns.power_W));

@@ -1,6 +1,6 @@
 #include <cmath>
-#include <numbers>
 
+#include "base/rpm.hpp"
 #include "harness/sweep/sweep.hpp"
 #include "plant/motor/averaged_motor.hpp"
 #include "plant/rotor/rotor.hpp"
@@ -12,7 +12,6 @@ using plant::AveragedMotor;
 using results::Chart;
 using results::ChartFigure;
 
-constexpr double kRpm = std::numbers::pi / 30.0;
 constexpr double kSubStep_s = 2e-4;
 constexpr double kGravity_mps2 = 9.80665;
 
@@ -60,7 +59,7 @@ Chart hover_chart(const flight::FlightParams& vehicle, const std::vector<DrivePo
     chart.figures.push_back({name, x, std::numeric_limits<double>::infinity(), unit, true});
   };
   report("hover: thrust of each motor", hover.thrust_N, "N");
-  report("hover: speed", hover.speed_radps / kRpm, "rpm");
+  report("hover: speed", rpm_of(hover.speed_radps), "rpm");
   report("hover: motor voltage", hover.voltage_V, "V");
   report("hover: winding current", hover.winding_A, "A");
   report("hover: bus current of each motor", hover.bus_A, "A");
@@ -128,7 +127,7 @@ std::vector<Chart> vehicle_sweep(const flight::FlightParams& vehicle, const Opti
   std::vector<Chart> charts;
   charts.push_back(hover_chart(vehicle, points, bus_V));
   charts.push_back(over_voltage(points, "Speed", "speed / rpm",
-                                [](const DrivePoint& p) { return p.speed_radps / kRpm; }));
+                                [](const DrivePoint& p) { return rpm_of(p.speed_radps); }));
   charts.push_back(
       over_voltage(points, "Thrust", "thrust / N", [](const DrivePoint& p) { return p.thrust_N; }));
   Chart currents = over_voltage(points, "Current", "current / A",

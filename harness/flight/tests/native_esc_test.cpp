@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "base/near.hpp"
+#include "base/rpm.hpp"
 #include "io_bridges/protocols/esc_codec.hpp"
 #include "plant/motor/averaged_motor.hpp"
 
@@ -22,7 +23,6 @@ using io::EscFlag;
 using io::EscMode;
 
 constexpr std::int64_t kMs = 1'000'000;
-constexpr double kRpm = std::numbers::pi / 30.0;
 
 EscParams in_mode(fw::esc::Mode mode) {
   EscParams params;
@@ -44,7 +44,7 @@ struct Stand {
   explicit Stand(const EscParams& params = {}) : esc(params, 1, 1) {}
 
   double thrust_N() const {
-    const double rpm = motor.speed_radps() / kRpm;
+    const double rpm = rpm_of(motor.speed_radps());
     return 1.789e-7 * rpm * rpm - 1.4715e-4 * rpm;
   }
   void step() {
@@ -150,8 +150,8 @@ TEST(NativeEsc, RpmModeHoldsItsSpeedAndTellsIt) {
   Stand stand(in_mode(fw::esc::Mode::speed));
   stand.arm();
   stand.command(io::setpoint_of_value(EscMode::rpm, 4000.0), 2000);
-  EXPECT_TRUE(near(stand.motor.speed_radps() / kRpm, 4000.0, stated(10, "slow integral")));
-  EXPECT_TRUE(near(stand.esc.status().speed_rpm, stand.motor.speed_radps() / kRpm,
+  EXPECT_TRUE(near(rpm_of(stand.motor.speed_radps()), 4000.0, stated(10, "slow integral")));
+  EXPECT_TRUE(near(stand.esc.status().speed_rpm, rpm_of(stand.motor.speed_radps()),
                    stated(2.0, "one tick of the timer is 0.9 RPM")));
 }
 

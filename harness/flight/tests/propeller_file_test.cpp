@@ -69,7 +69,11 @@ TEST_F(PropellerFile, FaultsAreNamedWithTheirPlace) {
       fault("polars = { { r = 0.2, file = \"nix.polar\" } },"),
       "my_prop.lua: polar 'nix.polar' is nowhere to be found (put it beside this file, or name "
       "one of plant/data/polars)");
-  EXPECT_EQ(fault("pitch = 7,"), "my_prop.lua:2: unknown key 'pitch'");
+  EXPECT_EQ(
+      fault("pitch = 7,"),
+      "my_prop.lua:2: unknown key 'pitch' (known here: blades, diameter, induced_factor, kind, "
+      "mass, material, name, polars, stall_delay, static, stations, thickness, "
+      "tip_twist_correction)");
   EXPECT_EQ(fault("static = { { rpm = 5000, CT = 0.9 } },"),
             "my_prop.lua: static thrust is not met by any tip twist within 8 deg (check diameter, "
             "chord, angle and the unit of the thrust)");

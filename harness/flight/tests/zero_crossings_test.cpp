@@ -4,19 +4,19 @@
 #include <gtest/gtest.h>
 
 #include "base/near.hpp"
+#include "base/rpm.hpp"
 
 namespace whirl::flight {
 namespace {
 
 constexpr std::int64_t kMs = 1'000'000;
-constexpr double kRpm = 0.10471975511965977;
 
 struct Shaft {
   ZeroCrossings crossings{7};
   std::int64_t t_ns = 0;
   double speed_radps = 0.0;
 
-  double rpm() const { return crossings.radps(crossings.pace().revolution, 6) / kRpm; }
+  double rpm() const { return rpm_of(crossings.radps(crossings.pace().revolution, 6)); }
   void run(int ms, double to_radps) {
     const double from = speed_radps;
     for (int i = 1; i <= ms; ++i) {
@@ -30,8 +30,8 @@ struct Shaft {
 TEST(ZeroCrossings, ASteadySpeedIsTimedToOneTick) {
   for (const double rpm : {600.0, 1000.0, 3950.0, 6000.0, 9973.0}) {
     Shaft shaft;
-    shaft.speed_radps = rpm * kRpm;
-    shaft.run(100, rpm * kRpm);
+    shaft.speed_radps = radps_of(rpm);
+    shaft.run(100, radps_of(rpm));
     // An electrical revolution lasts 60/(7 n) seconds: one tick of it is the resolution.
     const double tick = rpm * rpm * 7.0 / 60.0 * 0.5e-6;
     EXPECT_TRUE(near(shaft.rpm(), rpm, stated(tick, "one tick"))) << rpm;
@@ -40,7 +40,7 @@ TEST(ZeroCrossings, ASteadySpeedIsTimedToOneTick) {
 
 TEST(ZeroCrossings, FollowsFromTheSeventhCrossingOn) {
   Shaft shaft;
-  shaft.speed_radps = 238.0 * kRpm;  // one crossing in 6.003 ms
+  shaft.speed_radps = radps_of(238.0);  // one crossing in 6.003 ms
   shaft.run(42, shaft.speed_radps);
   EXPECT_FALSE(shaft.crossings.in_sync());
   EXPECT_EQ(shaft.rpm(), 0.0);
@@ -50,9 +50,9 @@ TEST(ZeroCrossings, FollowsFromTheSeventhCrossingOn) {
 
 TEST(ZeroCrossings, LagsARampByHalfARevolutionAtLeast) {
   Shaft shaft;
-  shaft.speed_radps = 3000.0 * kRpm;
+  shaft.speed_radps = radps_of(3000.0);
   shaft.run(100, shaft.speed_radps);
-  shaft.run(40, 5000.0 * kRpm);  // 50 RPM in each millisecond
+  shaft.run(40, radps_of(5000.0));  // 50 RPM in each millisecond
   // At 4950 RPM an electrical revolution lasts 1.73 ms: its mean is half of it old, its last
   // crossing up to a sixth more.
   const double behind_rpm = 5000.0 - shaft.rpm();
@@ -62,21 +62,21 @@ TEST(ZeroCrossings, LagsARampByHalfARevolutionAtLeast) {
 
 TEST(ZeroCrossings, TheLatestSectorLagsLessAndSaysWhetherItSlows) {
   Shaft shaft;
-  shaft.speed_radps = 3000.0 * kRpm;
+  shaft.speed_radps = radps_of(3000.0);
   shaft.run(100, shaft.speed_radps);
   EXPECT_FALSE(shaft.crossings.pace().slowing);
-  shaft.run(40, 5000.0 * kRpm);
-  const double latest = shaft.crossings.radps(shaft.crossings.pace().sector, 1) / kRpm;
+  shaft.run(40, radps_of(5000.0));
+  const double latest = rpm_of(shaft.crossings.radps(shaft.crossings.pace().sector, 1));
   EXPECT_GT(latest, shaft.rpm() + 20.0);
   EXPECT_LT(latest, 5000.0);
   EXPECT_FALSE(shaft.crossings.pace().slowing);
-  shaft.run(40, 2000.0 * kRpm);
+  shaft.run(40, radps_of(2000.0));
   EXPECT_TRUE(shaft.crossings.pace().slowing);
 }
 
 TEST(ZeroCrossings, LosesARotorThatStopsAndFindsItAgain) {
   Shaft shaft;
-  shaft.speed_radps = 4000.0 * kRpm;
+  shaft.speed_radps = radps_of(4000.0);
   shaft.run(50, shaft.speed_radps);
   ASSERT_TRUE(shaft.crossings.in_sync());
   shaft.speed_radps = 0.0;
@@ -84,7 +84,7 @@ TEST(ZeroCrossings, LosesARotorThatStopsAndFindsItAgain) {
   EXPECT_TRUE(shaft.crossings.in_sync());
   shaft.run(1, 0.0);
   EXPECT_FALSE(shaft.crossings.in_sync());
-  shaft.run(50, 1000.0 * kRpm);
+  shaft.run(50, radps_of(1000.0));
   EXPECT_TRUE(shaft.crossings.in_sync());
   shaft.crossings.restart();
   EXPECT_FALSE(shaft.crossings.in_sync());

@@ -56,7 +56,16 @@ TEST(DataFile, UnknownKeysAreErrorsAtAnyDepth) {
   EXPECT_EQ(complaint(top), "quad.lua:1: unknown key 'masss'");
   const Table deep = read_good("return { list = { { a = 1, b = 2 } } }");
   deep.tables("list").at(0).integer("a");
-  EXPECT_EQ(complaint(deep), "quad.lua:1: unknown key 'list[1].b'");
+  EXPECT_EQ(complaint(deep), "quad.lua:1: unknown key 'list[1].b' (known here: a)");
+}
+
+TEST(DataFile, AnUnknownKeyIsRefusedWithThoseThatAreRead) {
+  const Table t = read_good("return { mass = \"1 kg\", inner = { armm = 1, far = 2 } }");
+  t.quantity("mass", Dimension::mass);
+  const Table inner = t.table("inner");
+  inner.integer_or("far", 0);
+  inner.integer_or("arm", 0);
+  EXPECT_EQ(complaint(t), "quad.lua:1: unknown key 'inner.armm' (known here: arm, far)");
 }
 
 TEST(DataFile, TheFirstComplaintIsTheOneTold) {
