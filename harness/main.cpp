@@ -3,10 +3,11 @@
 
 #include "base/interruption.hpp"
 #include "base/places.hpp"
+#include "harness/catalogue/stand_table.hpp"
+#include "harness/catalogue/vehicle_file.hpp"
 #include "harness/cli/composition.hpp"
 #include "harness/cli/console.hpp"
 #include "harness/flight/flight_world.hpp"
-#include "harness/flight/vehicle_file.hpp"
 #include "harness/stand/stand_world.hpp"
 #include "harness/target/virtual_board.hpp"
 
@@ -14,7 +15,7 @@ namespace whirl {
 namespace {
 
 Result<stand::StandParams> stand_of(const cli::Setup& setup) {
-  return stand::read_stand(*setup.plan.stand, setup.root + "/test_plans/propellers");
+  return catalogue::read_stand(*setup.plan.stand, setup.root + "/test_plans/propellers");
 }
 
 Result<std::unique_ptr<World>> make_world(const cli::Setup& setup) {
@@ -23,7 +24,7 @@ Result<std::unique_ptr<World>> make_world(const cli::Setup& setup) {
     if (!params) return params.error();
     return std::unique_ptr<World>(std::make_unique<stand::StandWorld>(params.value(), setup.seed));
   }
-  const auto params = flight::read_vehicle(setup.vehicle_file);
+  const auto params = catalogue::read_vehicle(setup.vehicle_file);
   if (!params) return params.error();
   return std::unique_ptr<World>(std::make_unique<flight::FlightWorld>(params.value(), setup.seed));
 }

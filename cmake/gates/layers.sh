@@ -37,9 +37,10 @@ harness/board            base/ harness/board/ harness/lua/
 harness/target           base/ harness/target/ io_bridges/
 harness/plan             base/ harness/board/ harness/lua/ harness/metrics/ harness/plan/ harness/world/ results/
 harness/executive        base/ harness/board/ harness/executive/ harness/lua/ harness/metrics/ harness/plan/ harness/target/ harness/world/ io_bridges/devices/faults.hpp io_bridges/messages/ results/
+harness/catalogue        base/ harness/calibrate/setup.hpp harness/catalogue/ harness/flight/ harness/lua/ harness/stand/ io_bridges/protocols/ plant/ firmware/esc/core/
 harness/flight           base/ harness/flight/ harness/lua/ harness/world/ io_bridges/messages/ io_bridges/protocols/ plant/ firmware/esc/core/
-harness/stand            base/ harness/flight/ harness/lua/ harness/stand/ harness/world/ io_bridges/messages/ io_bridges/protocols/ plant/
-harness/sweep            base/ harness/flight/ harness/sweep/ plant/ results/
+harness/stand            base/ harness/lua/ harness/stand/ harness/world/ io_bridges/messages/ io_bridges/protocols/ plant/
+harness/sweep            base/ harness/flight/flight_params.hpp harness/sweep/ plant/ results/
 harness/timing           base/ harness/target/ harness/timing/
 harness/calibrate        base/ harness/calibrate/ harness/lua/ harness/target/ harness/world/ io_bridges/protocols/ results/ firmware/esc/core/
 harness/cli              base/ harness/ plant/validation/ results/

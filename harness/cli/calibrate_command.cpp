@@ -6,6 +6,7 @@
 #include "harness/calibrate/data_file.hpp"
 #include "harness/calibrate/procedure.hpp"
 #include "harness/calibrate/report.hpp"
+#include "harness/catalogue/calibration_file.hpp"
 #include "harness/cli/console.hpp"
 #include "harness/cli/find_file.hpp"
 #include "harness/cli/find_plans.hpp"
@@ -24,7 +25,9 @@ struct Parts {
   std::unique_ptr<Target> target;
 };
 
-Result<Done> compose(const calibrate::Setup& setup, const Composition& composition, Parts& parts) {
+Result<Done> compose(const catalogue::CalibrationFile& file, const Composition& composition,
+                     Parts& parts) {
+  const calibrate::Setup& setup = file.setup;
   const std::string& root = composition.root;
   const Asker who{setup.file, setup.file};
   const auto board_path = find_file(setup.board, who, {root + "/test_plans/boards"}, ".lua");
@@ -35,7 +38,7 @@ Result<Done> compose(const calibrate::Setup& setup, const Composition& compositi
   parts.board.watch.clear();
   parts.plan.name = "calibration";
   parts.plan.file = parts.plan.place = setup.file;
-  parts.plan.stand = setup.stand;
+  parts.plan.stand = file.stand;
   const auto image = find_file(setup.image, who, {root + "/build/firmware"}, ".elf");
   if (!image) return image.error();
   const Setup all{parts.plan, parts.board,
@@ -58,10 +61,11 @@ Result<Calibration> concluded(calibrate::StandData data, const calibrate::Setup&
 }
 
 // Measures, concludes, and stores the constants in the ESC, all in one power-up.
-Result<Calibration> on_the_stand(const calibrate::Setup& setup, const Composition& composition,
-                                 const std::string& data_path) {
+Result<Calibration> on_the_stand(const catalogue::CalibrationFile& file,
+                                 const Composition& composition, const std::string& data_path) {
+  const calibrate::Setup& setup = file.setup;
   Parts parts;
-  if (auto good = compose(setup, composition, parts); !good) return good.error();
+  if (auto good = compose(file, composition, parts); !good) return good.error();
   calibrate::Bench bench(*parts.world, *parts.target, setup.serial);
   if (auto started = bench.start(); !started) return started.error();
   const auto tell = [&](const std::string& words) {
@@ -88,15 +92,15 @@ Result<Calibration> again(const std::string& data_path, const calibrate::Setup& 
 }  // namespace
 
 int calibrate_esc_command(const CalibrateOptions& options, const Composition& composition) {
-  const auto setup = calibrate::read_setup(options.file);
-  if (!setup) return complain(setup.error());
+  const auto file = catalogue::read_calibration(options.file);
+  if (!file) return complain(file.error());
   const std::string name = fs::path(options.file).stem();
   const fs::path folder = fs::path(composition.results) / "calibrations" / name;
   std::error_code status;
   fs::create_directories(folder, status);
   const std::string data = (folder / "data.txt").string();
-  const auto result = options.data.empty() ? on_the_stand(setup.value(), composition, data)
-                                           : again(options.data, setup.value());
+  const auto result = options.data.empty() ? on_the_stand(file.value(), composition, data)
+                                           : again(options.data, file.value().setup);
   if (!result) return complain(result.error());
   const Calibration& c = result.value();
 

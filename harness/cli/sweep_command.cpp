@@ -3,11 +3,12 @@
 #include <fstream>
 
 #include "base/text.hpp"
+#include "harness/catalogue/kind.hpp"
+#include "harness/catalogue/propeller_file.hpp"
+#include "harness/catalogue/vehicle_file.hpp"
 #include "harness/cli/console.hpp"
 #include "harness/cli/find_plans.hpp"
 #include "harness/cli/page_command.hpp"
-#include "harness/flight/propeller_file.hpp"
-#include "harness/lua/table.hpp"
 #include "harness/sweep/sweep.hpp"
 #include "results/folder.hpp"
 
@@ -28,9 +29,9 @@ Result<Done> read_option(const Option& option) {
   if (option.text.empty()) return Done{};
   const auto value = parse_quantity_as(option.text, option.dimension, option.name);
   if (!value) return value.error();
-  const lua::Range range{parse_quantity_as(option.low, option.dimension, "").value(),
-                         parse_quantity_as(option.high, option.dimension, "").value()};
-  if (!range.holds(value.value())) {
+  const double low = parse_quantity_as(option.low, option.dimension, "").value();
+  const double high = parse_quantity_as(option.high, option.dimension, "").value();
+  if (!(value.value() >= low && value.value() <= high)) {
     return Error{ErrorKind::bad_input, option.name,
                  "'" + option.text + "' is outside " + option.low + " to " + option.high, ""};
   }
@@ -57,16 +58,15 @@ struct Swept {
 };
 
 Result<Swept> sweep_file(const std::string& path, const sweep::Options& options) {
-  const auto file = lua::read_file(path);
-  if (!file) return file.error();
-  const std::string kind = file.value().text_or("kind", "");
-  if (kind == "propeller") {
-    const auto blade = flight::read_propeller(path);
+  const auto kind = catalogue::read_kind(path);
+  if (!kind) return kind.error();
+  if (kind.value() == "propeller") {
+    const auto blade = catalogue::read_propeller(path);
     if (!blade) return blade.error();
     return Swept{plant::name(*blade.value()), sweep::propeller_sweep(blade.value(), options)};
   }
-  if (kind == "vehicle") {
-    const auto vehicle = flight::read_vehicle(path);
+  if (kind.value() == "vehicle") {
+    const auto vehicle = catalogue::read_vehicle(path);
     if (!vehicle) return vehicle.error();
     return Swept{vehicle.value().name, sweep::vehicle_sweep(vehicle.value(), options)};
   }

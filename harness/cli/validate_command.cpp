@@ -2,10 +2,10 @@
 #include <filesystem>
 
 #include "base/whole_file.hpp"
+#include "harness/catalogue/propeller_file.hpp"
 #include "harness/cli/console.hpp"
 #include "harness/cli/find_plans.hpp"
 #include "harness/cli/page_command.hpp"
-#include "harness/flight/propeller_file.hpp"
 #include "plant/validation/rotor_proofs.hpp"
 #include "plant/validation/validation.hpp"
 #include "results/charts.hpp"
@@ -43,7 +43,7 @@ int validate_command(const Composition& composition) {
     if (readable) readable = text.error();
     return std::string();
   };
-  const auto blade = flight::read_propeller(root + "/test_plans/propellers/hk_10x4.5.lua");
+  const auto blade = catalogue::read_propeller(root + "/test_plans/propellers/hk_10x4.5.lua");
   if (!blade) return complain(blade.error());
   std::vector<results::Chart> charts;
   add(charts, "Rotor", plant::rotor_proofs(read));

@@ -20,9 +20,9 @@
 #include <vector>
 
 #include "harness/flight/capture.hpp"
+#include "harness/flight/flight_params.hpp"
 #include "harness/flight/native_esc.hpp"
 #include "harness/flight/station.hpp"
-#include "harness/flight/vehicle_file.hpp"
 #include "harness/world/world.hpp"
 #include "plant/vehicle.hpp"
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "base/result.hpp"
-#include "harness/flight/vehicle_file.hpp"
+#include "harness/flight/flight_params.hpp"
 #include "plant/rotor/blade.hpp"
 #include "results/charts.hpp"
 

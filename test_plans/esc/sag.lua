@@ -4,7 +4,7 @@ include "include/start.lua"
 
 plan "battery_sag" {
   image = "esc", board = "esc32v2",
-  stand = { prop = "hk_10x4.5", battery = "4s_2200", battery_share = "25 %" },
+  stand = { prop = "hk_10x4.5", battery = { pack = "4s_2200", share = "25 %" } },
   tags = { "esc", "nightly" },
   timeout = "620 s",
   run = function(t)

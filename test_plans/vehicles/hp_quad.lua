@@ -22,7 +22,7 @@ return {
     inertia = "3.752e-5 kg m2", -- with propeller
     pole_pairs = 7,
   },
-  battery = { kind = "lipo_4s_2200" },
+  battery = "4s_2200",
   esc = { mode = "thrust_by_rpm", max_current = "20 A", arming_voltage = "15.7 V" },
   capture = { camera_rate = "200 Hz", rate = "40 Hz", latency = "8 ms", position_noise = "1 mm", angle_noise = "0.002 rad" },
 }

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "base/near.hpp"
+#include "harness/catalogue/vehicle_file.hpp"
 #include "harness/flight/tests/paths.hpp"
 #include "harness/lua/table.hpp"
 #include "io_bridges/protocols/esc_codec.hpp"
@@ -18,7 +19,8 @@ namespace {
 constexpr std::int64_t kMs = 1'000'000;
 
 FlightParams hp_quad_file() {
-  auto params = read_vehicle(std::string(kSourceFolder) + "/test_plans/vehicles/hp_quad.lua");
+  auto params =
+      catalogue::read_vehicle(std::string(kSourceFolder) + "/test_plans/vehicles/hp_quad.lua");
   EXPECT_TRUE(params.ok()) << (params.ok() ? "" : params.error().message());
   return params.value();
 }

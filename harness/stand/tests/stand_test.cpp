@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/near.hpp"
+#include "harness/catalogue/stand_table.hpp"
 #include "harness/stand/stand_world.hpp"
 #include "plant/motor/motor_params.hpp"
 
@@ -24,7 +25,7 @@ lua::Table table(const std::string& text) {
 const std::string kPropellers = std::string(WHIRL_SOURCE_FOLDER) + "/test_plans/propellers";
 
 StandParams params(const std::string& text = R"({ prop = "hk_10x4.5", supply = "16 V" })") {
-  auto read = read_stand(table(text), kPropellers);
+  auto read = catalogue::read_stand(table(text), kPropellers);
   EXPECT_TRUE(read.ok()) << read.error().message();
   return read.value();
 }
@@ -123,7 +124,7 @@ TEST(Stand, FloodsTheWireAsFastAsItIsTold) {
 // A quarter of the pack sags under 2 A as the whole one under 8 A.
 TEST(Stand, AShareOfThePackSagsAsTheWholeUnderAllMotors) {
   Bench whole(params(R"({ prop = "hk_10x4.5", battery = "4s_2200" })"));
-  Bench share(params(R"({ prop = "hk_10x4.5", battery = "4s_2200", battery_share = "25 %" })"));
+  Bench share(params(R"({ prop = "hk_10x4.5", battery = { pack = "4s_2200", share = "25 %" } })"));
   whole.run_until(20'000 * kMs, 400.0, 8.0);
   share.run_until(20'000 * kMs, 400.0, 2.0);
   EXPECT_LT(whole.load.source_V, 16.6);
@@ -329,7 +330,7 @@ TEST(Stand, ALateAnswerIsNotTakenForThatToTheNextQuestion) {
 
 TEST(Stand, MistakesAreNamed) {
   const auto complaint = [](const std::string& text) {
-    const auto read = read_stand(table(text), kPropellers);
+    const auto read = catalogue::read_stand(table(text), kPropellers);
     return read ? "none" : read.error().message();
   };
   EXPECT_NE(complaint(R"({ prop = "hk_10x4.5" })").find("battery or a supply"), std::string::npos);

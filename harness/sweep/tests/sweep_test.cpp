@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "base/near.hpp"
+#include "harness/catalogue/vehicle_file.hpp"
 #include "plant/rotor/rotor.hpp"
 
 namespace whirl::sweep {
@@ -11,7 +12,7 @@ namespace {
 
 flight::FlightParams quad() {
   const auto params =
-      flight::read_vehicle(std::string(WHIRL_ROOT) + "/test_plans/vehicles/hp_quad.lua");
+      catalogue::read_vehicle(std::string(WHIRL_ROOT) + "/test_plans/vehicles/hp_quad.lua");
   EXPECT_TRUE(params.ok()) << (params.ok() ? "" : params.error().message());
   return params.value();
 }

@@ -1,5 +1,5 @@
 // Oracle: what the file says; each mistake is answered with its place and one sentence.
-#include "harness/calibrate/setup.hpp"
+#include "harness/catalogue/calibration_file.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,32 +7,34 @@
 
 #include "base/scratch_folder.hpp"
 
-namespace whirl::calibrate {
+namespace whirl::catalogue {
 namespace {
 
-Result<Setup> read(const std::string& body) {
+Result<CalibrationFile> read(const std::string& body) {
   const ScratchFolder folder;
   const std::string path = folder.file("calibration_setup.lua");
   std::ofstream(path)
       << "return {\n  kind = \"calibration\",\n  stand = { prop = \"x\", serial = 2 },\n"
       << body << "}\n";
-  return read_setup(path);
+  return read_calibration(path);
 }
 
-TEST(Setup, TakesWhatIsWrittenAndFillsInTheRest) {
-  const auto s =
+TEST(CalibrationFile, TakesWhatIsWrittenAndFillsInTheRest) {
+  const auto file =
       read("  diameter = \"9 in\", winds = { \"1 m/s\", \"2 m/s\" }, measure = \"2 s\",\n");
-  ASSERT_TRUE(s.ok()) << s.error().message();
-  EXPECT_NEAR(s.value().diameter_m, 0.2286, 1e-12);
-  EXPECT_EQ(s.value().winds_mps, (std::vector<double>{1.0, 2.0}));
-  EXPECT_EQ(s.value().measure_ms, 2000);
-  EXPECT_EQ(s.value().serial, 2);
-  EXPECT_EQ(s.value().board, "esc32v2");
-  EXPECT_GE(s.value().still.size(), 4u);
-  EXPECT_FALSE(s.value().tell_motor);
+  ASSERT_TRUE(file.ok()) << file.error().message();
+  const calibrate::Setup& s = file.value().setup;
+  EXPECT_EQ(file.value().stand.text("prop"), "x");
+  EXPECT_NEAR(s.diameter_m, 0.2286, 1e-12);
+  EXPECT_EQ(s.winds_mps, (std::vector<double>{1.0, 2.0}));
+  EXPECT_EQ(s.measure_ms, 2000);
+  EXPECT_EQ(s.serial, 2);
+  EXPECT_EQ(s.board, "esc32v2");
+  EXPECT_GE(s.still.size(), 4u);
+  EXPECT_FALSE(s.tell_motor);
 }
 
-TEST(Setup, RefusesWithPlaceAndReason) {
+TEST(CalibrationFile, RefusesWithPlaceAndReason) {
   const struct {
     const char* body;
     const char* words;
@@ -53,4 +55,4 @@ TEST(Setup, RefusesWithPlaceAndReason) {
 }
 
 }  // namespace
-}  // namespace whirl::calibrate
+}  // namespace whirl::catalogue

@@ -1,4 +1,4 @@
-#include "harness/flight/vehicle_file.hpp"
+#include "harness/catalogue/vehicle_file.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,13 +10,13 @@
 #include "base/scratch_folder.hpp"
 #include "harness/flight/tests/paths.hpp"
 
-namespace whirl::flight {
+namespace whirl::catalogue {
 namespace {
 
-const std::string kVehicles = std::string(kSourceFolder) + "/test_plans/vehicles/";
+const std::string kVehicles = std::string(flight::kSourceFolder) + "/test_plans/vehicles/";
 
 // hp_quad.lua with one passage replaced, in a folder of its own.
-Result<FlightParams> read_changed(const std::string& passage, const std::string& instead) {
+Result<flight::FlightParams> read_changed(const std::string& passage, const std::string& instead) {
   std::stringstream text;
   text << std::ifstream(kVehicles + "hp_quad.lua").rdbuf();
   std::string changed = text.str();
@@ -27,7 +27,7 @@ Result<FlightParams> read_changed(const std::string& passage, const std::string&
   const ScratchFolder root;
   std::filesystem::create_directories(root.file("test_plans/vehicles"));
   for (const char* folder : {"/test_plans/propellers", "/plant"}) {
-    std::filesystem::create_directory_symlink(kSourceFolder + std::string(folder),
+    std::filesystem::create_directory_symlink(flight::kSourceFolder + std::string(folder),
                                               root.path() + folder);
   }
   const std::string file = root.file("test_plans/vehicles/quad.lua");
@@ -87,7 +87,7 @@ TEST(VehicleFile, CalibrationHasTheNamesOfTheImagesSet) {
       "esc = { calibration = { kt = 0.0101, c0 = 0.07, d1 = -1.7e5, identified = true }, "
       "shunt = { offset = \"4.3 A\" }, mode = \"thrust_by_power\"");
   ASSERT_TRUE(params.ok()) << params.error().message();
-  const EscParams& esc = params.value().esc;
+  const flight::EscParams& esc = params.value().esc;
   EXPECT_EQ(esc.calibration.mode, fw::esc::Mode::thrust_by_power);
   EXPECT_EQ(esc.calibration.motor.Kt_NmpA, 0.0101f);
   EXPECT_EQ(esc.calibration.rotor.c0, 0.07f);
@@ -143,4 +143,4 @@ TEST(VehicleFile, EachMistakeIsOneSentenceWithItsPlace) {
 }
 
 }  // namespace
-}  // namespace whirl::flight
+}  // namespace whirl::catalogue

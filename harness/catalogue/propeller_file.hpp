@@ -8,8 +8,8 @@
 #include "base/result.hpp"
 #include "plant/rotor/blade.hpp"
 
-namespace whirl::flight {
+namespace whirl::catalogue {
 
 Result<std::shared_ptr<const plant::Blade>> read_propeller(const std::string& path);
 
-}  // namespace whirl::flight
+}  // namespace whirl::catalogue

@@ -1,4 +1,4 @@
-#include "harness/flight/propeller_file.hpp"
+#include "harness/catalogue/propeller_file.hpp"
 
 #include <filesystem>
 #include <map>
@@ -12,7 +12,7 @@
 #include "plant/rotor/section_rules.hpp"
 #include "plant/rotor/twist_fit.hpp"
 
-namespace whirl::flight {
+namespace whirl::catalogue {
 namespace {
 
 Result<std::shared_ptr<const plant::PolarFamily>> load_polar(const lua::Table& file,
@@ -95,4 +95,4 @@ Result<std::shared_ptr<const plant::Blade>> read_propeller(const std::string& pa
   return plant::make_fitted_blade(std::move(d));
 }
 
-}  // namespace whirl::flight
+}  // namespace whirl::catalogue

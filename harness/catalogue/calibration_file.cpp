@@ -1,8 +1,8 @@
-#include "harness/calibrate/setup.hpp"
+#include "harness/catalogue/calibration_file.hpp"
 
 #include <algorithm>
 
-namespace whirl::calibrate {
+namespace whirl::catalogue {
 namespace {
 
 constexpr std::int64_t kMs_ns = 1'000'000;
@@ -22,17 +22,17 @@ std::vector<double> duties(const lua::Table& t, const char* key, std::size_t few
 
 }  // namespace
 
-Result<Setup> read_setup(const std::string& path) {
+Result<CalibrationFile> read_calibration(const std::string& path) {
   const auto file = lua::read_file(path);
   if (!file) return file.error();
   const lua::Table& t = file.value();
-  Setup s;
+  calibrate::Setup s;
   s.file = path;
   std::ignore = t.choice("kind", {"calibration"});
   s.image = t.text_or("image", "esc");
   s.board = t.text_or("board", "esc32v2");
-  s.stand = t.table("stand");
-  s.serial = static_cast<std::uint16_t>(s.stand->integer_or("serial", 1, 1, 8));
+  const lua::Table stand = t.table("stand");
+  s.serial = static_cast<std::uint16_t>(stand.integer_or("serial", 1, 1, 8));
   s.diameter_m = t.quantity("diameter", Dimension::length, lua::between(0.02, 3.0));
   s.density_kgpm3 =
       t.quantity_or("density", Dimension::density, s.density_kgpm3, lua::between(0.3, 2.0));
@@ -53,7 +53,7 @@ Result<Setup> read_setup(const std::string& path) {
   s.tell_motor = t.flag_or("tell_motor", false);
   s.seed = static_cast<std::uint64_t>(t.integer_or("seed", 1, 0));
   if (const auto good = t.finish_except({"stand"}); !good) return good.error();
-  return s;
+  return CalibrationFile{std::move(s), stand};
 }
 
-}  // namespace whirl::calibrate
+}  // namespace whirl::catalogue

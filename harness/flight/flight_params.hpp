@@ -1,10 +1,9 @@
-// A vehicle as a Lua file (test_plans/vehicles): airframe, propeller, motor, pack, ESC, capture
-// system. What is physics goes to the plant's params, what is belief or protocol to the ESC's.
+// What a flight is made of. What is physics goes to the plant's params, what is belief or protocol to
+// the ESC's.
 #pragma once
 #include <memory>
 #include <string>
 
-#include "base/result.hpp"
 #include "harness/flight/capture.hpp"
 #include "harness/flight/native_esc.hpp"
 #include "plant/rotor/blade.hpp"
@@ -19,7 +18,5 @@ struct FlightParams {
   EscParams esc;
   CaptureParams capture;
 };
-
-Result<FlightParams> read_vehicle(const std::string& path);
 
 }  // namespace whirl::flight

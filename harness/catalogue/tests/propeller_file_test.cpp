@@ -1,5 +1,5 @@
 // A propeller of one's own, from a file anywhere: no recompilation, and one sentence per fault.
-#include "harness/flight/propeller_file.hpp"
+#include "harness/catalogue/propeller_file.hpp"
 
 #include <filesystem>
 #include <fstream>
@@ -8,7 +8,7 @@
 #include "base/scratch_folder.hpp"
 #include "plant/rotor/twist_fit.hpp"
 
-namespace whirl::flight {
+namespace whirl::catalogue {
 namespace {
 
 // APC slow fly 10x7; geometry of [UiucProp].
@@ -80,4 +80,4 @@ TEST_F(PropellerFile, FaultsAreNamedWithTheirPlace) {
 }
 
 }  // namespace
-}  // namespace whirl::flight
+}  // namespace whirl::catalogue

@@ -1,0 +1,66 @@
+#include "harness/catalogue/esc_setup.hpp"
+
+#include <cmath>
+#include <sstream>
+
+#include "firmware/esc/core/parameters.hpp"
+#include "harness/catalogue/esc_mode.hpp"
+#include "harness/catalogue/shunt.hpp"
+
+namespace whirl::catalogue {
+namespace {
+
+// "set kt 0.01005": what a stand has found, as it types it into the image. False: not such a line.
+bool take_set_line(const std::string& line, fw::esc::Calibration& c) {
+  std::istringstream words(line);
+  std::string verb, name, rest;
+  double value = 0.0;
+  if (!(words >> verb >> name >> value) || verb != "set" || words >> rest) return false;
+  for (const fw::esc::Parameter& parameter : fw::esc::kParameters) {
+    if (parameter.name != name) continue;
+    parameter.in(c) = static_cast<float>(value);
+    return std::isfinite(parameter.in(c));
+  }
+  return false;
+}
+
+void read_calibration_file(const lua::Table& t, fw::esc::Calibration& c) {
+  const auto file = lua::read_file(t.sibling(t.text("file")));
+  if (!file) return t.refuse("file", file.error().message());
+  std::ignore = file.value().choice("kind", {"esc_calibration"});
+  for (const std::string& line : file.value().texts("set")) {
+    if (!take_set_line(line, c)) return t.refuse("file", "'" + line + "' sets nothing of an ESC");
+  }
+  if (const auto good = file.value().finish(); !good) t.refuse("file", good.error().message());
+  c.identified = true;
+}
+
+// The numbers of a stand's file, then those given here by the names of the image's `set`, SI without
+// units.
+void read_constants(const lua::Table& t, fw::esc::Calibration& c) {
+  if (t.has("file")) read_calibration_file(t, c);
+  for (const fw::esc::Parameter& parameter : fw::esc::kParameters) {
+    float& value = parameter.in(c);
+    value = static_cast<float>(t.number_or(parameter.name, static_cast<double>(value)));
+  }
+  c.identified = t.flag_or("identified", c.identified);
+}
+
+}  // namespace
+
+flight::EscParams read_esc(const lua::Table& t) {
+  flight::EscParams e;
+  fw::esc::Calibration& c = e.calibration;
+  if (t.has("calibration")) read_constants(t.table("calibration"), c);
+  if (t.has("shunt")) e.shunt = read_shunt(t.table("shunt"));
+  c.mode = read_esc_mode(t, "mode").in_core;
+  const auto read = [&t](const char* key, Dimension dimension, float& value, lua::Range range) {
+    value = static_cast<float>(t.quantity_or(key, dimension, static_cast<double>(value), range));
+  };
+  read("max_current", Dimension::current, c.motor.max_current_A, lua::above(0.0));
+  read("brake_current", Dimension::current, c.motor.max_braking_A, lua::at_least(0.0));
+  read("arming_voltage", Dimension::voltage, c.arming_voltage_V, lua::at_least(0.0));
+  return e;
+}
+
+}  // namespace whirl::catalogue

@@ -1,0 +1,16 @@
+// A vehicle's ESCs as its file writes them: what the control core is told, and its current sensor.
+//
+//   esc = { mode = "thrust_by_rpm", max_current = "20 A", brake_current = "15 A",
+//           arming_voltage = "15.7 V", calibration = { file = "...", kt = 0.01005 }, shunt = { ... } }
+//   Calibration  names and SI numbers of the image's `set` (firmware/esc/core/parameters.hpp); a file
+//                is what a stand has found (kind = "esc_calibration"), and what stands beside it wins
+#pragma once
+#include "harness/flight/native_esc.hpp"
+#include "harness/lua/table.hpp"
+
+namespace whirl::catalogue {
+
+// Complaints stay with the table. Pole pairs are the motor's, not read here.
+flight::EscParams read_esc(const lua::Table& t);
+
+}  // namespace whirl::catalogue

@@ -1,0 +1,13 @@
+#include "harness/catalogue/kind.hpp"
+
+#include "harness/lua/table.hpp"
+
+namespace whirl::catalogue {
+
+Result<std::string> read_kind(const std::string& path) {
+  const auto file = lua::read_file(path);
+  if (!file) return file.error();
+  return file.value().text_or("kind", "");
+}
+
+}  // namespace whirl::catalogue

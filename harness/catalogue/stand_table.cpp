@@ -1,0 +1,69 @@
+#include "harness/catalogue/stand_table.hpp"
+
+#include "harness/catalogue/esc_mode.hpp"
+#include "harness/catalogue/feed.hpp"
+#include "harness/catalogue/motor.hpp"
+#include "harness/catalogue/propeller_file.hpp"
+#include "harness/catalogue/shunt.hpp"
+
+namespace whirl::catalogue {
+namespace {
+
+// Only what the plan has written goes to the board: the rest is the board's own.
+void read_stage_motor(const lua::Table& t, stand::StageParams& stage) {
+  const plant::MotorParams m = read_motor(t, MissingKeys::as_in_plant);
+  const auto pass = [&](const char* key, const char* name, double value) {
+    if (t.has(key)) stage[name] = value;
+  };
+  pass("kv_rpm_per_V", "torque_constant", m.torque_constant_NmpA);
+  pass("resistance", "resistance", m.resistance_ohm);
+  pass("resistance_fitted_at", "resistance", m.resistance_ohm);
+  pass("inductance", "inductance", m.inductance_H);
+  pass("no_load_current", "no_load_current", m.no_load_current_A);
+  pass("inertia", "inertia", m.inertia_kgm2);
+  if (t.flag_or("swap_wires", false)) stage["swap_wires"] = 1.0;
+  for (const char* key : {"winding_resistance", "pole_pairs"}) {
+    if (t.has(key)) t.refuse(key, "cannot differ on a stand", "only a vehicle's motor has its own");
+  }
+}
+
+void read_stage_shunt(const lua::Table& t, stand::StageParams& stage) {
+  const plant::CurrentShuntParams s = read_shunt(t);
+  const auto pass = [&](const char* key, const char* name, double value) {
+    if (t.has(key)) stage[name] = value;
+  };
+  pass("gain", "shunt.gain_error", s.gain_error);
+  pass("gain_tolerance", "shunt.gain", s.gain_tolerance);
+  pass("offset", "shunt.offset", s.offset_low_A);
+  pass("noise", "shunt.noise", s.noise_A);
+  pass("warm_up", "shunt.warm_up", s.warm_up_A);
+  pass("wander", "shunt.wander", s.wander_A);
+}
+
+double read_pulse_rate(const lua::Table& t) {
+  const bool pulses = t.has("throttle") && t.choice("throttle", {"i2c", "pwm"}) == "pwm";
+  if (!pulses) return 0.0;
+  return t.quantity_or("pulse_rate", Dimension::frequency, 50.0, lua::between(50.0, 400.0));
+}
+
+}  // namespace
+
+Result<stand::StandParams> read_stand(const lua::Table& t, const std::string& propellers) {
+  stand::StandParams p;
+  const std::string prop = t.text("prop");
+  p.battery = read_feed(t);
+  if (t.has("motor")) read_stage_motor(t.table("motor"), p.stage);
+  if (t.has("shunt")) read_stage_shunt(t.table("shunt"), p.stage);
+  if (t.has("mode")) p.mode = read_esc_mode(t, "mode").on_wire;
+  p.address = static_cast<std::uint8_t>(t.integer_or("address", p.address, 0x08, 0x77));
+  p.pulse_rate_Hz = read_pulse_rate(t);
+  p.i2c = static_cast<std::uint16_t>(t.integer_or("i2c", p.i2c, 1, 3));
+  p.serial = static_cast<std::uint16_t>(t.integer_or("serial", p.serial, 1, 8));
+  if (const auto good = t.finish(); !good) return good.error();
+  auto blade = read_propeller(propellers + "/" + prop + ".lua");
+  if (!blade) return blade.error();
+  p.blade = blade.value();
+  return p;
+}
+
+}  // namespace whirl::catalogue

@@ -1,0 +1,93 @@
+#include "harness/catalogue/vehicle_file.hpp"
+
+#include "harness/catalogue/esc_setup.hpp"
+#include "harness/catalogue/feed.hpp"
+#include "harness/catalogue/motor.hpp"
+#include "harness/catalogue/propeller_file.hpp"
+#include "harness/lua/table.hpp"
+
+namespace whirl::catalogue {
+namespace {
+
+using lua::above;
+using lua::at_least;
+using lua::between;
+using lua::Table;
+
+void read_airframe(const Table& t, plant::AirframeParams& a) {
+  a.mass_kg = t.quantity("mass", Dimension::mass, above(0.0));
+  const auto inertia = t.quantities("inertia", Dimension::inertia, above(0.0));
+  if (inertia.size() != 3) {
+    t.refuse("inertia", "needs three values, about x, y and z");
+  } else {
+    a.inertia_kgm2 = {inertia[0], inertia[1], inertia[2]};
+  }
+  const double arm = t.quantity("arm", Dimension::length, above(0.0));
+  const double above_m = t.quantity_or("rotor_height", Dimension::length, 0.03);
+  // Motor 1 front, 2 right, 3 rear, 4 left; 1 and 3 counter-clockwise seen from above.
+  const Eigen::Vector3d at[] = {
+      {arm, 0, -above_m}, {0, arm, -above_m}, {-arm, 0, -above_m}, {0, -arm, -above_m}};
+  for (std::size_t i = 0; i < 4; ++i) {
+    a.rotors[i].p_BP_B_m = at[i];
+    a.rotors[i].spin = i % 2 == 0 ? +1 : -1;
+  }
+  a.parasitic_area_m2 = t.number_or("parasitic_area_m2", 0.0, at_least(0.0));
+  a.rotor_drag_spm = t.number_or("rotor_drag_s_per_m", 0.0, at_least(0.0));
+}
+
+void read_gear(const Table& t, plant::ContactParams& c) {
+  const double half = t.quantity("half_span", Dimension::length, above(0.0));
+  const double below = t.quantity("below", Dimension::length, above(0.0));
+  c.gear_B_m.clear();
+  for (const double x : {-half, half}) {
+    for (const double y : {-half, half}) c.gear_B_m.emplace_back(x, y, below);
+  }
+  c.foot_radius_m = t.quantity_or("foot_radius", Dimension::length, c.foot_radius_m, above(0.0));
+  c.restitution = t.number_or("restitution", c.restitution, between(0.0, 1.0));
+  c.friction = t.number_or("friction", c.friction, at_least(0.0));
+}
+
+void read_capture(const Table& t, flight::CaptureParams& c) {
+  c.rate_Hz = t.quantity_or("rate", Dimension::frequency, c.rate_Hz, between(0.1, 1000.0));
+  c.latency_ns = t.duration_ns_or("latency", c.latency_ns);
+  plant::MotionCaptureParams& cameras = c.cameras;
+  cameras.period_s =
+      1.0 / t.quantity_or("camera_rate", Dimension::frequency, 200.0, between(1.0, 1000.0));
+  cameras.position_noise_m =
+      t.quantity_or("position_noise", Dimension::length, cameras.position_noise_m, at_least(0.0));
+  cameras.attitude_noise_rad =
+      t.quantity_or("angle_noise", Dimension::angle, cameras.attitude_noise_rad, at_least(0.0));
+}
+
+}  // namespace
+
+Result<flight::FlightParams> read_vehicle(const std::string& path) {
+  const auto file = lua::read_file(path);
+  if (!file) return file.error();
+  const Table& t = file.value();
+  flight::FlightParams p;
+  std::ignore = t.choice("kind", {"vehicle"});
+  p.name = t.text("name");
+  read_airframe(t, p.vehicle.airframe);
+  read_gear(t.table("gear"), p.vehicle.airframe.contact);
+  p.vehicle.avionics_current_A = t.quantity_or("avionics_current", Dimension::current,
+                                               p.vehicle.avionics_current_A, at_least(0.0));
+  p.vehicle.motor = read_motor(t.table("motor"), MissingKeys::refused);
+  p.vehicle.battery = read_feed(t);
+  p.esc = read_esc(t.table("esc"));
+  p.esc.pole_pairs = p.vehicle.motor.pole_pairs;
+  if (t.has("capture")) read_capture(t.table("capture"), p.capture);
+  const std::string propeller = t.text("propeller");
+  if (const auto good = t.finish(); !good) return good.error();
+
+  auto blade = read_propeller(t.sibling(propeller));
+  if (!blade) return blade.error();
+  p.blade = blade.value();
+  for (plant::RotorMount& mount : p.vehicle.airframe.rotors) {
+    mount.radius_m = plant::radius_m(*p.blade);
+  }
+  if (const auto good = plant::validate(p.vehicle, path); !good) return good.error();
+  return p;
+}
+
+}  // namespace whirl::catalogue
