@@ -28,7 +28,7 @@ io_bridges/qemu/stm32    base/ io_bridges/protocols/ io_bridges/devices/ io_brid
 io_bridges/qemu/plugin   base/ io_bridges/
 io_bridges/qemu/board    base/ io_bridges/ plant/
 results                  base/ io_bridges/messages/ io_bridges/protocols/ results/
-harness                  base/ harness/
+harness                  base/ harness/catalogue/ harness/cli/ harness/flight/ harness/stand/ harness/target/
 harness/job              base/ harness/job/
 harness/lua              base/ harness/lua/
 harness/metrics          harness/metrics/
@@ -36,15 +36,15 @@ harness/world            base/ harness/world/ io_bridges/messages/
 harness/board            base/ harness/board/ harness/lua/
 harness/target           base/ harness/target/ io_bridges/
 harness/plan             base/ harness/board/ harness/lua/ harness/metrics/ harness/plan/ harness/world/ results/
-harness/executive        base/ harness/board/ harness/executive/ harness/lua/ harness/metrics/ harness/plan/ harness/target/ harness/world/ io_bridges/devices/faults.hpp io_bridges/messages/ results/
+harness/executive        base/ harness/board/ harness/executive/ harness/metrics/ harness/plan/ harness/target/ harness/world/ io_bridges/devices/faults.hpp io_bridges/messages/ results/
 harness/catalogue        base/ harness/calibrate/setup.hpp harness/catalogue/ harness/flight/ harness/lua/ harness/stand/ io_bridges/protocols/ plant/ firmware/esc/core/
-harness/flight           base/ harness/flight/ harness/lua/ harness/world/ io_bridges/messages/ io_bridges/protocols/ plant/ firmware/esc/core/
-harness/stand            base/ harness/lua/ harness/stand/ harness/world/ io_bridges/messages/ io_bridges/protocols/ plant/
+harness/flight           base/ harness/flight/ harness/world/ io_bridges/messages/ io_bridges/protocols/ plant/ firmware/esc/core/
+harness/stand            base/ harness/stand/ harness/world/ io_bridges/messages/ io_bridges/protocols/ plant/
 harness/sweep            base/ harness/flight/flight_params.hpp harness/sweep/ plant/ results/
 harness/timing           base/ harness/target/ harness/timing/
-harness/calibrate        base/ harness/calibrate/ harness/lua/ harness/target/ harness/world/ io_bridges/protocols/ results/ firmware/esc/core/
-harness/cli              base/ harness/ plant/validation/ results/
-harness/fuzz             base/ harness/ io_bridges/ plant/ results/
+harness/calibrate        base/ harness/calibrate/ harness/target/ harness/world/ io_bridges/protocols/ results/ firmware/esc/core/
+harness/cli              base/ harness/board/ harness/calibrate/ harness/catalogue/ harness/cli/ harness/executive/ harness/job/ harness/plan/ harness/sweep/ harness/target/ harness/timing/ harness/world/ plant/validation/ results/
+harness/fuzz             base/ harness/board/ harness/calibrate/ harness/catalogue/ harness/fuzz/ harness/plan/ io_bridges/ plant/ results/
 cmake                    cmake/
 cmake/mutate             cmake/mutate/
 firmware                 firmware/

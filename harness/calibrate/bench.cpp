@@ -1,9 +1,6 @@
 #include "harness/calibrate/bench.hpp"
 
-#include <sstream>
-
 #include "base/check.hpp"
-#include "harness/lua/table.hpp"
 
 namespace whirl::calibrate {
 namespace {
@@ -96,14 +93,12 @@ Result<Done> Bench::run(std::int64_t duration_ms) {
   return Done{};
 }
 
-Result<Done> Bench::command(const std::string& wish) {
-  const auto table = lua::read_text("return " + wish, "calibration");
-  if (!table) return table.error();
-  return world_.command(table.value(), now_ns_);
+Result<Done> Bench::silence() {
+  return world_.command(request::Silence{}, now_ns_);
 }
 
 Result<Done> Bench::type(const std::string& line) {
-  return command("{ line = \"" + line + "\" }");
+  return world_.command(request::Line{line}, now_ns_);
 }
 
 Result<std::string> Bench::ask(const std::string& line) {
@@ -128,11 +123,8 @@ Result<Done> Bench::must(const std::string& line) {
 }
 
 Result<Done> Bench::blow(double down_mps) {
-  std::ostringstream wish;
-  wish << "return { down = \"" << down_mps << " m/s\", edge = \"" << kFlow_ramp_s << " s\" }";
-  const auto table = lua::read_text(wish.str(), "calibration");
-  if (!table) return table.error();
-  if (auto good = world_.gust(table.value(), now_ns_); !good) return good;
+  const request::Wind wind{.down_mps = down_mps, .edge_s = kFlow_ramp_s};
+  if (auto good = world_.disturb(wind, now_ns_); !good) return good;
   return run(static_cast<std::int64_t>(1000.0 * kFlow_ramp_s));
 }
 

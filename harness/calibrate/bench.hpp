@@ -39,8 +39,7 @@ class Bench {
   Result<Done> type(const std::string& line);  // without waiting for its answer
   // The flow goes to this speed along a ramp and is waited for.
   Result<Done> blow(double down_mps);
-  // t:command of a plan: { silence = true }
-  Result<Done> command(const std::string& wish);
+  Result<Done> silence();  // no more set-points on the bus
 
   const Instruments& instruments() const { return read_; }
   std::int64_t now_ns() const { return now_ns_; }

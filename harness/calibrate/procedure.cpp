@@ -87,7 +87,7 @@ class Procedure {
   Result<Done> power_up() {
     tell_("powering up");
     if (auto good = bench_.run(kBoot_ms); !good) return good;
-    if (auto good = bench_.command("{ silence = true }"); !good) return good;
+    if (auto good = bench_.silence(); !good) return good;
     if (auto good = bench_.must("watch 0"); !good) return good;
     for (const char* line : {"set gain 1", "set offset 0"}) {  // whatever its flash may hold
       if (auto good = bench_.must(line); !good) return good;

@@ -4,7 +4,6 @@
 #include <cstdio>
 
 #include "base/check.hpp"
-#include "harness/lua/table.hpp"
 
 namespace whirl::flight {
 namespace {
@@ -17,6 +16,10 @@ const Eigen::Vector3d kMagneticField_W_T(23.0e-6, 5.1e-6, -52.9e-6);
 
 void copy(const Eigen::Vector3d& from, double (&to)[3]) {
   for (int i = 0; i < 3; ++i) to[i] = from[i];
+}
+
+Error refusal(const char* key, const char* what, const char* cure = "") {
+  return {ErrorKind::bad_input, key, what, cure};
 }
 
 int motor_of(const FaultSpec& fault) {  // "esc2": 2; 0: not named so
@@ -106,70 +109,72 @@ void FlightWorld::tell(std::int64_t t_ns, io::Batch& sensed) {
 
 // ---- What a plan may ask
 
-Result<Done> FlightWorld::command(const lua::Table& wish, std::int64_t /*now_ns*/) {
-  if (wish.has("arm")) {
-    const bool arm = wish.flag_or("arm", true);
-    if (!arm) station_.set_target(std::nullopt);
-    station_.command(kArmDisarm, {arm ? 1.0f : 0.0f});
-  }
-  if (wish.has("takeoff")) {
-    const double height_m = wish.quantity("takeoff", Dimension::length, lua::above(0.0));
-    if (height_m > 0.0) command_takeoff(height_m);
-  }
-  if (wish.has("position") || wish.has("yaw")) command_target(wish);
-  if (wish.has("land") && wish.flag_or("land", true)) {
-    station_.set_target(std::nullopt);
-    station_.command(kLand, {});
-  }
-  return wish.finish();
+Result<Done> FlightWorld::command(const Command& command, std::int64_t /*now_ns*/) {
+  return std::visit(
+      Match{[this](const request::Arm& c) -> Result<Done> { return arm(c), Done{}; },
+            [this](const request::TakeOff& c) -> Result<Done> { return take_off(c), Done{}; },
+            [this](const request::GoTo& c) -> Result<Done> { return go_to(c), Done{}; },
+            [this](const request::Land&) -> Result<Done> { return land(), Done{}; },
+            [&](const auto&) -> Result<Done> { return not_understood("a flight", word(command)); }},
+      command);
 }
 
-void FlightWorld::command_takeoff(double height_m) {
+void FlightWorld::arm(const request::Arm& command) {
+  if (!command.arm) station_.set_target(std::nullopt);
+  station_.command(kArmDisarm, {command.arm ? 1.0f : 0.0f});
+}
+
+void FlightWorld::take_off(const request::TakeOff& command) {
   const plant::VehicleState& s = vehicle_.state();
   station_.set_target(
-      Target{{s.p_WB_W_m.x(), s.p_WB_W_m.y(), -height_m}, roll_pitch_yaw_rad(s.q_WB).z()});
-  station_.command(kTakeoff, {0, 0, 0, 0, 0, 0, static_cast<float>(height_m)});
+      Target{{s.p_WB_W_m.x(), s.p_WB_W_m.y(), -command.height_m}, roll_pitch_yaw_rad(s.q_WB).z()});
+  station_.command(kTakeoff, {0, 0, 0, 0, 0, 0, static_cast<float>(command.height_m)});
 }
 
-void FlightWorld::command_target(const lua::Table& wish) {
+void FlightWorld::land() {
+  station_.set_target(std::nullopt);
+  station_.command(kLand, {});
+}
+
+void FlightWorld::go_to(const request::GoTo& command) {
   Target target = station_.target().value_or(Target{vehicle_.state().p_WB_W_m, 0.0});
-  target.yaw_rad = wish.quantity_or("yaw", Dimension::angle, target.yaw_rad);
-  if (wish.has("position")) {
-    const lua::Table p = wish.table("position");
-    target.p_W_m = {p.quantity_or("north", Dimension::length, target.p_W_m.x()),
-                    p.quantity_or("east", Dimension::length, target.p_W_m.y()),
-                    -p.quantity_or("height", Dimension::length, -target.p_W_m.z())};
-  }
-  if (!wish.has("speed")) return station_.set_target(target);
-  station_.move_target(target, wish.quantity("speed", Dimension::speed, lua::above(0.0)));
+  target.yaw_rad = command.yaw_rad.value_or(target.yaw_rad);
+  target.p_W_m = {command.north_m.value_or(target.p_W_m.x()),
+                  command.east_m.value_or(target.p_W_m.y()),
+                  -command.height_m.value_or(-target.p_W_m.z())};
+  if (!command.speed_mps) return station_.set_target(target);
+  station_.move_target(target, *command.speed_mps);
 }
 
-Result<Done> FlightWorld::add_jet(const lua::Table& wish) {
-  const lua::Table t = wish.table("jet");
+Result<Done> FlightWorld::disturb(const Disturbance& disturbance, std::int64_t now_ns) {
+  if (const auto* jet = std::get_if<request::Jet>(&disturbance)) return add_jet(*jet);
+  return blow(std::get<request::Wind>(disturbance), now_ns);
+}
+
+Result<Done> FlightWorld::add_jet(const request::Jet& wanted) {
   plant::Jet jet;
-  jet.upward_mps = t.quantity("up", Dimension::speed);
-  jet.north_m = t.quantity_or("north", Dimension::length, 0.0);
-  jet.east_m = t.quantity_or("east", Dimension::length, 0.0);
-  jet.radius_m = t.quantity("radius", Dimension::length, lua::above(0.0));
-  jet.edge_m = t.quantity_or("edge", Dimension::length, jet.edge_m, lua::above(0.0));
-  if (jet.edge_m > 2.0 * jet.radius_m) t.refuse("edge", "wider than the jet itself");
-  if (auto good = wish.finish(); !good) return good;
+  jet.upward_mps = wanted.up_mps;
+  jet.north_m = wanted.north_m;
+  jet.east_m = wanted.east_m;
+  jet.radius_m = wanted.radius_m;
+  jet.edge_m = wanted.edge_m.value_or(jet.edge_m);
+  if (jet.edge_m > 2.0 * jet.radius_m) return refusal("jet.edge", "wider than the jet itself");
   vehicle_.add_jet(jet);
   return Done{};
 }
 
-Result<Done> FlightWorld::gust(const lua::Table& wish, std::int64_t now_ns) {
-  if (wish.has("jet")) return add_jet(wish);
+Result<Done> FlightWorld::blow(const request::Wind& wind, std::int64_t now_ns) {
+  if (!wind.duration_s) return refusal("duration", "is missing: a time is wanted");
+  if (!(*wind.duration_s > 0.0)) return refusal("duration", "must be positive");
   plant::GustWindow gust;
-  gust.wind_W_mps = {wish.quantity_or("north", Dimension::speed, 0.0),
-                     wish.quantity_or("east", Dimension::speed, 0.0),
-                     wish.quantity_or("down", Dimension::speed, 0.0)};
-  gust.duration_s = wish.quantity("duration", Dimension::time, lua::above(0.0));
-  gust.edge_s = wish.quantity_or("edge", Dimension::time, gust.edge_s, lua::at_least(0.0));
-  gust.start_s = static_cast<double>(now_ns) * 1e-9 +
-                 wish.quantity_or("after", Dimension::time, 0.0, lua::at_least(0.0));
-  if (gust.wind_W_mps.isZero()) wish.refuse("north", "a gust needs wind", "north, east or down");
-  if (auto good = wish.finish(); !good) return good;
+  gust.wind_W_mps = {wind.north_mps.value_or(0.0), wind.east_mps.value_or(0.0),
+                     wind.down_mps.value_or(0.0)};
+  if (gust.wind_W_mps.isZero()) {
+    return refusal("north", "a gust needs wind", "north, east or down");
+  }
+  gust.duration_s = *wind.duration_s;
+  gust.edge_s = wind.edge_s.value_or(gust.edge_s);
+  gust.start_s = static_cast<double>(now_ns) * 1e-9 + wind.after_s.value_or(0.0);
   vehicle_.add_gust(gust);
   return Done{};
 }

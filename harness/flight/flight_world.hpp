@@ -2,15 +2,9 @@
 //
 //   Step     ESCs and station take what the target did; then everything moves 1 ms; then what is
 //            sensed goes out: body_motion, esc_state of each motor, uart_frame to the radio
-//   Command  t:command { arm = true } { takeoff = "1.1 m" } { land = true }
-//            { position = { north = "1 m", east = "0 m", height = "1.1 m" }, yaw = "0 deg" };
-//            with speed = "0.3 m/s" the streamed target goes there straight at this speed
-//            Take-off also streams the point above where the vehicle stands as its target; land
-//            and disarm end the stream.
-//   Gust     t:gust { north = "0 m/s", east = "2 m/s", down = "0 m/s", duration = "1 s",
-//            edge = "50 ms", after = "0 s" }: where the air goes to;
-//            t:gust { jet = { up = "3.5 m/s", north = "0 m", east = "0 m", radius = "35 cm",
-//            edge = "10 cm" } }: a round vertical stream, from now on
+//   Command  Arm, TakeOff, GoTo, Land. Take-off also streams the point above where the vehicle stands
+//            as its target; land and disarm end the stream
+//   Air      Wind with a duration, Jet
 //   Faults   capture_lost; supply_dip (value: volts below); esc_stopped (device "esc2")
 #pragma once
 #include <array>
@@ -39,8 +33,8 @@ class FlightWorld : public World {
   const std::vector<Signal>& signals() const override { return signals_; }
   void read(std::span<double> values) const override;
   void step(std::int64_t t_ns, const io::Batch& happened, io::Batch& sensed) override;
-  Result<Done> command(const lua::Table& wish, std::int64_t now_ns) override;
-  Result<Done> gust(const lua::Table& wish, std::int64_t now_ns) override;
+  Result<Done> command(const Command& command, std::int64_t now_ns) override;
+  Result<Done> disturb(const Disturbance& disturbance, std::int64_t now_ns) override;
   std::int64_t command_on_wire_ns() const override { return station_.on_wire_ns(); }
   bool take_fault(const FaultSpec& fault) override;
   std::vector<std::uint32_t> applied_faults() const override;
@@ -63,9 +57,12 @@ class FlightWorld : public World {
   void name_signals();
   void name_motor_signals();
   void name_telemetry_signals();
-  void command_takeoff(double height_m);
-  void command_target(const lua::Table& wish);
-  Result<Done> add_jet(const lua::Table& wish);
+  void arm(const request::Arm& command);
+  void take_off(const request::TakeOff& command);
+  void go_to(const request::GoTo& command);
+  void land();
+  Result<Done> blow(const request::Wind& wind, std::int64_t now_ns);
+  Result<Done> add_jet(const request::Jet& wanted);
   double offset_from_target_m() const;
 
   plant::Vehicle vehicle_;

@@ -3,27 +3,26 @@
 
 #include "harness/plan/bus_name.hpp"
 #include "harness/plan/raise.hpp"
+#include "harness/plan/requests.hpp"
 #include "harness/plan/values.hpp"
 
 namespace whirl::plan {
 namespace {
 
-int command(lua_State* L) {
-  Script& self = Script::of(L);
-  const lua::Table wish = check_table(L, 2);
-  if (auto done = self.stage().world.command(wish, self.stage().now_ns); !done) {
-    raise(L, done.error());
-  }
-  check_finish(L, wish);
+// What t:command and t:gust share: the table goes to the world, or the plan's line to the complaint.
+int pass_on(lua_State* L, Result<Done> (*to_world)(World&, const lua::Table&, std::int64_t)) {
+  const Stage& stage = Script::of(L).stage();
+  const lua::Table table = check_table(L, 2);
+  if (auto done = to_world(stage.world, table, stage.now_ns); !done) raise(L, done.error());
   return 0;
 }
 
+int command(lua_State* L) {
+  return pass_on(L, plan::command);
+}
+
 int gust(lua_State* L) {
-  Script& self = Script::of(L);
-  const lua::Table wish = check_table(L, 2);
-  if (auto done = self.stage().world.gust(wish, self.stage().now_ns); !done) raise(L, done.error());
-  check_finish(L, wish);
-  return 0;
+  return pass_on(L, disturb);
 }
 
 int named_bus(lua_State* L, const std::string& bus) {

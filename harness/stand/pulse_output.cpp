@@ -14,20 +14,6 @@ std::int64_t period_ns(double rate_Hz) {
 
 }  // namespace
 
-io::PulseTrain read_pulses(const lua::Table& wish) {
-  io::PulseTrain train;
-  train.width_ns = wish.duration_ns("width");
-  train.period_ns =
-      period_ns(wish.quantity_or("rate", Dimension::frequency, 50.0, lua::between(1.0, 2000.0)));
-  train.glitch_ns = wish.duration_ns_or("glitch", 0);
-  train.glitch_after_ns = wish.duration_ns_or("glitch_after", 0);
-  if (train.width_ns >= train.period_ns) wish.refuse("width", "longer than the period");
-  if (train.glitch_ns + train.glitch_after_ns >= train.period_ns) {
-    wish.refuse("glitch_after", "beyond the period");
-  }
-  return train;
-}
-
 void PulseOutput::follow(std::uint16_t v, bool silent, double rate_Hz) {
   const std::int32_t wanted = silent ? -1 : v;
   if (wanted == followed_) return;
@@ -40,8 +26,12 @@ void PulseOutput::follow(std::uint16_t v, bool silent, double rate_Hz) {
   fresh_ = true;
 }
 
-void PulseOutput::set(const io::PulseTrain& train) {
-  train_ = train;
+void PulseOutput::set(const request::Pulses& pulses) {
+  train_ = {};
+  train_.width_ns = pulses.width_ns;
+  train_.period_ns = pulses.period_ns;
+  train_.glitch_ns = pulses.glitch_ns;
+  train_.glitch_after_ns = pulses.glitch_after_ns;
   fresh_ = true;
 }
 

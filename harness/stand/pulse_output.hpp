@@ -5,21 +5,17 @@
 #pragma once
 #include <cstdint>
 
-#include "base/result.hpp"
-#include "harness/lua/table.hpp"
+#include "harness/world/request.hpp"
 #include "io_bridges/messages/messages.hpp"
 
 namespace whirl::stand {
-
-// { width = "1500 us", rate = "50 Hz", glitch = "50 us", glitch_after = "600 us" }
-io::PulseTrain read_pulses(const lua::Table& wish);
 
 class PulseOutput {
  public:
   explicit PulseOutput(std::uint16_t motor) : motor_(motor) {}
 
   void follow(std::uint16_t v, bool silent, double rate_Hz);
-  void set(const io::PulseTrain& train);
+  void set(const request::Pulses& pulses);
   void send(std::int64_t t_ns, io::Batch& sensed);
 
  private:

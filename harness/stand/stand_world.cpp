@@ -1,54 +1,51 @@
 #include "harness/stand/stand_world.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdio>
-#include <sstream>
 
 #include "base/check.hpp"
 #include "base/rpm.hpp"
-#include "harness/lua/table.hpp"
 
 namespace whirl::stand {
 namespace {
 
 constexpr double kStep_s = 1e-3;
 constexpr std::int64_t kStep_ns = 1'000'000;
+constexpr double kMost_flow_mps = 20.0;
 constexpr double kSlow_radps = 20.0;  // below, loads go with the square of speed
 
-struct Wish {
-  const char* key;
-  Dimension dimension;
-  double to_unit;  // of the mode's range on the wire
+// Which set-points mean something in which mode, and how the mode counts them on the wire.
+struct Scale {
+  request::SetPointKind kind;
+  double to_unit;
   std::initializer_list<io::EscMode> modes;
 };
-const Wish kWishes[] = {
-    {"duty", Dimension::ratio, 100.0, {io::EscMode::duty}},
-    {"speed", Dimension::angular_rate, kRpm_per_radps, {io::EscMode::rpm}},
-    {"thrust", Dimension::force, 1.0, {io::EscMode::thrust_by_rpm, io::EscMode::thrust_by_power}},
-    {"power", Dimension::power, 1.0, {io::EscMode::power}},
+const Scale kScales[] = {
+    {request::SetPointKind::duty, 100.0, {io::EscMode::duty}},
+    {request::SetPointKind::speed, kRpm_per_radps, {io::EscMode::rpm}},
+    {request::SetPointKind::thrust,
+     1.0,
+     {io::EscMode::thrust_by_rpm, io::EscMode::thrust_by_power}},
+    {request::SetPointKind::power, 1.0, {io::EscMode::power}},
 };
 
-// { bytes = "5A 03 C1", read = 6, times = 10, every = "20 ms", shift = "7 us" }
-Throttle::Raw read_raw(const lua::Table& wish) {
+Throttle::Raw raw_of(const request::RawTransfer& wanted) {
   Throttle::Raw raw;
-  std::istringstream words(wish.text_or("bytes", ""));
-  for (std::string word; words >> word;) {
-    unsigned byte = 0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), byte, 16);
-    if (error != std::errc{} || end != word.data() + word.size() || byte > 0xFF) {
-      wish.refuse("bytes", "'" + word + "' is no byte", "write them as \"5A 03 C1\"");
-    }
-    raw.write.push_back(static_cast<std::uint8_t>(byte));
-  }
-  raw.read = static_cast<std::uint16_t>(wish.integer_or("read", 0, 0, 255));
-  raw.times = wish.integer_or("times", 1, 1, 1'000'000);
-  raw.every_ns = std::max(kStep_ns, wish.duration_ns_or("every", kStep_ns) / kStep_ns * kStep_ns);
-  raw.shift_ns = wish.duration_ns_or("shift", 0);
-  if (raw.write.empty() && raw.read == 0)
-    wish.refuse("bytes", "nothing to write and nothing to read");
+  raw.write = wanted.write;
+  raw.read = wanted.read;
+  raw.times = wanted.times;
+  raw.every_ns = std::max(kStep_ns, wanted.every_ns / kStep_ns * kStep_ns);
+  raw.shift_ns = wanted.shift_ns;
   return raw;
+}
+
+std::int64_t ns_of(double seconds) {
+  return std::llround(seconds * 1e9);
+}
+
+Error refusal(const char* key, const std::string& what, const char* cure = "") {
+  return {ErrorKind::bad_input, key, what, cure};
 }
 
 }  // namespace
@@ -144,43 +141,57 @@ void StandWorld::tell(std::int64_t t_ns, io::Batch& sensed) {
 
 // ---- What a plan may ask
 
-Result<Done> StandWorld::command(const lua::Table& wish, std::int64_t /*now_ns*/) {
-  for (const Wish& w : kWishes) {
-    if (!wish.has(w.key)) continue;
-    const double value = wish.quantity(w.key, w.dimension, lua::at_least(0.0)) * w.to_unit;
-    if (std::find(w.modes.begin(), w.modes.end(), params_.mode) == w.modes.end()) {
-      wish.refuse(w.key, "the stand's mode is another one", "stand = { mode = ... }");
-    } else {
-      throttle_.set(io::setpoint_of_value(params_.mode, value));
-    }
+Result<Done> StandWorld::command(const Command& command, std::int64_t /*now_ns*/) {
+  return std::visit(
+      Match{[this](const request::SetPoint& c) { return set(c); },
+            [this](const request::Stop&) -> Result<Done> { return throttle_.set(0), Done{}; },
+            [this](const request::Silence& c) -> Result<Done> {
+              return throttle_.silence(c.silent), Done{};
+            },
+            [this](const request::SetPointRate& c) -> Result<Done> {
+              return throttle_.set_rate(c.rate_Hz), Done{};
+            },
+            [this](const request::RawTransfer& c) -> Result<Done> {
+              return throttle_.send_raw(raw_of(c)), Done{};
+            },
+            [this](const request::Pulses& c) -> Result<Done> { return pulses_.set(c), Done{}; },
+            [this](const request::Line& c) -> Result<Done> { return line_.say(c.text), Done{}; },
+            [this](const request::Brake& c) -> Result<Done> {
+              brake_Nm_ = c.torque_Nm;
+              return Done{};
+            },
+            [&](const auto&) -> Result<Done> { return not_understood("a stand", word(command)); }},
+      command);
+}
+
+Result<Done> StandWorld::set(const request::SetPoint& command) {
+  for (const Scale& scale : kScales) {
+    if (scale.kind != command.kind) continue;
+    if (std::find(scale.modes.begin(), scale.modes.end(), params_.mode) == scale.modes.end()) break;
+    throttle_.set(io::setpoint_of_value(params_.mode, command.value_SI * scale.to_unit));
+    return Done{};
   }
-  if (wish.has("stop") && wish.flag_or("stop", true)) throttle_.set(0);
-  if (wish.has("silence")) throttle_.silence(wish.flag_or("silence", true));
-  if (wish.has("i2c_raw")) throttle_.send_raw(read_raw(wish.table("i2c_raw")));
-  if (wish.has("setpoint_rate")) {
-    throttle_.set_rate(
-        wish.quantity("setpoint_rate", Dimension::frequency, lua::between(1.0, 10e3)));
-  }
-  if (wish.has("pulses")) pulses_.set(read_pulses(wish.table("pulses")));
-  if (wish.has("line")) line_.say(wish.text("line"));
-  if (wish.has("brake")) {
-    brake_Nm_ = wish.quantity("brake", Dimension::torque, lua::between(0.0, 10.0));
-  }
-  return wish.finish();
+  return refusal(word(command), "the stand's mode is another one", "stand = { mode = ... }");
 }
 
 void StandWorld::blow(double to_mps, std::int64_t start_ns, std::int64_t edge_ns) {
   flow_ = {flow_.at(start_ns), to_mps, start_ns, edge_ns};
 }
 
-Result<Done> StandWorld::gust(const lua::Table& wish, std::int64_t now_ns) {
-  const double down_mps = wish.quantity("down", Dimension::speed, lua::between(-20.0, 20.0));
-  const std::int64_t edge_ns = wish.duration_ns_or("edge", 300 * kStep_ns);
-  const bool ends = wish.has("duration");
-  const std::int64_t duration_ns = wish.duration_ns_or("duration", 0);
-  if (auto good = wish.finish(); !good) return good;
-  blow(down_mps, now_ns, edge_ns);
-  calm_from_ns_ = ends ? now_ns + duration_ns : INT64_MAX;
+Result<Done> StandWorld::disturb(const Disturbance& disturbance, std::int64_t now_ns) {
+  const auto* wind = std::get_if<request::Wind>(&disturbance);
+  if (wind == nullptr) return not_understood("a stand", word(disturbance));
+  for (const auto& [key, value] : {std::pair{"north", wind->north_mps}, {"east", wind->east_mps}}) {
+    if (value) return refusal(key, "the stand's flow goes along the shaft only", "down");
+  }
+  if (wind->after_s) return not_understood("a stand", "after");
+  if (!wind->down_mps) return refusal("down", "is missing: a speed is wanted");
+  if (!(std::abs(*wind->down_mps) <= kMost_flow_mps)) {
+    return refusal("down", "must be at least -20 at most 20 (SI)");
+  }
+  const std::int64_t edge_ns = wind->edge_s ? ns_of(*wind->edge_s) : 300 * kStep_ns;
+  blow(*wind->down_mps, now_ns, edge_ns);
+  calm_from_ns_ = wind->duration_s ? now_ns + ns_of(*wind->duration_s) : INT64_MAX;
   calm_edge_ns_ = edge_ns;
   return Done{};
 }

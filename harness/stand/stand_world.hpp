@@ -3,15 +3,10 @@
 //
 //   Step     takes speed and charge of the last millisecond, moves the rotor's inflow and the
 //            supply by it, tells the torque coefficient, the supply and what goes over the bus
-//   Command  t:command { thrust = "2 N" } { duty = "20 %" } { speed = "3500 rpm" }
-//            { power = "12 W" } over I2C in the ESC's mode (StandParams::mode); { stop = true };
-//            { silence = true }: no more set-points; { line = "status" }: over the serial line;
-//            { i2c_raw = { bytes = "5A 03 C1", read = 6, times = 10, every = "20 ms", shift = "7 us" } }:
-//            as it stands, each time 7 us later in its millisecond;
-//            { pulses = { width = "1500 us", rate = "50 Hz", glitch = "50 us", glitch_after = "600 us" } }
-//            on the throttle pin;
-//            { brake = "0.5 N m" }: holds the shaft, "0 N m" lets go
-//   Gust     t:gust { down = "2 m/s", edge = "300 ms" [, duration = "5 s"] }: the flow generator
+//   Command  SetPoint over I2C in the ESC's mode (StandParams::mode), Stop, Silence, SetPointRate;
+//            Line on the serial line; RawTransfer, each time shifted in its millisecond; Pulses on the
+//            throttle pin; Brake
+//   Air      Wind down the shaft, the flow generator's; without a duration for ever
 //   Faults   supply_dip (value: volts below)
 //   Left out warm windings, the flow's own turbulence
 #pragma once
@@ -38,8 +33,8 @@ class StandWorld : public World {
   const std::vector<Signal>& signals() const override { return signals_; }
   void read(std::span<double> values) const override;
   void step(std::int64_t t_ns, const io::Batch& happened, io::Batch& sensed) override;
-  Result<Done> command(const lua::Table& wish, std::int64_t now_ns) override;
-  Result<Done> gust(const lua::Table& wish, std::int64_t now_ns) override;
+  Result<Done> command(const Command& command, std::int64_t now_ns) override;
+  Result<Done> disturb(const Disturbance& disturbance, std::int64_t now_ns) override;
   std::int64_t command_on_wire_ns() const override { return throttle_.on_wire_ns(); }
   bool take_fault(const FaultSpec& fault) override;
   std::vector<std::uint32_t> applied_faults() const override;
@@ -61,6 +56,7 @@ class StandWorld : public World {
   void take(const io::Batch& happened);
   void move(std::int64_t t_ns);
   void tell(std::int64_t t_ns, io::Batch& sensed);
+  Result<Done> set(const request::SetPoint& command);
   void blow(double to_mps, std::int64_t start_ns, std::int64_t edge_ns);
   void add_signal(std::string name, Dimension dimension, std::string about,
                   std::function<double()> value);

@@ -8,7 +8,6 @@
 #include <fstream>
 
 #include "base/interruption.hpp"
-#include "harness/lua/table.hpp"
 #include "io_bridges/devices/faults.hpp"
 #include "results/folder.hpp"
 
@@ -117,21 +116,27 @@ class FakeWorld final : public World {
   }
   void step(std::int64_t t_ns, const io::Batch&, io::Batch& sensed) override {
     if (t_ns > 0) {
-      height_m_ += (height_wish_m_ - height_m_) * -std::expm1(-0.001 / 0.2);
-      thrust_N_ += (thrust_wish_N_ - thrust_N_) * -std::expm1(-0.001 / 0.05);
+      height_m_ += (commanded_height_m_ - height_m_) * -std::expm1(-0.001 / 0.2);
+      thrust_N_ += (commanded_thrust_N_ - thrust_N_) * -std::expm1(-0.001 / 0.05);
       east_m_ += t_ns < gust_end_ns_ ? 0.0003 : -east_m_ * -std::expm1(-0.001 / 0.5);
     }
     sensed.add(io::Kind::body_motion, 0, t_ns, io::BodyMotion{});
   }
-  Result<Done> command(const lua::Table& wish, std::int64_t now_ns) override {
+  Result<Done> command(const Command& command, std::int64_t now_ns) override {
     wire_ns_ = now_ns + 300 * kUs;
-    if (wish.has("takeoff")) height_wish_m_ = wish.quantity("takeoff", Dimension::length);
-    if (wish.has("thrust")) thrust_wish_N_ = wish.quantity("thrust", Dimension::force);
-    return wish.finish();
+    if (const auto* up = std::get_if<request::TakeOff>(&command)) {
+      commanded_height_m_ = up->height_m;
+    } else if (const auto* set = std::get_if<request::SetPoint>(&command)) {
+      commanded_thrust_N_ = set->value_SI;
+    } else {
+      return not_understood("a fake", word(command));
+    }
+    return Done{};
   }
-  Result<Done> gust(const lua::Table& wish, std::int64_t now_ns) override {
-    gust_end_ns_ = now_ns + wish.duration_ns("duration");
-    return wish.finish();
+  Result<Done> disturb(const Disturbance& disturbance, std::int64_t now_ns) override {
+    gust_end_ns_ =
+        now_ns + std::llround(1e9 * std::get<request::Wind>(disturbance).duration_s.value());
+    return Done{};
   }
   bool take_fault(const FaultSpec& fault) override {
     if (fault.kind != "mocap_lost") return false;
@@ -147,7 +152,8 @@ class FakeWorld final : public World {
                                {"east", Dimension::length, ""},
                                {"thrust", Dimension::force, ""},
                                {"tilt", Dimension::angle, ""}};
-  double height_m_ = 0, height_wish_m_ = 0, east_m_ = 0, thrust_N_ = 2.0, thrust_wish_N_ = 2.0;
+  double height_m_ = 0, commanded_height_m_ = 0, east_m_ = 0, thrust_N_ = 2.0,
+         commanded_thrust_N_ = 2.0;
   std::int64_t gust_end_ns_ = 0, wire_ns_ = -1;
   std::vector<std::uint32_t> applied_;
 };

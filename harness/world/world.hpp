@@ -4,8 +4,7 @@
 //            call is step(0), which only fills `sensed`. Steps are 1 ms. No clock, no thread, no file.
 //   Signals  truth by name, in SI, read after each step. Names are lower case without the unit
 //            ("height", "tilt", "thrust_1"); logs append the unit of the dimension ("height_m").
-//   Input    command, disturb and fault come from the plan; what they do not understand they refuse
-//            through the Table (so the complaint carries the plan's line), by calling finish().
+//   Input    commands, disturbances (request.hpp) and faults; what it does not understand it refuses
 #pragma once
 #include <cstdint>
 #include <span>
@@ -14,11 +13,8 @@
 
 #include "base/result.hpp"
 #include "base/units.hpp"
+#include "harness/world/request.hpp"
 #include "io_bridges/messages/messages.hpp"
-
-namespace whirl::lua {
-class Table;
-}
 
 namespace whirl {
 
@@ -50,9 +46,10 @@ class World {
 
   virtual void step(std::int64_t t_ns, const io::Batch& happened, io::Batch& sensed) = 0;
 
-  // t:command { ... } and t:gust { ... } at now_ns.
-  virtual Result<Done> command(const lua::Table& wish, std::int64_t now_ns) = 0;
-  virtual Result<Done> gust(const lua::Table& wish, std::int64_t now_ns) = 0;
+  // At now_ns. Errors  bad_input, the place being the key that it is about: not understood, or out of
+  //                    the range of this world
+  virtual Result<Done> command(const Command& command, std::int64_t now_ns) = 0;
+  virtual Result<Done> disturb(const Disturbance& disturbance, std::int64_t now_ns) = 0;
 
   // Text lines for t:ask: one to the firmware, and all that came from it so far.
   // Errors  bad_input: no such line here; the question before is not answered yet, and its late answer

@@ -11,6 +11,7 @@
 #include "harness/catalogue/vehicle_file.hpp"
 #include "harness/flight/tests/paths.hpp"
 #include "harness/lua/table.hpp"
+#include "harness/plan/requests.hpp"
 #include "io_bridges/protocols/esc_codec.hpp"
 
 namespace whirl::flight {
@@ -25,7 +26,7 @@ FlightParams hp_quad_file() {
   return params.value();
 }
 
-lua::Table wish(const std::string& text) {
+lua::Table table(const std::string& text) {
   return lua::read_text("return " + text, "plan.lua").value();
 }
 
@@ -124,7 +125,8 @@ TEST(FlightWorld, AGustPushesItDownwind) {
   flight.height_m = 1.1;
   flight.run(8.0);
   const double before_m = flight.value("east");
-  ASSERT_TRUE(flight.world.gust(wish("{ east = '2 m/s', duration = '1 s' }"), flight.t_ns).ok());
+  ASSERT_TRUE(
+      plan::disturb(flight.world, table("{ east = '2 m/s', duration = '1 s' }"), flight.t_ns).ok());
   flight.run(0.5);
   EXPECT_TRUE(near(flight.value("wind_east"), 2.0, round_off(4, 2)));
   flight.run(0.5);
@@ -152,8 +154,8 @@ TEST(FlightWorld, TellsTheBoardWhatItFeels) {
 
 TEST(FlightWorld, SendsPosesAndCommandsOverTheRadio) {
   Flight flight;
-  ASSERT_TRUE(flight.world.command(wish("{ arm = true }"), 0).ok());
-  ASSERT_TRUE(flight.world.command(wish("{ takeoff = '1.1 m' }"), 0).ok());
+  ASSERT_TRUE(plan::command(flight.world, table("{ arm = true }"), 0).ok());
+  ASSERT_TRUE(plan::command(flight.world, table("{ takeoff = '1.1 m' }"), 0).ok());
   int poses = 0, commands = 0, targets = 0;
   io::MavlinkParser parser([&](const io::MavlinkFrame& frame, std::span<const std::uint8_t>) {
     poses += frame.msgid == 104 ? 1 : 0;
@@ -176,12 +178,14 @@ TEST(FlightWorld, SendsPosesAndCommandsOverTheRadio) {
 TEST(FlightWorld, AJetBlowsWhereItIsAndNowhereElse) {
   Flight flight;
   flight.run(0.1);
-  ASSERT_TRUE(
-      flight.world.gust(wish("{ jet = { up = '3.5 m/s', radius = '35 cm', north = '2 m' } }"), 0)
-          .ok());
+  ASSERT_TRUE(plan::disturb(flight.world,
+                            table("{ jet = { up = '3.5 m/s', radius = '35 cm', north = '2 m' } }"),
+                            0)
+                  .ok());
   flight.run(0.1);
   EXPECT_EQ(flight.value("wind_down"), 0.0);  // 2 m away
-  ASSERT_TRUE(flight.world.gust(wish("{ jet = { up = '1 m/s', radius = '35 cm' } }"), 0).ok());
+  ASSERT_TRUE(
+      plan::disturb(flight.world, table("{ jet = { up = '1 m/s', radius = '35 cm' } }"), 0).ok());
   flight.run(0.1);
   EXPECT_TRUE(near(flight.value("wind_down"), -1.0, round_off(4, 1)));
 }
@@ -190,7 +194,8 @@ TEST(FlightWorld, TellsWhenACommandHasReachedTheVehiclesUart) {
   Flight flight;
   flight.run(0.1);
   EXPECT_LT(flight.world.command_on_wire_ns(), 0);
-  ASSERT_TRUE(flight.world.command(wish("{ position = { height = '1 m' } }"), flight.t_ns).ok());
+  ASSERT_TRUE(
+      plan::command(flight.world, table("{ position = { height = '1 m' } }"), flight.t_ns).ok());
   std::vector<std::uint8_t> carrier;
   for (int i = 0; i < 10 && carrier.empty(); ++i) {
     flight.step();
@@ -210,17 +215,32 @@ TEST(FlightWorld, TellsWhenACommandHasReachedTheVehiclesUart) {
   EXPECT_EQ(flight.world.command_on_wire_ns(), flight.t_ns + 123'456);
 }
 
-TEST(FlightWorld, RefusesWishesItDoesNotUnderstand) {
+TEST(FlightWorld, RefusesCommandsItDoesNotUnderstand) {
   Flight flight;
   for (const char* text : {"{ fly = true }", "{ takeoff = '1.1 kg' }", "{ takeoff = '-1 m' }",
                            "{ position = { north = '1 m' }, speed = '0 m/s' }"}) {
-    EXPECT_FALSE(flight.world.command(wish(text), 0).ok()) << text;
+    EXPECT_FALSE(plan::command(flight.world, table(text), 0).ok()) << text;
   }
   for (const char* text : {"{ jet = { up = '3 m/s' } }", "{ jet = { radius = '1 m' } }",
                            "{ jet = { up = '3 m/s', radius = '5 cm', edge = '20 cm' } }"}) {
-    EXPECT_FALSE(flight.world.gust(wish(text), 0).ok()) << text;
+    EXPECT_FALSE(plan::disturb(flight.world, table(text), 0).ok()) << text;
   }
-  EXPECT_FALSE(flight.world.gust(wish("{ duration = '1 s' }"), 0).ok());
+  EXPECT_FALSE(plan::disturb(flight.world, table("{ duration = '1 s' }"), 0).ok());
+}
+
+// What only a stand can do is no word of a flight; the key stands in the complaint.
+TEST(FlightWorld, WhatAStandDoesIsRefusedByItsKey) {
+  Flight flight;
+  const auto refusal = [&](const std::string& text) {
+    const auto done = plan::command(flight.world, table(text), 0);
+    return done ? "none" : done.error().message();
+  };
+  EXPECT_EQ(refusal("{ thrust = '2 N' }"), "plan.lua:1: thrust: means nothing to a flight");
+  EXPECT_EQ(refusal("{ brake = '1 N m' }"), "plan.lua:1: brake: means nothing to a flight");
+  EXPECT_EQ(refusal("{ line = 'status' }"), "plan.lua:1: line: means nothing to a flight");
+  const auto gust = plan::disturb(flight.world, table("{ duration = '0 s', east = '1 m/s' }"), 0);
+  ASSERT_FALSE(gust.ok());
+  EXPECT_EQ(gust.error().message(), "plan.lua:1: duration: must be positive");
 }
 
 TEST(FlightWorld, ItsFaultsActAndAreReportedOnlyThen) {

@@ -8,6 +8,7 @@
 
 #include "base/near.hpp"
 #include "harness/catalogue/stand_table.hpp"
+#include "harness/plan/requests.hpp"
 #include "harness/stand/stand_world.hpp"
 #include "plant/motor/motor_params.hpp"
 
@@ -17,7 +18,7 @@ namespace {
 constexpr std::int64_t kMs = 1'000'000;
 
 lua::Table table(const std::string& text) {
-  auto read = lua::read_text("return " + text, "wish.lua");
+  auto read = lua::read_text("return " + text, "plan.lua");
   EXPECT_TRUE(read.ok());
   return read.value();
 }
@@ -113,7 +114,7 @@ TEST(Stand, FloodsTheWireAsFastAsItIsTold) {
   Bench b;
   b.run_until(199 * kMs, 0.0);
   b.writes_ns.clear();
-  ASSERT_TRUE(b.world.command(table(R"({ setpoint_rate = "10 kHz" })"), b.t_ns).ok());
+  ASSERT_TRUE(plan::command(b.world, table(R"({ setpoint_rate = "10 kHz" })"), b.t_ns).ok());
   b.run_until(202 * kMs, 0.0);
   ASSERT_EQ(b.writes_ns.size(), 30u);  // those of the three steps that begin at 200, 201, 202 ms
   for (std::size_t i = 0; i < 30; ++i) {
@@ -136,7 +137,7 @@ TEST(Stand, CommandIsOnTheWireOnceItsOwnWriteWasAnswered) {
   Bench b;
   b.answers = true;
   b.run_until(200 * kMs, 0.0);
-  ASSERT_TRUE(b.world.command(table(R"({ thrust = "2 N" })"), b.t_ns).ok());
+  ASSERT_TRUE(plan::command(b.world, table(R"({ thrust = "2 N" })"), b.t_ns).ok());
   EXPECT_LT(b.world.command_on_wire_ns(), 0);
   b.run_until(218 * kMs, 0.0);
   EXPECT_LT(b.world.command_on_wire_ns(), 0);  // the next write is due at 220 ms
@@ -149,12 +150,12 @@ TEST(Stand, DowndraftTakesThrustAndUpdraftGivesIt) {
   b.run_until(1000 * kMs, 400.0);
   const double calm_N = b.signal("thrust");
   EXPECT_GT(calm_N, 1.0);
-  ASSERT_TRUE(b.world.gust(table(R"({ down = "3 m/s", edge = "100 ms" })"), b.t_ns).ok());
+  ASSERT_TRUE(plan::disturb(b.world, table(R"({ down = "3 m/s", edge = "100 ms" })"), b.t_ns).ok());
   b.run_until(1051 * kMs, 400.0);
   EXPECT_TRUE(near(b.signal("wind"), 1.5, stated(1e-9, "half of the ramp")));
   b.run_until(2000 * kMs, 400.0);
   EXPECT_LT(b.signal("thrust"), 0.85 * calm_N);
-  ASSERT_TRUE(b.world.gust(table(R"({ down = "-1 m/s" })"), b.t_ns).ok());
+  ASSERT_TRUE(plan::disturb(b.world, table(R"({ down = "-1 m/s" })"), b.t_ns).ok());
   b.run_until(4000 * kMs, 400.0);
   EXPECT_GT(b.signal("thrust"), calm_N);
 }
@@ -221,18 +222,18 @@ TEST(Stand, RawTransfersGoOutAsTheyStandAndMoveThroughTheirMillisecond) {
   Bench b;
   b.run_until(200 * kMs, 0.0);
   b.writes_ns.clear();
-  ASSERT_TRUE(b.world
-                  .command(table(R"({ silence = true, i2c_raw = { bytes = "5A 3 c1 00", times = 3,
+  ASSERT_TRUE(plan::command(b.world,
+                            table(R"({ silence = true, i2c_raw = { bytes = "5A 3 c1 00", times = 3,
                                       every = "7 ms", shift = "400 us" } })"),
-                           b.t_ns)
+                            b.t_ns)
                   .ok());
   b.run_until(300 * kMs, 0.0);
   EXPECT_EQ(b.last_write, (std::vector<std::uint8_t>{0x5A, 0x03, 0xC1, 0x00}));
   const std::int64_t first = 201 * kMs + kMs / 4;
   EXPECT_EQ(b.writes_ns, (std::vector<std::int64_t>{first, first + 7 * kMs + 400'000,
                                                     first + 14 * kMs - 200'000}));
-  EXPECT_FALSE(b.world.command(table(R"({ i2c_raw = { bytes = "5A G1" } })"), b.t_ns).ok());
-  EXPECT_FALSE(b.world.command(table("{ i2c_raw = {} }"), b.t_ns).ok());
+  EXPECT_FALSE(plan::command(b.world, table(R"({ i2c_raw = { bytes = "5A G1" } })"), b.t_ns).ok());
+  EXPECT_FALSE(plan::command(b.world, table("{ i2c_raw = {} }"), b.t_ns).ok());
 }
 
 TEST(Stand, PulsesCarryTheSetPointsAndNothingIsWrittenOverI2c) {
@@ -244,16 +245,17 @@ TEST(Stand, PulsesCarryTheSetPointsAndNothingIsWrittenOverI2c) {
   ASSERT_EQ(b.trains.size(), 1u);
   EXPECT_EQ(b.trains[0].width_ns, 1'000'000);
   EXPECT_EQ(b.trains[0].period_ns, 2'500'000);
-  ASSERT_TRUE(b.world.command(table(R"({ thrust = "8 N" })"), b.t_ns).ok());  // the mode's end
+  ASSERT_TRUE(
+      plan::command(b.world, table(R"({ thrust = "8 N" })"), b.t_ns).ok());  // the mode's end
   b.run_until(210 * kMs, 0.0);
   ASSERT_EQ(b.trains.size(), 2u);
   EXPECT_EQ(b.trains[1].width_ns, 1'950'000);
-  ASSERT_TRUE(b.world.command(table("{ silence = true }"), b.t_ns).ok());
+  ASSERT_TRUE(plan::command(b.world, table("{ silence = true }"), b.t_ns).ok());
   b.run_until(220 * kMs, 0.0);
   ASSERT_EQ(b.trains.size(), 3u);
   EXPECT_EQ(b.trains[2].width_ns, 0);
   const auto wrong = table(R"({ pulses = { width = "3 ms", rate = "400 Hz" } })");
-  EXPECT_FALSE(b.world.command(wrong, b.t_ns).ok());
+  EXPECT_FALSE(plan::command(b.world, wrong, b.t_ns).ok());
 }
 
 TEST(Stand, StreamedSignalsAreNoNumbersBeforeAndLongAfterAFrame) {
@@ -328,6 +330,29 @@ TEST(Stand, ALateAnswerIsNotTakenForThatToTheNextQuestion) {
   EXPECT_TRUE(b.world.say("get kv"));  // now it is answered
 }
 
+TEST(Stand, WhatAFlightDoesIsRefusedByItsKey) {
+  Bench b;
+  const auto refusal = [](const Result<Done>& done) {
+    return done ? "none" : done.error().message();
+  };
+  const auto command = [&](const char* text) {
+    return refusal(plan::command(b.world, table(text), 0));
+  };
+  const auto disturb = [&](const char* text) {
+    return refusal(plan::disturb(b.world, table(text), 0));
+  };
+  EXPECT_EQ(command("{ arm = true }"), "plan.lua:1: arm: means nothing to a stand");
+  EXPECT_EQ(command("{ takeoff = '1 m' }"), "plan.lua:1: takeoff: means nothing to a stand");
+  EXPECT_EQ(disturb("{ down = '2 m/s', after = '1 s' }"),
+            "plan.lua:1: after: means nothing to a stand");
+  EXPECT_EQ(disturb("{ east = '2 m/s' }"),
+            "plan.lua:1: east: the stand's flow goes along the shaft only (down)");
+  EXPECT_EQ(disturb("{ down = '21 m/s' }"),
+            "plan.lua:1: down: must be at least -20 at most 20 (SI)");
+  EXPECT_EQ(disturb("{ jet = { up = '3 m/s', radius = '35 cm' } }"),
+            "plan.lua:1: jet: means nothing to a stand");
+}
+
 TEST(Stand, MistakesAreNamed) {
   const auto complaint = [](const std::string& text) {
     const auto read = catalogue::read_stand(table(text), kPropellers);
@@ -345,7 +370,7 @@ TEST(Stand, MistakesAreNamed) {
   EXPECT_NE(motor(R"(inertia = "-100 %")").find("outside"), std::string::npos);
   EXPECT_NE(motor(R"(resistance = "0 ohm")").find("positive"), std::string::npos);
   Bench b;
-  const auto wrong = b.world.command(table(R"({ duty = "20 %" })"), 0);
+  const auto wrong = plan::command(b.world, table(R"({ duty = "20 %" })"), 0);
   ASSERT_FALSE(wrong);
   EXPECT_NE(wrong.error().message().find("mode"), std::string::npos);
 }

@@ -6,7 +6,6 @@
 #include <sstream>
 
 #include "harness/executive/run.hpp"
-#include "harness/lua/table.hpp"
 #include "io_bridges/devices/faults.hpp"
 
 namespace whirl::oracle {
@@ -34,13 +33,12 @@ class PlayedWorld final : public World {
       return true;
     });
   }
-  Result<Done> command(const lua::Table& wish, std::int64_t now_ns) override {
-    wish.flag_or("go", false);
+  Result<Done> command(const Command&, std::int64_t now_ns) override {
     const auto wire = scenario_.wires_ns.find(static_cast<int>(now_ns / kMs));
     if (wire != scenario_.wires_ns.end()) wire_ns_ = wire->second;
-    return wish.finish();
+    return Done{};
   }
-  Result<Done> gust(const lua::Table& wish, std::int64_t) override { return wish.finish(); }
+  Result<Done> disturb(const Disturbance&, std::int64_t) override { return Done{}; }
   Result<Done> say(const std::string& line) override {
     const auto answer = scenario_.answers.find(line);
     if (answer == scenario_.answers.end()) return Done{};

@@ -191,7 +191,7 @@ void add_step_record(Scenario& s, Dice& dice, const std::string& id) {
   std::string action;
   double wire_ms = 0;
   if (dice.chance(0.6)) {
-    action = ", function() t:command { go = true } end";
+    action = ", function() t:command { arm = true } end";
     wire_ms = dice.between(0, 2000) / 1000.0;
     s.wires_ns[command_ms] = command_ms * kMs + std::llround(wire_ms * 1e6);
   }

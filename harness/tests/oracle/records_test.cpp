@@ -110,7 +110,8 @@ TEST(Records, MeasureFromTheirCommand) {
 TEST(Records, AResponseCountsFromTheLastBitOnTheWireIfThatWasWithinTheRecord) {
   const auto response_ms = [](std::int64_t wire_ns) {
     Scenario s = with_signal(
-        "t:wait '250 ms' local r = t:record('x', '400 ms', function() t:command { go = true } end) "
+        "t:wait '250 ms' local r = t:record('x', '400 ms', function() t:command { arm = true } "
+        "end) "
         "t:expect(r:response_time()):at_most '1000 ms'",
         [](int ms) { return ms < 350 ? 0.0 : 1.0; });
     s.wires_ns[250] = wire_ns;
@@ -207,7 +208,7 @@ TEST(Values, TextsAndDurationsHaveTheirBounds) {
 // What only acts gives nothing back.
 TEST(Calls, ThatOnlyActGiveNothing) {
   for (const char* call :
-       {"t:command { go = true }", "t:gust {}", "t:fault { kind = 'i2c_nack', bus = 'i2c3' }",
+       {"t:command { arm = true }", "t:gust {}", "t:fault { kind = 'i2c_nack', bus = 'i2c3' }",
         "t:step 'up'", "t:log 'up'", "t:wait '1 ms'", "g:stop()",
         "t:budget 'fw::task' { execution = '1 s' }", "t:bus { device = 'esc1' }",
         "t:latency { from = 'imu', through = {}, to = 'esc1', at_most = '9 s' }"}) {

@@ -1,0 +1,164 @@
+#include "harness/plan/requests.hpp"
+
+#include <charconv>
+#include <cmath>
+#include <sstream>
+
+namespace whirl::plan {
+namespace {
+
+using lua::above;
+using lua::at_least;
+using lua::between;
+using lua::Table;
+using namespace request;
+
+std::optional<double> maybe(const Table& t, const char* key, Dimension dimension,
+                            lua::Range range = lua::kAny) {
+  if (!t.has(key)) return std::nullopt;
+  return t.quantity(key, dimension, range);
+}
+
+GoTo read_go_to(const Table& t) {
+  GoTo go;
+  go.yaw_rad = maybe(t, "yaw", Dimension::angle);
+  go.speed_mps = maybe(t, "speed", Dimension::speed, above(0.0));
+  if (!t.has("position")) return go;
+  const Table p = t.table("position");
+  go.north_m = maybe(p, "north", Dimension::length);
+  go.east_m = maybe(p, "east", Dimension::length);
+  go.height_m = maybe(p, "height", Dimension::length);
+  return go;
+}
+
+// { bytes = "5A 03 C1", read = 6, times = 10, every = "20 ms", shift = "7 us" }
+RawTransfer read_raw(const Table& t) {
+  RawTransfer raw;
+  std::istringstream words(t.text_or("bytes", ""));
+  for (std::string word; words >> word;) {
+    unsigned byte = 0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), byte, 16);
+    if (error != std::errc{} || end != word.data() + word.size() || byte > 0xFF) {
+      t.refuse("bytes", "'" + word + "' is no byte", "write them as \"5A 03 C1\"");
+    }
+    raw.write.push_back(static_cast<std::uint8_t>(byte));
+  }
+  raw.read = static_cast<std::uint16_t>(t.integer_or("read", 0, 0, 255));
+  raw.times = t.integer_or("times", 1, 1, 1'000'000);
+  raw.every_ns = t.duration_ns_or("every", raw.every_ns);
+  raw.shift_ns = t.duration_ns_or("shift", 0);
+  if (raw.write.empty() && raw.read == 0) {
+    t.refuse("bytes", "nothing to write and nothing to read");
+  }
+  return raw;
+}
+
+// { width = "1500 us", rate = "50 Hz", glitch = "50 us", glitch_after = "600 us" }
+Pulses read_pulses(const Table& t) {
+  Pulses pulses;
+  pulses.width_ns = t.duration_ns("width");
+  pulses.period_ns = std::llround(
+      1e9 / std::max(1.0, t.quantity_or("rate", Dimension::frequency, 50.0, between(1.0, 2000.0))));
+  pulses.glitch_ns = t.duration_ns_or("glitch", 0);
+  pulses.glitch_after_ns = t.duration_ns_or("glitch_after", 0);
+  if (pulses.width_ns >= pulses.period_ns) t.refuse("width", "longer than the period");
+  if (pulses.glitch_ns + pulses.glitch_after_ns >= pulses.period_ns) {
+    t.refuse("glitch_after", "beyond the period");
+  }
+  return pulses;
+}
+
+void read_flying(const Table& t, std::vector<Command>& all) {
+  if (t.has("arm")) all.emplace_back(Arm{t.flag_or("arm", true)});
+  if (t.has("takeoff")) {
+    all.emplace_back(TakeOff{t.quantity("takeoff", Dimension::length, above(0.0))});
+  }
+  if (t.has("position") || t.has("yaw")) all.emplace_back(read_go_to(t));
+  if (t.has("land") && t.flag_or("land", true)) all.emplace_back(Land{});
+}
+
+void read_turning(const Table& t, std::vector<Command>& all) {
+  const struct {
+    const char* key;
+    Dimension dimension;
+    SetPointKind kind;
+  } set_points[] = {{"duty", Dimension::ratio, SetPointKind::duty},
+                    {"speed", Dimension::angular_rate, SetPointKind::speed},
+                    {"thrust", Dimension::force, SetPointKind::thrust},
+                    {"power", Dimension::power, SetPointKind::power}};
+  // A speed beside a place is how fast to go there.
+  const bool goes = t.has("position") || t.has("yaw");
+  for (const auto& s : set_points) {
+    if (!t.has(s.key) || (goes && s.kind == SetPointKind::speed)) continue;
+    all.emplace_back(SetPoint{s.kind, t.quantity(s.key, s.dimension, at_least(0.0))});
+  }
+  if (t.has("stop") && t.flag_or("stop", true)) all.emplace_back(Stop{});
+  if (t.has("silence")) all.emplace_back(Silence{t.flag_or("silence", true)});
+  if (t.has("i2c_raw")) all.emplace_back(read_raw(t.table("i2c_raw")));
+  if (t.has("setpoint_rate")) {
+    all.emplace_back(
+        SetPointRate{t.quantity("setpoint_rate", Dimension::frequency, between(1.0, 10e3))});
+  }
+  if (t.has("pulses")) all.emplace_back(read_pulses(t.table("pulses")));
+  if (t.has("line")) all.emplace_back(Line{t.text("line")});
+  if (t.has("brake")) {
+    all.emplace_back(Brake{t.quantity("brake", Dimension::torque, between(0.0, 10.0))});
+  }
+}
+
+Jet read_jet(const Table& t) {
+  Jet jet;
+  jet.up_mps = t.quantity("up", Dimension::speed);
+  jet.north_m = t.quantity_or("north", Dimension::length, 0.0);
+  jet.east_m = t.quantity_or("east", Dimension::length, 0.0);
+  jet.radius_m = t.quantity("radius", Dimension::length, above(0.0));
+  jet.edge_m = maybe(t, "edge", Dimension::length, above(0.0));
+  return jet;
+}
+
+Wind read_wind(const Table& t) {
+  const lua::Range time = between(0.0, 1e9);
+  return {maybe(t, "north", Dimension::speed),     maybe(t, "east", Dimension::speed),
+          maybe(t, "down", Dimension::speed),      maybe(t, "duration", Dimension::time, time),
+          maybe(t, "edge", Dimension::time, time), maybe(t, "after", Dimension::time, time)};
+}
+
+// A world's refusal with the line of the plan: its place is the key.
+Result<Done> placed(const lua::Table& t, Result<Done> done) {
+  if (done || done.error().place.empty() || done.error().kind != ErrorKind::bad_input) return done;
+  t.refuse(done.error().place, done.error().what, done.error().cure);
+  return t.finish();
+}
+
+}  // namespace
+
+Result<std::vector<Command>> read_commands(const Table& t) {
+  std::vector<Command> all;
+  read_flying(t, all);
+  read_turning(t, all);
+  if (auto good = t.finish(); !good) return good.error();
+  return all;
+}
+
+Result<Disturbance> read_disturbance(const Table& t) {
+  Disturbance all = t.has("jet") ? Disturbance(read_jet(t.table("jet"))) : read_wind(t);
+  if (auto good = t.finish(); !good) return good.error();
+  return all;
+}
+
+Result<Done> command(World& world, const Table& t, std::int64_t now_ns) {
+  const auto commands = read_commands(t);
+  if (!commands) return commands.error();
+  for (const Command& one : commands.value()) {
+    if (auto done = placed(t, world.command(one, now_ns)); !done) return done;
+  }
+  return Done{};
+}
+
+Result<Done> disturb(World& world, const Table& t, std::int64_t now_ns) {
+  const auto disturbance = read_disturbance(t);
+  if (!disturbance) return disturbance.error();
+  return placed(t, world.disturb(disturbance.value(), now_ns));
+}
+
+}  // namespace whirl::plan

@@ -1,0 +1,22 @@
+// The commands and disturbances of a plan, from the tables that it writes. Which world understands which
+// of them is the world's matter (world/request.hpp).
+#pragma once
+#include <optional>
+#include <vector>
+
+#include "harness/lua/table.hpp"
+#include "harness/world/request.hpp"
+#include "harness/world/world.hpp"
+
+namespace whirl::plan {
+
+// { arm = true }, { thrust = "2 N", silence = true }: in the order in which a world shall take them.
+// Errors   bad_input, with the place of the table: what the table holds is wrong, or nothing
+Result<std::vector<Command>> read_commands(const lua::Table& t);
+Result<Disturbance> read_disturbance(const lua::Table& t);
+
+// Reads a table and gives it to the world. What the world refuses is placed as if the table were wrong.
+Result<Done> command(World& world, const lua::Table& t, std::int64_t now_ns);
+Result<Done> disturb(World& world, const lua::Table& t, std::int64_t now_ns);
+
+}  // namespace whirl::plan

@@ -1,0 +1,32 @@
+#include "harness/world/request.hpp"
+
+namespace whirl {
+
+const char* word(const Command& command) {
+  return std::visit(Match{[](const request::Arm&) { return "arm"; },
+                          [](const request::TakeOff&) { return "takeoff"; },
+                          [](const request::GoTo&) { return "position"; },
+                          [](const request::Land&) { return "land"; },
+                          [](const request::SetPoint& s) {
+                            constexpr const char* kWords[] = {"duty", "speed", "thrust", "power"};
+                            return kWords[static_cast<std::size_t>(s.kind)];
+                          },
+                          [](const request::Stop&) { return "stop"; },
+                          [](const request::Silence&) { return "silence"; },
+                          [](const request::SetPointRate&) { return "setpoint_rate"; },
+                          [](const request::RawTransfer&) { return "i2c_raw"; },
+                          [](const request::Pulses&) { return "pulses"; },
+                          [](const request::Line&) { return "line"; },
+                          [](const request::Brake&) { return "brake"; }},
+                    command);
+}
+
+const char* word(const Disturbance& disturbance) {
+  return std::holds_alternative<request::Jet>(disturbance) ? "jet" : "wind";
+}
+
+Error not_understood(const std::string& world, const char* word) {
+  return {ErrorKind::bad_input, word, "means nothing to " + world, ""};
+}
+
+}  // namespace whirl

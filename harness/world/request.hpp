@@ -1,0 +1,91 @@
+// What a plan, or a bench, can ask of a world, as data: commands to who flies or turns, disturbances of
+// the air. A world does what it understands and refuses the rest; it never passes one over.
+//
+//   Units    SI, times in ns where they are on the wire's clock
+//   Words    each has the key by which a plan writes it (test_plans/README.md): word()
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "base/result.hpp"
+
+namespace whirl {
+
+namespace request {
+
+struct Arm {
+  bool arm = true;  // false: disarm
+};
+struct TakeOff {
+  double height_m = 0.0;  // above 0
+};
+struct GoTo {  // what is left out stays as it was
+  std::optional<double> north_m, east_m, height_m, yaw_rad;
+  std::optional<double> speed_mps;  // above 0: straight there at that speed; left out: at once
+};
+struct Land {};
+
+enum class SetPointKind { duty, speed, thrust, power };
+struct SetPoint {
+  SetPointKind kind = SetPointKind::duty;
+  double value_SI = 0.0;  // a share, rad/s, N, W; not negative
+};
+struct Stop {};  // set-point 0
+struct Silence {
+  bool silent = true;  // no more set-points
+};
+struct SetPointRate {
+  double rate_Hz = 50.0;  // 1 Hz to 10 kHz
+};
+struct RawTransfer {  // a transfer on the ESC's bus as it stands, some times over
+  std::vector<std::uint8_t> write;
+  std::uint16_t read = 0;                        // bytes
+  std::int64_t times = 1, every_ns = 1'000'000;  // whole milliseconds
+  std::int64_t shift_ns = 0;                     // moves it within its millisecond each time
+};
+struct Pulses {  // on the throttle pin; all within the period
+  std::int64_t width_ns = 0, period_ns = 20'000'000;
+  std::int64_t glitch_ns = 0, glitch_after_ns = 0;
+};
+struct Line {
+  std::string text;  // on the serial line, without its end
+};
+struct Brake {
+  double torque_Nm = 0.0;  // 0: lets go
+};
+
+struct Wind {  // where the air goes to; frame W
+  std::optional<double> north_mps = {}, east_mps = {}, down_mps = {};
+  std::optional<double> duration_s = {}, edge_s = {}, after_s = {};  // not negative
+};
+struct Jet {  // a round vertical stream, from now on
+  double up_mps = 0.0, north_m = 0.0, east_m = 0.0;
+  double radius_m = 0.0;         // above 0
+  std::optional<double> edge_m;  // above 0
+};
+
+}  // namespace request
+
+using Command =
+    std::variant<request::Arm, request::TakeOff, request::GoTo, request::Land, request::SetPoint,
+                 request::Stop, request::Silence, request::SetPointRate, request::RawTransfer,
+                 request::Pulses, request::Line, request::Brake>;
+using Disturbance = std::variant<request::Wind, request::Jet>;
+
+const char* word(const Command& command);          // "takeoff"
+const char* word(const Disturbance& disturbance);  // "jet"
+
+// The refusal of one that this world ("a flight") has no use for. The place of this and of every other
+// refusal is the key that it is about; who has read the request adds file and line.
+Error not_understood(const std::string& world, const char* word);
+
+// An overload set for std::visit out of lambdas.
+template <typename... Cases>
+struct Match : Cases... {
+  using Cases::operator()...;
+};
+
+}  // namespace whirl
