@@ -5,7 +5,6 @@
 namespace whirl::calibrate {
 namespace {
 
-constexpr std::int64_t kStep_ns = 1'000'000;
 constexpr int kAnswer_ms = 500;
 constexpr double kFlow_ramp_s = 0.5;
 
@@ -13,56 +12,44 @@ Error failed(const std::string& what, const std::string& cure = "") {
   return {ErrorKind::bad_input, "stand", what, cure};
 }
 
+std::size_t column(const World& world, const char* signal) {
+  const auto found = SignalTable(world.signals()).find(signal);
+  WHIRL_CHECK(found.has_value(), signal);
+  return *found;
+}
+
 }  // namespace
 
 Bench::Bench(World& world, Target& target, std::uint16_t serial)
     : world_(world),
-      target_(target),
+      lockstep_(world, target),
       serial_(serial),
-      row_(world.signals().size()),
-      thrust_(find("cell_thrust")),
-      torque_(find("cell_torque")),
-      current_(find("bus_current")),
-      voltage_(find("bus_voltage")),
-      wind_(find("wind")) {
+      thrust_(column(world, "cell_thrust")),
+      torque_(column(world, "cell_torque")),
+      current_(column(world, "bus_current")),
+      voltage_(column(world, "bus_voltage")),
+      wind_(column(world, "wind")) {
   line_.on_line([this](const std::string& text) { answers_.push_back(text); });
 }
 
 Bench::~Bench() {
-  io::Batch rest;
-  target_.stop(rest);
-}
-
-std::size_t Bench::find(const std::string& signal) const {
-  const auto& signals = world_.signals();
-  for (std::size_t i = 0; i < signals.size(); ++i) {
-    if (signals[i].name == signal) return i;
-  }
-  WHIRL_CHECK(false, signal);
-  return 0;
+  lockstep_.stop();
 }
 
 Result<Done> Bench::start() {
-  if (auto started = target_.start(); !started) return started;
-  world_.step(0, happened_, sensed_);
+  if (auto started = lockstep_.start(); !started) return started;
   read();
   return Done{};
 }
 
 void Bench::read() {
-  world_.read(row_);
-  read_ = {row_[thrust_], row_[torque_], row_[current_], row_[voltage_], row_[wind_]};
+  const std::vector<double>& row = lockstep_.row();
+  read_ = {row[thrust_], row[torque_], row[current_], row[voltage_], row[wind_]};
 }
 
 Result<Done> Bench::step() {
-  const std::int64_t next_ns = now_ns_ + kStep_ns;
-  target_.run(next_ns, sensed_);
-  sensed_.clear();
-  world_.step(next_ns, happened_, sensed_);
-  happened_.clear();
-  const auto arrived = target_.arrive(happened_);
+  const auto arrived = lockstep_.step();
   if (!arrived) return arrived.error();
-  now_ns_ = next_ns;
   read();
   if (arrived.value() != TargetState::running) return failed("the core locked up");
   if (auto good = take(); !good) return good;
@@ -71,7 +58,7 @@ Result<Done> Bench::step() {
 }
 
 Result<Done> Bench::take() {
-  for (io::Reader reader(happened_.bytes()); reader.next();) {
+  for (io::Reader reader(lockstep_.happened().bytes()); reader.next();) {
     const io::Header& header = reader.header();
     if (header.kind == io::Kind::cpu_fault) {
       return failed("the firmware ended in a fault", "a plan on the same stand tells where");
@@ -94,11 +81,11 @@ Result<Done> Bench::run(std::int64_t duration_ms) {
 }
 
 Result<Done> Bench::silence() {
-  return world_.command(request::Silence{}, now_ns_);
+  return world_.command(request::Silence{}, lockstep_.now_ns());
 }
 
 Result<Done> Bench::type(const std::string& line) {
-  return world_.command(request::Line{line}, now_ns_);
+  return world_.command(request::Line{line}, lockstep_.now_ns());
 }
 
 Result<std::string> Bench::ask(const std::string& line) {
@@ -124,7 +111,7 @@ Result<Done> Bench::must(const std::string& line) {
 
 Result<Done> Bench::blow(double down_mps) {
   const request::Wind wind{.down_mps = down_mps, .edge_s = kFlow_ramp_s};
-  if (auto good = world_.disturb(wind, now_ns_); !good) return good;
+  if (auto good = world_.disturb(wind, lockstep_.now_ns()); !good) return good;
   return run(static_cast<std::int64_t>(1000.0 * kFlow_ramp_s));
 }
 

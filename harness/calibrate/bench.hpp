@@ -12,8 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/target/target.hpp"
-#include "harness/world/world.hpp"
+#include "harness/lockstep/lockstep.hpp"
 #include "io_bridges/protocols/esc_stream.hpp"
 
 namespace whirl::calibrate {
@@ -42,7 +41,7 @@ class Bench {
   Result<Done> silence();  // no more set-points on the bus
 
   const Instruments& instruments() const { return read_; }
-  std::int64_t now_ns() const { return now_ns_; }
+  std::int64_t now_ns() const { return lockstep_.now_ns(); }
   void on_step(std::function<void(const Bench&)> sink) { sink_ = std::move(sink); }
   void on_sample(std::function<void(const io::EscSample&)> sink);
 
@@ -50,16 +49,12 @@ class Bench {
   Result<Done> step();
   Result<Done> take();
   void read();
-  std::size_t find(const std::string& signal) const;
 
   World& world_;
-  Target& target_;
+  Lockstep lockstep_;
   std::uint16_t serial_;
-  io::Batch sensed_, happened_;
-  std::int64_t now_ns_ = 0;
   io::EscStreamDecoder line_;
   std::deque<std::string> answers_;  // not yet looked at
-  std::vector<double> row_;
   std::size_t thrust_, torque_, current_, voltage_, wind_;
   Instruments read_;
   std::function<void(const Bench&)> sink_;

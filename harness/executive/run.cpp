@@ -1,45 +1,31 @@
 #include "harness/executive/run.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
-#include <optional>
+#include <tuple>
 
 #include "base/digest.hpp"
 #include "base/interruption.hpp"
 #include "base/mishap.hpp"
+#include "base/stopwatch.hpp"
 #include "harness/executive/clock_log.hpp"
 #include "harness/executive/cpu_fault.hpp"
 #include "harness/executive/task_table.hpp"
+#include "harness/lockstep/lockstep.hpp"
 #include "harness/plan/script.hpp"
 #include "io_bridges/devices/faults.hpp"
 
 namespace whirl {
 namespace {
 
-constexpr std::int64_t kStep_ns = 1'000'000;
-constexpr std::int64_t kProgress_ns = 10 * kStep_ns;
-
-// Adds the host time of its scope to a figure. For reports only.
-class Stopwatch {
- public:
-  using Clock = std::chrono::steady_clock;
-  explicit Stopwatch(double& sum_s) : sum_s_(sum_s), begin_(Clock::now()) {}
-  ~Stopwatch() { sum_s_ += std::chrono::duration<double>(Clock::now() - begin_).count(); }
-  Stopwatch(const Stopwatch&) = delete;
-  Stopwatch& operator=(const Stopwatch&) = delete;
-
- private:
-  double& sum_s_;
-  Clock::time_point begin_;
-};
+constexpr std::int64_t kProgress_ns = 10 * kLockstep_ns;
 
 results::TruthLog truth_log_for(const World& world) {
   std::vector<results::TruthLog::Column> columns;
   for (const Signal& signal : world.signals()) {
     columns.push_back({signal.name, si_suffix(signal.dimension), si_symbol(signal.dimension)});
   }
-  return {std::move(columns), kStep_ns};
+  return {std::move(columns), kLockstep_ns};
 }
 
 // The watchdog that has reset the board, or null.
@@ -60,15 +46,32 @@ bool is_act_of_firmware(io::Kind kind) {
          kind == io::Kind::i2c_reply;
 }
 
+// Bus and address of a fault's place as the board's process counts them (FaultCommand).
+std::pair<std::int32_t, std::int32_t> on_wire(const FaultPlace& place) {
+  using Numbers = std::pair<std::int32_t, std::int32_t>;
+  return std::visit(
+      Match{[](const fault_at::Anywhere&) { return Numbers(-1, -1); },
+            [](const fault_at::Wire& wire) { return Numbers(wire.bus, wire.address); },
+            [](const fault_at::Device& device) { return Numbers(device.bus, device.address); },
+            [](const fault_at::Motor& motor) { return Numbers(-1, motor.number); },
+            [](const fault_at::Function& function) { return Numbers(-1, function.number); }},
+      place);
+}
+
 class Run {
  public:
   explicit Run(const RunParts& parts)
       : parts_(parts),
         record_{{}, truth_log_for(parts.world), {}},
-        stage_{parts.world,    parts.board,    record_.truth,
-               record_.events, record_.report, [this](const FaultSpec& f) { return inject(f); }},
+        stage_{parts.world,
+               SignalTable(parts.world.signals()),
+               parts.board,
+               record_.truth,
+               record_.events,
+               record_.report,
+               [this](const FaultSpec& f) { return inject(f); }},
         script_(parts.file, parts.plan, stage_),
-        row_(parts.world.signals().size()) {
+        lockstep_(parts.world, parts.target) {
     results::Report& r = record_.report;
     r.plan = parts.plan.name;
     r.file = parts.plan.file;
@@ -85,6 +88,8 @@ class Run {
       });
       guarded([&] { end(); });
     }
+    record_.report.host.world_s = lockstep_.host_times().world_s;
+    record_.report.host.target_wait_s = lockstep_.host_times().target_wait_s;
     record_.report.virtual_s = static_cast<double>(stage_.now_ns) * 1e-9;
     record_.report.digest = digest_.hex();
     results::conclude(record_.report);
@@ -104,10 +109,9 @@ class Run {
 
   bool start() {
     Stopwatch watch(record_.report.host.start_s);
-    if (auto started = parts_.target.start(); !started) return ended_by(started.error());
+    if (auto started = lockstep_.start(); !started) return ended_by(started.error());
     record_.report.versions = parts_.target.versions();
-    parts_.world.step(0, happened_, sensed_);
-    log_truth();
+    record_.truth.append(lockstep_.row());
     return true;
   }
 
@@ -129,37 +133,24 @@ class Run {
   }
 
   bool step() {
-    const std::int64_t next_ns = stage_.now_ns + kStep_ns;
-    parts_.target.run(next_ns, sensed_);
-    {
+    const auto arrived = lockstep_.step([this](const io::Batch& sent) {
       Stopwatch watch(record_.report.host.logging_s);
-      file_batch(sensed_);
-    }
-    {
-      Stopwatch watch(record_.report.host.world_s);
-      sensed_.clear();
-      parts_.world.step(next_ns, happened_, sensed_);
-    }
-    happened_.clear();
-    std::optional<Result<TargetState>> arrived;
-    {
-      Stopwatch watch(record_.report.host.target_wait_s);
-      arrived = parts_.target.arrive(happened_);
-    }
+      file_batch(sent);
+    });
     Stopwatch watch(record_.report.host.logging_s);
-    if (!*arrived) return ended_by(arrived->error());
-    stage_.now_ns = next_ns;
-    log_truth();
-    if (!file_batch(happened_) || !firmware_is_well()) return false;
+    if (!arrived) return ended_by(arrived.error());
+    stage_.now_ns = lockstep_.now_ns();
+    record_.truth.append(lockstep_.row());
+    if (!file_batch(lockstep_.happened()) || !firmware_is_well()) return false;
     if (interrupted_by() != 0) return interrupted();
-    if (arrived->value() == TargetState::running) return true;
-    return stopped_early(arrived->value());
+    if (arrived.value() == TargetState::running) return true;
+    return stopped_early(arrived.value());
   }
 
   // The target gave up. What it still told counts; its time stays where it last was, since nothing is
   // known of what came behind.
   bool ended_by(const Error& error) {
-    file_batch(happened_);
+    file_batch(lockstep_.happened());
     return interrupted_by() != 0 ? interrupted() : end_for(error);
   }
 
@@ -176,9 +167,8 @@ class Run {
   }
 
   void end() {
-    io::Batch rest;
-    parts_.target.stop(rest);
-    file_batch(rest);
+    lockstep_.stop();
+    file_batch(lockstep_.happened());
     if (!firmware_failed()) firmware_is_well();  // its last words may be a fault
     results::Report& report = record_.report;
     report.statistics_json = record_.events.statistics;
@@ -278,11 +268,6 @@ class Run {
     return end_with(results::Blame::firmware, what);
   }
 
-  void log_truth() {
-    parts_.world.read(row_);
-    record_.truth.append(row_);
-  }
-
   bool file_batch(const io::Batch& batch) {
     digest_.add_bytes(batch.bytes().data(), batch.bytes().size());
     for (io::Reader r(batch.bytes()); !firmware_acted_ && r.next();) {
@@ -301,12 +286,12 @@ class Run {
     command.kind = static_cast<std::uint32_t>(*kind);
     command.start_ns = spec.start_ns;
     command.end_ns = spec.end_ns;
-    command.bus = spec.bus;
-    command.address = spec.address;
+    std::tie(command.bus, command.address) = on_wire(spec.place);
     command.axis = spec.axis;
     command.value = spec.value;
-    sensed_.add(io::Kind::fault, static_cast<std::uint16_t>(spec.number), stage_.now_ns, command,
-                spec.kind.data(), static_cast<std::uint32_t>(spec.kind.size()));
+    lockstep_.to_send().add(io::Kind::fault, static_cast<std::uint16_t>(spec.number), stage_.now_ns,
+                            command, spec.kind.data(),
+                            static_cast<std::uint32_t>(spec.kind.size()));
     return Done{};
   }
 
@@ -314,8 +299,7 @@ class Run {
   RunRecord record_;
   plan::Stage stage_;
   plan::Script script_;
-  std::vector<double> row_;
-  io::Batch sensed_, happened_;
+  Lockstep lockstep_;
   Digest digest_;
   bool completed_ = false;  // the script has returned
   bool firmware_acted_ = false;

@@ -18,19 +18,11 @@ Capture::Capture(const CaptureParams& params, std::uint64_t seed)
   WHIRL_CHECK(params.rate_Hz > 0.0, params.rate_Hz);
 }
 
-bool Capture::occluded(std::int64_t t_ns) {
-  const auto now = std::find_if(occlusions_.begin(), occlusions_.end(), [t_ns](const Occlusion& o) {
-    return t_ns >= o.start_ns && t_ns < o.end_ns;
-  });
-  if (now == occlusions_.end()) return false;
-  now->acted = true;
-  return true;
-}
-
-std::optional<CapturedPose> Capture::look(std::int64_t t_ns, const plant::Truth& truth) {
-  // The cameras go on drawing their errors while occluded: a fault does not shift later ones.
+std::optional<CapturedPose> Capture::look(std::int64_t t_ns, const plant::Truth& truth,
+                                          const std::function<bool()>& hidden) {
+  // The cameras go on drawing their errors while hidden: a fault does not shift later ones.
   const auto frame = cameras_.step(static_cast<double>(t_ns) * 1e-9, truth);
-  if (frame && !occluded(t_ns)) newest_ = frame;
+  if (frame && !hidden()) newest_ = frame;
   const auto due_ns = std::llround(static_cast<double>(asked_) * 1e9 / params_.rate_Hz);
   if (t_ns < due_ns) return std::nullopt;
   ++asked_;

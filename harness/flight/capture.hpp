@@ -7,8 +7,8 @@
 #pragma once
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <functional>
 #include <optional>
-#include <vector>
 
 #include "plant/sensors/motion_capture.hpp"
 
@@ -26,30 +26,20 @@ struct CapturedPose {
   Eigen::Vector3d roll_pitch_yaw_rad = Eigen::Vector3d::Zero();
 };
 
-struct Occlusion {
-  std::uint32_t fault = 0;
-  std::int64_t start_ns = 0, end_ns = 0;
-  bool acted = false;
-};
-
 Eigen::Vector3d roll_pitch_yaw_rad(const Eigen::Quaterniond& q_WB);
 
 class Capture {
  public:
   Capture(const CaptureParams& params, std::uint64_t seed);
 
-  void occlude(const Occlusion& occlusion) { occlusions_.push_back(occlusion); }
-  const std::vector<Occlusion>& occlusions() const { return occlusions_; }
-
-  // Asked at each step; gives a pose when the radio wants one and the cameras have a new one.
-  std::optional<CapturedPose> look(std::int64_t t_ns, const plant::Truth& truth);
+  // Asked at each step; gives a pose when the radio wants one and the cameras have a new one. `hidden`
+  // is asked of each frame that the cameras have taken: whether something is in their way.
+  std::optional<CapturedPose> look(std::int64_t t_ns, const plant::Truth& truth,
+                                   const std::function<bool()>& hidden);
 
  private:
-  bool occluded(std::int64_t t_ns);
-
   CaptureParams params_;
   plant::MotionCapture cameras_;
-  std::vector<Occlusion> occlusions_;
   std::optional<plant::CaptureFrame> newest_;  // not yet passed on
   std::int64_t asked_ = 0;                     // radio periods so far
 };

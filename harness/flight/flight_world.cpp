@@ -9,6 +9,8 @@ namespace whirl::flight {
 namespace {
 
 constexpr std::uint16_t kArmDisarm = 400, kLand = 21, kTakeoff = 22;  // MAV_CMD
+constexpr const char *kEsc_stopped = "esc_stopped", *kSupply_dip = "supply_dip",
+                     *kCapture_lost = "capture_lost";
 constexpr double kStep_s = 1e-3;
 constexpr std::int64_t kStep_ns = 1'000'000;
 // Earth's field at Canberra in W (north, east, down).
@@ -20,11 +22,6 @@ void copy(const Eigen::Vector3d& from, double (&to)[3]) {
 
 Error refusal(const char* key, const char* what, const char* cure = "") {
   return {ErrorKind::bad_input, key, what, cure};
-}
-
-int motor_of(const FaultSpec& fault) {  // "esc2": 2; 0: not named so
-  if (fault.device.size() == 4 && fault.device.starts_with("esc")) return fault.device[3] - '0';
-  return fault.address;
 }
 
 }  // namespace
@@ -103,7 +100,8 @@ void FlightWorld::tell(std::int64_t t_ns, io::Batch& sensed) {
                static_cast<std::uint32_t>(frame.size()));
   };
   const plant::Truth seen{.p_WB_W_m = s.p_WB_W_m, .v_WB_W_mps = s.v_WB_W_mps, .q_WB = s.q_WB};
-  if (const auto pose = capture_.look(t_ns, seen)) station_.send_pose(*pose, send);
+  const auto hidden = [&] { return faults_.any(kCapture_lost, t_ns); };
+  if (const auto pose = capture_.look(t_ns, seen, hidden)) station_.send_pose(*pose, send);
   station_.step(t_ns, send);
 }
 
@@ -179,41 +177,29 @@ Result<Done> FlightWorld::blow(const request::Wind& wind, std::int64_t now_ns) {
   return Done{};
 }
 
-bool FlightWorld::take_fault(const FaultSpec& fault) {
-  if (fault.kind == "capture_lost") {
-    capture_.occlude({fault.number, fault.start_ns, fault.end_ns});
-    return true;
-  }
-  const int motor = motor_of(fault);
-  const bool stops_esc = fault.kind == "esc_stopped" && motor >= 1 && motor <= 4;
-  if (!stops_esc && fault.kind != "supply_dip") return false;
-  faults_.push_back({fault});
-  if (fault.kind == "supply_dip") {
+Result<bool> FlightWorld::take_fault(const FaultSpec& fault) {
+  if (fault.kind == kEsc_stopped) {
+    const int motor = motor_of(fault), motors = static_cast<int>(escs_.size());
+    if (motor < 1 || motor > motors) {
+      return Error{ErrorKind::bad_input, "", "esc_stopped needs one of the vehicle's motors",
+                   "motor = 1 to " + std::to_string(motors) + ", or the device that is its ESC"};
+    }
+  } else if (fault.kind == kSupply_dip) {
     const double start_s = static_cast<double>(fault.start_ns) * 1e-9;
     vehicle_.dip_supply(fault.value, start_s, static_cast<double>(fault.end_ns) * 1e-9 - start_s);
+  } else if (fault.kind != kCapture_lost) {
+    return false;
   }
+  faults_.add(fault);
   return true;
 }
 
 void FlightWorld::apply_faults(std::int64_t t_ns) {
-  for (WorldFault& fault : faults_) {
-    if (t_ns < fault.spec.start_ns || t_ns >= fault.spec.end_ns) continue;
-    fault.applied = true;
-    if (fault.spec.kind == "esc_stopped") {
-      escs_[static_cast<std::size_t>(motor_of(fault.spec)) - 1].cut();
-    }
-  }
-}
-
-std::vector<std::uint32_t> FlightWorld::applied_faults() const {
-  std::vector<std::uint32_t> numbers;
-  for (const WorldFault& fault : faults_) {
-    if (fault.applied) numbers.push_back(fault.spec.number);
-  }
-  for (const Occlusion& occlusion : capture_.occlusions()) {
-    if (occlusion.acted) numbers.push_back(occlusion.fault);
-  }
-  return numbers;
+  faults_.apply(kEsc_stopped, t_ns, [this](const FaultSpec& fault) {
+    escs_[static_cast<std::size_t>(motor_of(fault)) - 1].cut();
+  });
+  // The vehicle itself lowers its supply; here is only kept that it did.
+  faults_.apply(kSupply_dip, t_ns, [](const FaultSpec&) {});
 }
 
 std::string FlightWorld::status() const {

@@ -5,7 +5,7 @@
 //   Command  Arm, TakeOff, GoTo, Land. Take-off also streams the point above where the vehicle stands
 //            as its target; land and disarm end the stream
 //   Air      Wind with a duration, Jet
-//   Faults   capture_lost; supply_dip (value: volts below); esc_stopped (device "esc2")
+//   Faults   capture_lost; supply_dip (value: volts below); esc_stopped (of a motor, or of the device that is its ESC)
 #pragma once
 #include <array>
 #include <functional>
@@ -36,18 +36,13 @@ class FlightWorld : public World {
   Result<Done> command(const Command& command, std::int64_t now_ns) override;
   Result<Done> disturb(const Disturbance& disturbance, std::int64_t now_ns) override;
   std::int64_t command_on_wire_ns() const override { return station_.on_wire_ns(); }
-  bool take_fault(const FaultSpec& fault) override;
-  std::vector<std::uint32_t> applied_faults() const override;
+  Result<bool> take_fault(const FaultSpec& fault) override;
+  std::vector<std::uint32_t> applied_faults() const override { return faults_.acted(); }
   std::string status() const override;
 
   const plant::VehicleState& truth() const { return vehicle_.state(); }
 
  private:
-  struct WorldFault {
-    FaultSpec spec;
-    bool applied = false;
-  };
-
   void take(const io::Batch& happened);
   void move(std::int64_t t_ns);
   void tell(std::int64_t t_ns, io::Batch& sensed);
@@ -69,7 +64,7 @@ class FlightWorld : public World {
   std::vector<NativeEsc> escs_;
   Capture capture_;
   Station station_;
-  std::vector<WorldFault> faults_;
+  TimedFaults faults_;
   std::vector<Signal> signals_;
   std::vector<std::function<double()>> values_;
   std::int64_t now_ns_ = 0;

@@ -9,6 +9,8 @@
 namespace whirl::plan {
 namespace {
 
+constexpr int kMost_motors = 12;
+
 // What t:command and t:gust share: the table goes to the world, or the plan's line to the complaint.
 int pass_on(lua_State* L, Result<Done> (*to_world)(World&, const lua::Table&, std::int64_t)) {
   const Stage& stage = Script::of(L).stage();
@@ -31,30 +33,48 @@ int named_bus(lua_State* L, const std::string& bus) {
   return *number;
 }
 
-void place_fault(lua_State* L, const lua::Table& wish, const Board& board, FaultSpec& fault) {
-  if (wish.has("device")) {
-    fault.device = wish.text("device");
-    const BoardDevice* device = board.find(fault.device);
-    if (device == nullptr) raise(L, "unknown device '" + fault.device + "' on " + board.name);
-    fault.bus = named_bus(L, device->bus);
-    fault.address = device->address != -1 ? device->address : board.number(fault.device);
+fault_at::Device device_at(lua_State* L, const std::string& name, const Board& board) {
+  const BoardDevice* device = board.find(name);
+  if (device == nullptr) raise(L, "unknown device '" + name + "' on " + board.name);
+  return {name, named_bus(L, device->bus),
+          device->address != -1 ? device->address : board.number(name), device->motor};
+}
+
+fault_at::Wire wire_at(lua_State* L, const lua::Table& asked) {
+  fault_at::Wire wire;
+  wire.name = asked.text_or("bus", "");
+  if (asked.has("bus")) wire.bus = named_bus(L, wire.name);
+  wire.address = static_cast<int>(asked.integer_or("address", -1, 0, 0x7F));
+  return wire;
+}
+
+fault_at::Function function_at(lua_State* L, const std::string& name, const Board& board) {
+  const int number = board.watch_number(name);
+  if (number < 0) raise(L, "'" + name + "' is not watched", "add it to the watch list");
+  return {name, number};
+}
+
+// device, bus and address, motor or function; without any it is everywhere.
+FaultPlace place_of_fault(lua_State* L, const lua::Table& asked, const Board& board) {
+  const bool on_wire = asked.has("bus") || asked.has("address");
+  const int places = static_cast<int>(asked.has("device")) + static_cast<int>(on_wire) +
+                     static_cast<int>(asked.has("motor")) + static_cast<int>(asked.has("function"));
+  if (places > 1) {
+    raise(L, "a fault has one place", "device, bus (and address), motor or function");
   }
-  if (wish.has("bus")) fault.bus = named_bus(L, wish.text("bus"));
-  if (wish.has("address")) fault.address = static_cast<int>(wish.integer("address", 0, 0x7F));
-  if (wish.has("function")) {
-    const std::string function = wish.text("function");
-    fault.address = board.watch_number(function);
-    if (fault.address < 0) {
-      raise(L, "'" + function + "' is not watched", "add it to the watch list");
-    }
+  if (asked.has("device")) return device_at(L, asked.text("device"), board);
+  if (asked.has("function")) return function_at(L, asked.text("function"), board);
+  if (asked.has("motor")) {
+    return fault_at::Motor{static_cast<int>(asked.integer("motor", 1, kMost_motors))};
   }
-  if (wish.has("motor")) fault.address = static_cast<int>(wish.integer("motor", 1, 4));
+  if (on_wire) return wire_at(L, asked);
+  return fault_at::Anywhere{};
 }
 
 constexpr const char* kAxes[] = {"accel_x", "accel_y", "accel_z", "gyro_x", "gyro_y", "gyro_z"};
 
-int axis_number(const lua::Table& wish) {
-  const std::string word = wish.choice("axis", {std::begin(kAxes), std::end(kAxes)});
+int axis_number(const lua::Table& asked) {
+  const std::string word = asked.choice("axis", {std::begin(kAxes), std::end(kAxes)});
   return static_cast<int>(std::find(std::begin(kAxes), std::end(kAxes), word) - std::begin(kAxes));
 }
 
@@ -62,20 +82,20 @@ int axis_number(const lua::Table& wish) {
 // Without a duration it stays for ever. start counts from now.
 int fault(lua_State* L) {
   Script& self = Script::of(L);
-  const lua::Table wish = check_table(L, 2);
+  const lua::Table asked = check_table(L, 2);
   FaultSpec fault;
-  fault.kind = wish.text("kind");
-  place_fault(L, wish, self.stage().board, fault);
-  if (wish.has("axis")) fault.axis = axis_number(wish);
-  fault.start_ns = self.stage().now_ns + wish.duration_ns_or("start", 0);
-  if (wish.has("duration")) fault.end_ns = fault.start_ns + wish.duration_ns("duration");
-  if (wish.has("value")) fault.value = wish.any_quantity("value").value_SI;
-  check_finish(L, wish);
+  fault.kind = asked.text("kind");
+  fault.place = place_of_fault(L, asked, self.stage().board);
+  if (asked.has("axis")) fault.axis = axis_number(asked);
+  fault.start_ns = self.stage().now_ns + asked.duration_ns_or("start", 0);
+  if (asked.has("duration")) fault.end_ns = fault.start_ns + asked.duration_ns("duration");
+  if (asked.has("value")) fault.value = asked.any_quantity("value").value_SI;
+  check_finish(L, asked);
   fault.number = static_cast<std::uint32_t>(self.faults.size() + 1);
   self.faults.push_back(fault);
-  self.fault_targets.push_back(
-      !fault.device.empty() ? fault.device : wish.text_or("bus", wish.text_or("function", "")));
-  if (!self.stage().world.take_fault(fault)) {
+  const auto taken = self.stage().world.take_fault(fault);
+  if (!taken) raise(L, taken.error());
+  if (!taken.value()) {
     if (auto sent = self.stage().inject(fault); !sent) raise(L, sent.error());
   }
   return 0;

@@ -18,17 +18,13 @@ int read_signal(lua_State* L) {
   Script::of(L).look();
   Stage& stage = Script::of(L).stage();
   const std::string wanted = check_text(L, 2, "a signal's name");
-  const auto& columns = stage.truth.columns();
-  for (std::size_t i = 0; i < columns.size(); ++i) {
-    const auto& c = columns[i];
-    const std::string full = c.unit_suffix.empty() ? c.name : c.name + "_" + c.unit_suffix;
-    if (full == wanted) {
-      lua_pushnumber(L, stage.truth.last(i));
-      return 1;
-    }
-    if (c.name == wanted) {
-      raise(L, "signal '" + wanted + "' is written with its unit here", "write s." + full);
-    }
+  if (const auto column = stage.signals.find_with_unit(wanted)) {
+    lua_pushnumber(L, stage.truth.last(*column));
+    return 1;
+  }
+  if (const auto column = stage.signals.find(wanted)) {
+    raise(L, "signal '" + wanted + "' is written with its unit here",
+          "write s." + stage.signals.with_unit(*column));
   }
   raise(L, "unknown signal '" + wanted + "'");
 }
@@ -132,17 +128,12 @@ void Script::start(lua_State* L, const Plan& plan) {
 }
 
 std::size_t Script::column(lua_State* L, const std::string& signal) {
-  const auto& columns = stage_.truth.columns();
-  std::string known;
-  for (std::size_t i = 0; i < columns.size(); ++i) {
-    if (columns[i].name == signal) return i;
-    known += (i == 0 ? "" : ", ") + columns[i].name;
-  }
-  raise(L, "unknown signal '" + signal + "'", "known: " + known);
+  if (const auto column = stage_.signals.find(signal)) return *column;
+  raise(L, "unknown signal '" + signal + "'", "known: " + stage_.signals.names());
 }
 
 Dimension Script::dimension(std::size_t column) const {
-  return stage_.world.signals()[column].dimension;
+  return stage_.signals[column].dimension;
 }
 
 bool Script::condition(lua_State* L, int ref) {
@@ -287,10 +278,9 @@ void Script::judge_windows(bool completed) {
 }
 
 void Script::list_faults() {
-  for (std::size_t i = 0; i < faults.size(); ++i) {
-    const FaultSpec& fault = faults[i];
+  for (const FaultSpec& fault : faults) {
     results::FaultRow row{
-        fault.kind, fault_targets[i], seconds(fault.start_ns),
+        fault.kind, target_of(fault), seconds(fault.start_ns),
         fault.end_ns == kForever ? std::numeric_limits<double>::infinity() : seconds(fault.end_ns)};
     const auto it = stage_.events.faults_applied_ns.find(fault.number);
     const auto mine = stage_.world.applied_faults();

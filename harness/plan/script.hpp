@@ -29,6 +29,7 @@ inline constexpr std::int64_t kForever = INT64_MAX;
 // What a script sees and moves.
 struct Stage {
   World& world;
+  SignalTable signals;  // the world's
   const Board& board;
   const results::TruthLog& truth;
   const results::EventLog& events;
@@ -124,7 +125,6 @@ class Script {
   std::vector<Guard> guards;
   std::vector<PendingExpectation> pending;
   std::vector<FaultSpec> faults;
-  std::vector<std::string> fault_targets;
 
  private:
   struct OpenWindow {

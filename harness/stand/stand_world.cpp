@@ -10,6 +10,7 @@
 namespace whirl::stand {
 namespace {
 
+constexpr const char* kSupply_dip = "supply_dip";
 constexpr double kStep_s = 1e-3;
 constexpr std::int64_t kStep_ns = 1'000'000;
 constexpr double kMost_flow_mps = 20.0;
@@ -115,11 +116,7 @@ void StandWorld::move(std::int64_t t_ns) {
   weighed_ = cell_.sample(kStep_s, {loads_.thrust_N, loads_.shaft_torque_Nm});
 
   double below_V = 0.0;
-  for (Dip& dip : dips_) {
-    if (now_ns_ < dip.spec.start_ns || now_ns_ >= dip.spec.end_ns) continue;
-    dip.applied = true;
-    below_V += dip.spec.value;
-  }
+  faults_.apply(kSupply_dip, now_ns_, [&](const FaultSpec& dip) { below_V += dip.value; });
   battery_.set_dip(below_V);
   battery_.draw(shaft_.source_current_A * kStep_s, kStep_s);
 }
@@ -196,18 +193,10 @@ Result<Done> StandWorld::disturb(const Disturbance& disturbance, std::int64_t no
   return Done{};
 }
 
-bool StandWorld::take_fault(const FaultSpec& fault) {
-  if (fault.kind != "supply_dip") return false;
-  dips_.push_back({fault});
+Result<bool> StandWorld::take_fault(const FaultSpec& fault) {
+  if (fault.kind != kSupply_dip) return false;
+  faults_.add(fault);
   return true;
-}
-
-std::vector<std::uint32_t> StandWorld::applied_faults() const {
-  std::vector<std::uint32_t> numbers;
-  for (const Dip& dip : dips_) {
-    if (dip.applied) numbers.push_back(dip.spec.number);
-  }
-  return numbers;
 }
 
 std::string StandWorld::status() const {

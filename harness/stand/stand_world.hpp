@@ -36,8 +36,8 @@ class StandWorld : public World {
   Result<Done> command(const Command& command, std::int64_t now_ns) override;
   Result<Done> disturb(const Disturbance& disturbance, std::int64_t now_ns) override;
   std::int64_t command_on_wire_ns() const override { return throttle_.on_wire_ns(); }
-  bool take_fault(const FaultSpec& fault) override;
-  std::vector<std::uint32_t> applied_faults() const override;
+  Result<bool> take_fault(const FaultSpec& fault) override;
+  std::vector<std::uint32_t> applied_faults() const override { return faults_.acted(); }
   std::string status() const override;
   Result<Done> say(const std::string& line) override { return line_.ask(line); }
   const std::vector<std::string>& heard() const override { return line_.heard(); }
@@ -47,10 +47,6 @@ class StandWorld : public World {
     double from_mps = 0.0, to_mps = 0.0;
     std::int64_t start_ns = 0, edge_ns = 1;
     double at(std::int64_t t_ns) const;
-  };
-  struct Dip {
-    FaultSpec spec;
-    bool applied = false;
   };
 
   void take(const io::Batch& happened);
@@ -74,7 +70,7 @@ class StandWorld : public World {
   Flow flow_;
   std::int64_t calm_from_ns_ = INT64_MAX, calm_edge_ns_ = 1;
   double wind_mps_ = 0.0, brake_Nm_ = 0.0;
-  std::vector<Dip> dips_;
+  TimedFaults faults_;
   EscLine line_;
   std::uint64_t shots_ = 0, resets_ = 0;
   std::vector<Signal> signals_;

@@ -138,7 +138,7 @@ class FakeWorld final : public World {
         now_ns + std::llround(1e9 * std::get<request::Wind>(disturbance).duration_s.value());
     return Done{};
   }
-  bool take_fault(const FaultSpec& fault) override {
+  Result<bool> take_fault(const FaultSpec& fault) override {
     if (fault.kind != "mocap_lost") return false;
     applied_.push_back(fault.number);
     return true;

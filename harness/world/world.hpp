@@ -12,30 +12,12 @@
 #include <vector>
 
 #include "base/result.hpp"
-#include "base/units.hpp"
+#include "harness/world/fault.hpp"
 #include "harness/world/request.hpp"
+#include "harness/world/signal_table.hpp"
 #include "io_bridges/messages/messages.hpp"
 
 namespace whirl {
-
-struct Signal {
-  std::string name;
-  Dimension dimension = Dimension::none;
-  std::string about;  // one line for people: "height above the floor, truth"
-};
-
-// One fault as a plan asked for it. The kind is a word ("i2c_nack", "capture_lost").
-struct FaultSpec {
-  std::uint32_t number = 0;
-  std::string kind;
-  std::string device;         // "imu", "esc2"; may be empty
-  std::int32_t bus = -1;      // I2C3: 3, SPI1: 1, USART2: 2; -1: any
-  std::int32_t address = -1;  // I2C address, or the device's number on its board; -1: any
-  std::int32_t axis = 0;      // sensors: 0..2 accelerometer x y z, 3..5 gyro x y z
-  std::int64_t start_ns = 0;
-  std::int64_t end_ns = INT64_MAX;  // INT64_MAX: for ever
-  double value = 0.0;               // SI; its meaning depends on the kind
-};
 
 class World {
  public:
@@ -67,7 +49,8 @@ class World {
 
   // True: this kind is the world's to apply (capture lost, supply dip), and it will report its
   // number in applied_faults() once it has acted. False: it is the board's.
-  virtual bool take_fault(const FaultSpec& fault) = 0;
+  // Errors  bad_input: it is the world's, but not at this place (a motor that is not there)
+  virtual Result<bool> take_fault(const FaultSpec& fault) = 0;
   virtual std::vector<std::uint32_t> applied_faults() const = 0;
 
   virtual std::string status() const = 0;  // a few words for the progress line: "flying, 1.08 m"

@@ -245,20 +245,25 @@ TEST(FlightWorld, WhatAStandDoesIsRefusedByItsKey) {
 
 TEST(FlightWorld, ItsFaultsActAndAreReportedOnlyThen) {
   Flight flight;
-  const auto fault = [&](std::uint32_t number, const char* kind, const char* device, double value) {
+  const auto fault = [&](std::uint32_t number, const char* kind, const FaultPlace& place,
+                         double value) {
     FaultSpec spec;
     spec.number = number;
     spec.kind = kind;
-    spec.device = device;
+    spec.place = place;
     spec.start_ns = 2000 * kMs;
     spec.end_ns = 2500 * kMs;
     spec.value = value;
     return flight.world.take_fault(spec);
   };
-  EXPECT_TRUE(fault(1, "capture_lost", "", 0));
-  EXPECT_TRUE(fault(2, "supply_dip", "", 3.0));
-  EXPECT_TRUE(fault(3, "esc_stopped", "esc2", 0));
-  EXPECT_FALSE(fault(4, "i2c_nack", "esc2", 0));
+  // What its ESC is called on the board says nothing; whose it is does.
+  const fault_at::Device right{"right_esc", 3, 0x2A, 2}, nobodys{"esc2", 3, 0x2A, 0};
+  EXPECT_TRUE(fault(1, "capture_lost", {}, 0).value());
+  EXPECT_TRUE(fault(2, "supply_dip", {}, 3.0).value());
+  EXPECT_TRUE(fault(3, "esc_stopped", right, 0).value());
+  EXPECT_FALSE(fault(4, "i2c_nack", right, 0).value());
+  EXPECT_FALSE(fault(5, "esc_stopped", nobodys, 0).ok());
+  EXPECT_FALSE(fault(6, "esc_stopped", fault_at::Motor{5}, 0).ok());
   flight.run(1.0);
   flight.height_m = 0.02;
   flight.run(0.9);

@@ -183,10 +183,10 @@ TEST(Stand, DipLowersTheSupplyWhileItLasts) {
   dip.start_ns = 100 * kMs;
   dip.end_ns = 200 * kMs;
   dip.value = 4.0;
-  ASSERT_TRUE(b.world.take_fault(dip));
+  ASSERT_TRUE(b.world.take_fault(dip).value());
   FaultSpec other;
   other.kind = "i2c_nack";
-  EXPECT_FALSE(b.world.take_fault(other));  // the board's
+  EXPECT_FALSE(b.world.take_fault(other).value());  // the board's
   b.run_until(50 * kMs, 0.0);
   EXPECT_TRUE(b.world.applied_faults().empty());
   b.run_until(150 * kMs, 0.0);

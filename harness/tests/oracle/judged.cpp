@@ -47,7 +47,7 @@ class PlayedWorld final : public World {
   }
   const std::vector<std::string>& heard() const override { return heard_; }
   std::int64_t command_on_wire_ns() const override { return wire_ns_; }
-  bool take_fault(const FaultSpec& fault) override {
+  Result<bool> take_fault(const FaultSpec& fault) override {
     const auto mine = scenario_.world_faults.find(fault.kind);
     if (mine == scenario_.world_faults.end()) return false;
     if (mine->second) applied_.push_back(fault.number);
