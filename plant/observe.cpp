@@ -7,7 +7,7 @@ Truth observe(const VehicleState& s) {
   truth.v_AB_B_mps = s.q_WB.conjugate() * (s.v_WB_W_mps - s.wind_W_mps);
   truth.static_pressure_Pa = s.static_pressure_Pa;
   truth.air_density_kgpm3 = s.air_density_kgpm3;
-  for (std::size_t i = 0; i < 4; ++i) {
+  for (std::size_t i = 0; i < s.motors.size(); ++i) {
     truth.thrust_N[i] = s.motors[i].thrust_N;
     truth.bus_current_A[i] = s.motors[i].bus_current_A;
   }
@@ -18,7 +18,8 @@ ImuMotion imu_motion(const VehicleState& s) {
   ImuMotion motion{.specific_force_B_mps2 = s.specific_force_B_mps2,
                    .w_WB_B_radps = s.w_WB_B_radps,
                    .alpha_WB_B_radps2 = s.alpha_WB_B_radps2};
-  for (std::size_t i = 0; i < 4; ++i) motion.rotor_speed_radps[i] = s.motors[i].speed_radps;
+  for (std::size_t i = 0; i < s.motors.size(); ++i)
+    motion.rotor_speed_radps[i] = s.motors[i].speed_radps;
   return motion;
 }
 

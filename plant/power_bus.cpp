@@ -5,13 +5,13 @@
 #include <cmath>
 
 #include "base/check.hpp"
+#include "plant/base/motor_count.hpp"
 
 namespace whirl::plant {
 namespace {
 
 constexpr double kAgree_V = 1e-8;
 constexpr int kMostRounds = 30;
-constexpr std::size_t kMostMotors = 8;
 
 }  // namespace
 

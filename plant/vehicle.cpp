@@ -34,7 +34,7 @@ ShaftLoad shaft_load(const RotorLoads& loads, double at_speed_radps) {
   return {torque / (at_speed_radps * at_speed_radps), 0.0};
 }
 
-EnergyBooks sum_of(const std::array<MotorBooks, 4>& motors, const BatteryBooks& pack) {
+EnergyBooks sum_of(const std::vector<MotorBooks>& motors, const BatteryBooks& pack) {
   MotorBooks all;
   for (const MotorBooks& m : motors) all += m;
   return {.chemical_J = pack.chemical_J,
@@ -56,7 +56,21 @@ struct Vehicle::Parts {
         rotors(std::move(rotor_set)),
         battery(vehicle.battery),
         air(vehicle.air, seed),
-        contact(vehicle.airframe) {}
+        contact(vehicle.airframe),
+        motors(rotors.size(), AveragedMotor(vehicle.motor)),
+        commands(rotors.size()),
+        drives(rotors.size()),
+        loads(rotors.size()),
+        loads_at_radps(rotors.size(), 0.0),
+        shaft(rotors.size()),
+        books(rotors.size()),
+        total(rotors.size()) {
+    WHIRL_CHECK(rotors.size() == vehicle.airframe.rotors.size(), rotors.size(),
+                vehicle.airframe.rotors.size());
+    state.motors.resize(rotors.size());
+  }
+
+  std::size_t count() const { return motors.size(); }
 
   void run_motors(double dt_s);
   Forcing run_rotors(double dt_s);
@@ -64,7 +78,7 @@ struct Vehicle::Parts {
   void strike();
   void publish_air();
   Vector3d spin_B() const;
-  Vector3d hub_W(int i) const {
+  Vector3d hub_W(std::size_t i) const {
     return body.p_WB_W_m + body.q_WB * params.airframe.rotors[i].p_BP_B_m;
   }
 
@@ -74,12 +88,14 @@ struct Vehicle::Parts {
   Battery battery;
   Air air;
   ContactWorld contact;
-  std::array<AveragedMotor, 4> motors{AveragedMotor(params.motor), AveragedMotor(params.motor),
-                                      AveragedMotor(params.motor), AveragedMotor(params.motor)};
-  std::array<MotorCommand, 4> commands;
-  std::array<Drive, 4> drives;  // kept: the last bus voltage is the next first guess
-  std::array<RotorLoads, 4> loads;
-  std::array<double, 4> loads_at_radps{};
+  // One of each for each motor:
+  std::vector<AveragedMotor> motors;
+  std::vector<MotorCommand> commands;
+  std::vector<Drive> drives;  // kept: the last bus voltage is the next first guess
+  std::vector<RotorLoads> loads;
+  std::vector<double> loads_at_radps;
+  std::vector<ShaftLoad> shaft;          // of this step,
+  std::vector<MotorBooks> books, total;  // of its sub-step and of all
   std::vector<Dip> dips;
   std::vector<Push> pushes;
   Vector3d spin_start_B_Nms = Vector3d::Zero();
@@ -90,14 +106,14 @@ struct Vehicle::Parts {
 
 Vector3d Vehicle::Parts::spin_B() const {
   double sum = 0.0;  // counter-clockwise seen from above is about -z
-  for (int i = 0; i < 4; ++i) sum -= params.airframe.rotors[i].spin * motors[i].speed_radps();
+  for (std::size_t i = 0; i < count(); ++i)
+    sum -= params.airframe.rotors[i].spin * motors[i].speed_radps();
   return {0.0, 0.0, params.motor.inertia_kgm2 * sum};
 }
 
 void Vehicle::Parts::run_motors(double dt_s) {
-  std::array<ShaftLoad, 4> shaft;
-  std::array<MotorBooks, 4> books, total{};
-  for (int i = 0; i < 4; ++i) {
+  std::fill(total.begin(), total.end(), MotorBooks{});
+  for (std::size_t i = 0; i < count(); ++i) {
     drives[i].duty = std::clamp(commands[i].duty, 0.0, 1.0);
     drives[i].diode = commands[i].freewheel == Freewheel::diode;
     shaft[i] = shaft_load(loads[i], loads_at_radps[i]);
@@ -118,13 +134,13 @@ void Vehicle::Parts::run_motors(double dt_s) {
     voltage += draw.bus_V / steps;
     avionics_J += draw.bus_V * params.avionics_current_A * dt_s / steps;
     pack += draw.battery;
-    for (int i = 0; i < 4; ++i) {
+    for (std::size_t i = 0; i < count(); ++i) {
       total[i] += books[i];
       state.motors[i].winding_peak_A =
           std::max(state.motors[i].winding_peak_A, std::abs(motors[i].current_A()));
     }
   }
-  for (int i = 0; i < 4; ++i) {
+  for (std::size_t i = 0; i < count(); ++i) {
     motors[i].warm(total[i], dt_s);
     MotorState& m = state.motors[i];
     m.speed_radps = motors[i].speed_radps();
@@ -148,7 +164,7 @@ Forcing Vehicle::Parts::run_rotors(double dt_s) {
   conditions.w_WP_P_radps = body.w_WB_B_radps;
   conditions.density_kgpm3 = state.air_density_kgpm3;
   conditions.viscosity_Pas = viscosity_Pas;
-  for (int i = 0; i < 4; ++i) {
+  for (std::size_t i = 0; i < count(); ++i) {
     const Vector3d& arm_B = params.airframe.rotors[i].p_BP_B_m;
     const Vector3d p_W = hub_W(i);
     conditions.omega_radps = motors[i].speed_radps();
@@ -196,7 +212,7 @@ void Vehicle::Parts::run_body(Forcing& forcing, double dt_s) {
 void Vehicle::Parts::strike() {
   const Vector3d axis_W = body.q_WB * Vector3d::UnitZ();
   const double slope = std::sqrt(std::max(0.0, 1.0 - axis_W.z() * axis_W.z()));
-  for (int i = 0; i < 4; ++i) {
+  for (std::size_t i = 0; i < count(); ++i) {
     if (hub_W(i).z() + params.airframe.rotors[i].radius_m * slope <= 0.0) continue;
     motors[i].block();
     state.motors[i].blocked = true;
@@ -237,14 +253,15 @@ void Vehicle::place(const Vector3d& p_WB_W_m, const Eigen::Quaterniond& q_WB,
 }
 
 void Vehicle::set_motor_speed(int index, double speed_radps) {
-  parts_->motors.at(index).set_speed(speed_radps);
-  parts_->state.motors[index].speed_radps = speed_radps;
+  const auto i = static_cast<std::size_t>(index);
+  parts_->motors.at(i).set_speed(speed_radps);
+  parts_->state.motors[i].speed_radps = speed_radps;
   parts_->spin_start_B_Nms = parts_->spin_B();
 }
 
 void Vehicle::command(int index, const MotorCommand& command) {
   WHIRL_CHECK(std::isfinite(command.duty), index, command.duty);
-  parts_->commands.at(index) = command;
+  parts_->commands.at(static_cast<std::size_t>(index)) = command;
 }
 
 void Vehicle::set_steady_wind(const Vector3d& wind) {

@@ -1,4 +1,4 @@
-// A quadrotor as physics: four motors on one battery, four rotors in the air, a rigid body, ground.
+// A rotorcraft as physics: motors on one battery, a rotor on each, a rigid body, ground.
 //
 //   Frame    W and B as in frames.hpp; motors and rotors by index = motor number - 1
 //   Units    SI
@@ -9,10 +9,10 @@
 //   Left out blade flexing, rotor-on-rotor wake, wind that varies inside a rotor's disc
 #pragma once
 #include <Eigen/Geometry>
-#include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <vector>
 
 #include "base/result.hpp"
 #include "plant/air/air_params.hpp"
@@ -26,14 +26,14 @@ class Blade;             // plant/rotor/blade.hpp
 struct RotorConditions;  // plant/rotor/rotor.hpp
 struct RotorLoads;
 using RotorStep = std::function<RotorLoads(const RotorConditions& conditions, double dt_s)>;
-using RotorSet = std::array<RotorStep, 4>;
+using RotorSet = std::vector<RotorStep>;
 
-// Four blade-element rotors that turn as the airframe's mounts say.
+// A blade-element rotor for each of the airframe's mounts, turning as it says.
 RotorSet blade_element_rotors(std::shared_ptr<const Blade> blade, const AirframeParams& airframe);
 
 struct VehicleParams {
   AirframeParams airframe;
-  MotorParams motor;
+  MotorParams motor;  // of each rotor
   BatteryParams battery;
   double avionics_current_A = 0.25;
   AirParams air;
@@ -81,7 +81,7 @@ struct VehicleState {
   Eigen::Vector3d w_WB_B_radps = Eigen::Vector3d::Zero();
   Eigen::Vector3d specific_force_B_mps2 = Eigen::Vector3d::Zero();  // at the centre of mass
   Eigen::Vector3d alpha_WB_B_radps2 = Eigen::Vector3d::Zero();
-  std::array<MotorState, 4> motors;
+  std::vector<MotorState> motors;  // index: motor number - 1
   double bus_voltage_V = 0.0;      // mean over the step
   double battery_current_A = 0.0;  // mean over the step, avionics included
   double charge_used_C = 0.0;
@@ -95,7 +95,7 @@ struct VehicleState {
 class Vehicle {
  public:
   // Pre: validate(params) succeeded. The vehicle starts at rest on its gear at W's origin, nose
-  // north. `rotors[i]` must turn as params.airframe.rotors[i].spin says.
+  // north. `rotors` has one for each of params.airframe.rotors, and rotors[i] turns as its spin says.
   Vehicle(const VehicleParams& params, RotorSet rotors, std::uint64_t seed);
   ~Vehicle();
   Vehicle(Vehicle&&) noexcept;

@@ -9,10 +9,10 @@ VehicleParams hp_quad() {
   a.mass_kg = 0.900;
   a.inertia_kgm2 = {0.0125, 0.0125, 0.0235};  // from the parts list
   const double arm_m = 0.25, height_m = 0.03;
-  a.rotors[0] = {{arm_m, 0.0, -height_m}, +1, 0.127};
-  a.rotors[1] = {{0.0, arm_m, -height_m}, -1, 0.127};
-  a.rotors[2] = {{-arm_m, 0.0, -height_m}, +1, 0.127};
-  a.rotors[3] = {{0.0, -arm_m, -height_m}, -1, 0.127};
+  a.rotors = {{{arm_m, 0.0, -height_m}, +1, 0.127},
+              {{0.0, arm_m, -height_m}, -1, 0.127},
+              {{-arm_m, 0.0, -height_m}, +1, 0.127},
+              {{0.0, -arm_m, -height_m}, -1, 0.127}};
   for (double x : {-0.12, 0.12}) {
     for (double y : {-0.12, 0.12}) a.contact.gear_B_m.emplace_back(x, y, 0.10);
   }

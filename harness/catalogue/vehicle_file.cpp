@@ -14,6 +14,38 @@ using lua::at_least;
 using lua::between;
 using lua::Table;
 
+int spin_of(const Table& t) {
+  return t.choice("spin", {"ccw", "cw"}) == "cw" ? -1 : +1;
+}
+
+// Motor 1 front, 2 right, 3 rear, 4 left; 1 and 3 counter-clockwise seen from above.
+std::vector<plant::RotorMount> plus_quad(double arm_m, double above_m) {
+  return {{{arm_m, 0, -above_m}, +1},
+          {{0, arm_m, -above_m}, -1},
+          {{-arm_m, 0, -above_m}, +1},
+          {{0, -arm_m, -above_m}, -1}};
+}
+
+void read_rotors(const Table& t, plant::AirframeParams& a) {
+  const double above_m = t.quantity_or("rotor_height", Dimension::length, 0.03);
+  if (t.has("arm") == t.has("motors")) {
+    return t.refuse("arm", "either the arm of a quad, or a list of motors, is wanted",
+                    "arm = \"25 cm\", or motors = { { place = { forward = \"25 cm\", right = "
+                    "\"0 cm\" }, spin = \"ccw\" }, ... }");
+  }
+  if (t.has("arm")) {
+    a.rotors = plus_quad(t.quantity("arm", Dimension::length, above(0.0)), above_m);
+    return;
+  }
+  for (const Table& motor : t.tables("motors")) {
+    const Table place = motor.table("place");
+    a.rotors.push_back(
+        {{place.quantity("forward", Dimension::length), place.quantity("right", Dimension::length),
+          -place.quantity_or("above", Dimension::length, above_m)},
+         spin_of(motor)});
+  }
+}
+
 void read_airframe(const Table& t, plant::AirframeParams& a) {
   a.mass_kg = t.quantity("mass", Dimension::mass, above(0.0));
   const auto inertia = t.quantities("inertia", Dimension::inertia, above(0.0));
@@ -22,15 +54,7 @@ void read_airframe(const Table& t, plant::AirframeParams& a) {
   } else {
     a.inertia_kgm2 = {inertia[0], inertia[1], inertia[2]};
   }
-  const double arm = t.quantity("arm", Dimension::length, above(0.0));
-  const double above_m = t.quantity_or("rotor_height", Dimension::length, 0.03);
-  // Motor 1 front, 2 right, 3 rear, 4 left; 1 and 3 counter-clockwise seen from above.
-  const Eigen::Vector3d at[] = {
-      {arm, 0, -above_m}, {0, arm, -above_m}, {-arm, 0, -above_m}, {0, -arm, -above_m}};
-  for (std::size_t i = 0; i < 4; ++i) {
-    a.rotors[i].p_BP_B_m = at[i];
-    a.rotors[i].spin = i % 2 == 0 ? +1 : -1;
-  }
+  read_rotors(t, a);
   a.parasitic_area_m2 = t.number_or("parasitic_area_m2", 0.0, at_least(0.0));
   a.rotor_drag_spm = t.number_or("rotor_drag_s_per_m", 0.0, at_least(0.0));
 }

@@ -53,7 +53,7 @@ void FlightWorld::name_signals() {
 
 void FlightWorld::name_motor_signals() {
   using D = Dimension;
-  for (std::size_t i = 0; i < 4; ++i) {
+  for (std::size_t i = 0; i < escs_.size(); ++i) {
     const std::string n = "_" + std::to_string(i + 1);
     const auto motor = [this, i]() -> const plant::MotorState& {
       return vehicle_.state().motors[i];

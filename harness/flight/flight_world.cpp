@@ -1,5 +1,6 @@
 #include "harness/flight/flight_world.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -32,7 +33,8 @@ FlightWorld::FlightWorld(const FlightParams& params, std::uint64_t seed)
 
 FlightWorld::FlightWorld(const FlightParams& params, plant::RotorSet rotors, std::uint64_t seed)
     : vehicle_(params.vehicle, std::move(rotors), seed), capture_(params.capture, seed) {
-  for (int motor = 1; motor <= 4; ++motor) escs_.emplace_back(params.esc, seed, motor);
+  const int motors = static_cast<int>(params.vehicle.airframe.rotors.size());
+  for (int motor = 1; motor <= motors; ++motor) escs_.emplace_back(params.esc, seed, motor);
   name_signals();
 }
 
@@ -53,7 +55,7 @@ void FlightWorld::take(const io::Batch& happened) {
   while (reader.next()) {
     const io::Header& header = reader.header();
     if (header.kind == io::Kind::esc_setpoint) {
-      WHIRL_CHECK(header.port >= 1 && header.port <= 4, header.port);
+      WHIRL_CHECK(header.port >= 1 && header.port <= escs_.size(), header.port);
       const auto setpoint = reader.as<io::EscSetpoint>();
       if (setpoint.valid != 0) {
         escs_[header.port - 1u].write(setpoint.value);
@@ -72,9 +74,9 @@ void FlightWorld::move(std::int64_t t_ns) {
   WHIRL_CHECK(t_ns == now_ns_ + kStep_ns, t_ns, now_ns_);
   apply_faults(now_ns_);
   const plant::VehicleState& before = vehicle_.state();
-  for (int i = 0; i < 4; ++i) {
-    const auto n = static_cast<std::size_t>(i);
-    vehicle_.command(i, escs_[n].step(now_ns_, before.motors[n], before.bus_voltage_V));
+  for (std::size_t i = 0; i < escs_.size(); ++i) {
+    vehicle_.command(static_cast<int>(i),
+                     escs_[i].step(now_ns_, before.motors[i], before.bus_voltage_V));
   }
   vehicle_.step(kStep_s);
 }
@@ -86,13 +88,15 @@ void FlightWorld::tell(std::int64_t t_ns, io::Batch& sensed) {
   copy(s.w_WB_B_radps, motion.w_WB_B_radps);
   copy(s.alpha_WB_B_radps2, motion.alpha_WB_B_radps2);
   copy(s.q_WB.conjugate() * kMagneticField_W_T, motion.magnetic_field_B_T);
-  for (std::size_t i = 0; i < 4; ++i) motion.rotor_speed_radps[i] = s.motors[i].speed_radps;
+  // The message has room for a quad's rotors; those beyond do not shake the board's sensors.
+  const std::size_t shaking = std::min(escs_.size(), std::size(motion.rotor_speed_radps));
+  for (std::size_t i = 0; i < shaking; ++i) motion.rotor_speed_radps[i] = s.motors[i].speed_radps;
   motion.static_pressure_Pa = s.static_pressure_Pa;
   motion.air_temperature_K = s.air_temperature_K;
   motion.bus_voltage_V = s.bus_voltage_V;
   sensed.add(io::Kind::body_motion, 0, t_ns, motion);
 
-  for (std::size_t i = 0; i < 4; ++i) {
+  for (std::size_t i = 0; i < escs_.size(); ++i) {
     sensed.add(io::Kind::esc_state, static_cast<std::uint16_t>(i + 1), t_ns, escs_[i].status());
   }
   const auto send = [&sensed](std::int64_t at_ns, std::span<const std::uint8_t> frame) {

@@ -1,4 +1,4 @@
-// A flight: the vehicle in its air, four native ESCs, the capture system and the ground station.
+// A flight: the vehicle in its air, a native ESC for each motor, the capture system and the ground station.
 //
 //   Step     ESCs and station take what the target did; then everything moves 1 ms; then what is
 //            sensed goes out: body_motion, esc_state of each motor, uart_frame to the radio
@@ -7,7 +7,6 @@
 //   Air      Wind with a duration, Jet
 //   Faults   capture_lost; supply_dip (value: volts below); esc_stopped (of a motor, or of the device that is its ESC)
 #pragma once
-#include <array>
 #include <functional>
 #include <memory>
 #include <string>

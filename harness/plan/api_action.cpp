@@ -9,7 +9,8 @@
 namespace whirl::plan {
 namespace {
 
-constexpr int kMost_motors = 12;
+constexpr int kMost_motors =
+    12;  // of a vehicle (plant/base/motor_count.hpp); it refuses what it lacks
 
 // What t:command and t:gust share: the table goes to the world, or the plan's line to the complaint.
 int pass_on(lua_State* L, Result<Done> (*to_world)(World&, const lua::Table&, std::int64_t)) {

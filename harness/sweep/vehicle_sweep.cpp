@@ -48,13 +48,14 @@ Chart hover_chart(const flight::FlightParams& vehicle, const std::vector<DrivePo
   Chart chart = over_voltage(points, "Efficiency", "thrust per electrical power / (N/W)",
                              [](const DrivePoint& p) { return p.thrust_N / p.electrical_W; });
   const double weight_N = vehicle.vehicle.airframe.mass_kg * kGravity_mps2;
-  const auto found = drive_for_thrust(vehicle, weight_N / 4.0, bus_V);
+  const auto motors = static_cast<double>(vehicle.vehicle.airframe.rotors.size());
+  const auto found = drive_for_thrust(vehicle, weight_N / motors, bus_V);
   if (!found) {
     chart.note = found.error().message();
     return chart;
   }
   const DrivePoint& hover = found.value();
-  const double total_A = 4.0 * hover.bus_A + vehicle.vehicle.avionics_current_A;
+  const double total_A = motors * hover.bus_A + vehicle.vehicle.avionics_current_A;
   const auto report = [&](const char* name, double x, const char* unit) {
     chart.figures.push_back({name, x, std::numeric_limits<double>::infinity(), unit, true});
   };

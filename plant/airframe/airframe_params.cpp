@@ -1,6 +1,7 @@
 #include "plant/airframe/airframe_params.hpp"
 
 #include "plant/base/bounds.hpp"
+#include "plant/base/motor_count.hpp"
 
 namespace whirl::plant {
 
@@ -13,6 +14,8 @@ Result<Done> validate(const AirframeParams& p, const std::string& place) {
     b.require(I[i] <= I[(i + 1) % 3] + I[(i + 2) % 3],
               "inertia_kgm2: no body has one moment larger than the sum of the other two");
   }
+  b.require(!p.rotors.empty() && p.rotors.size() <= kMostMotors,
+            "a vehicle has 1 to " + std::to_string(kMostMotors) + " motors");
   for (const RotorMount& rotor : p.rotors) {
     b.require(rotor.spin == 1 || rotor.spin == -1, "spin of a rotor must be +1 or -1");
     b.within("radius_m of a rotor", rotor.radius_m, 0.01, 2.0);

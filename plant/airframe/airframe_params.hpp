@@ -7,7 +7,6 @@
 //            and acts at the centre of mass.
 #pragma once
 #include <Eigen/Core>
-#include <array>
 #include <string>
 #include <vector>
 
@@ -31,7 +30,7 @@ struct ContactParams {
 struct AirframeParams {
   double mass_kg = 0.0;
   Eigen::Vector3d inertia_kgm2 = Eigen::Vector3d::Zero();  // principal, along the axes of B
-  std::array<RotorMount, 4> rotors;                        // index: motor number - 1
+  std::vector<RotorMount> rotors;  // 1 to kMostMotors; index: motor number - 1
   double rotor_drag_spm = 0.0;     // in-plane force = -this x thrust x air speed, per rotor
   double parasitic_area_m2 = 0.0;  // drag coefficient x frontal area
   ContactParams contact;

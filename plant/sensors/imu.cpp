@@ -83,15 +83,16 @@ struct Imu::Parts {
       R_SB =
           Eigen::AngleAxisd(angle, params.misalignment_rad / angle).toRotationMatrix().transpose();
     }
-    for (int i = 0; i < 4; ++i) {
+    for (std::size_t i = 0; i < kMostMotors; ++i) {
       phase[i] = draw_uniform(0.0, kTwoPi, seed, name + ".phase" + std::to_string(i));
     }
   }
 
   // Out-of-balance turns with each rotor in its plane, blade passing shakes along the axis.
-  Vector3d shake(const std::array<double, 4>& speed, double dt_s) {
+  Vector3d shake(const std::array<double, kMostMotors>& speed, double dt_s) {
     Vector3d sum = Vector3d::Zero();
-    for (int i = 0; i < 4; ++i) {
+    for (std::size_t i = 0; i < kMostMotors; ++i) {
+      if (speed[i] == 0.0) continue;
       phase[i] = std::fmod(phase[i] + speed[i] * dt_s, kTwoPi);
       const double strength = speed[i] * speed[i];
       sum += strength * Vector3d(std::cos(phase[i]), std::sin(phase[i]), std::cos(2.0 * phase[i]));
@@ -102,7 +103,7 @@ struct Imu::Parts {
   Vector3d lever_B_m;
   Eigen::Matrix3d R_SB = Eigen::Matrix3d::Identity();
   Triad accelerometer, gyroscope;
-  std::array<double, 4> phase{};
+  std::array<double, kMostMotors> phase{};
   double last_t_s = -kFirstInterval_s;
   bool started = false;
 };

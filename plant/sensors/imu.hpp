@@ -16,6 +16,7 @@
 #include <string>
 
 #include "base/result.hpp"
+#include "plant/base/motor_count.hpp"
 
 namespace whirl::plant {
 
@@ -41,7 +42,7 @@ struct ImuMotion {
   Eigen::Vector3d specific_force_B_mps2 = Eigen::Vector3d::Zero();
   Eigen::Vector3d w_WB_B_radps = Eigen::Vector3d::Zero();
   Eigen::Vector3d alpha_WB_B_radps2 = Eigen::Vector3d::Zero();
-  std::array<double, 4> rotor_speed_radps{};
+  std::array<double, kMostMotors> rotor_speed_radps{};  // of rotors that are not there: 0
 };
 
 struct ImuSample {

@@ -22,7 +22,8 @@ struct MagnetometerParams {
   Eigen::Vector3d field_W_T = Eigen::Vector3d(23.9e-6, 5.2e-6, -52.5e-6);  // Canberra
   Eigen::Matrix3d soft_iron = Eigen::Matrix3d::Identity();
   Eigen::Vector3d hard_iron_T = Eigen::Vector3d::Zero();
-  std::array<Eigen::Vector3d, 4> per_ampere_T{
+  std::vector<Eigen::Vector3d> per_ampere_T{
+      // of the motors that it feels; at most kMostMotors
       Eigen::Vector3d(4e-8, 0.0, 2e-8), Eigen::Vector3d(0.0, 4e-8, 2e-8),
       Eigen::Vector3d(-4e-8, 0.0, 2e-8), Eigen::Vector3d(0.0, -4e-8, 2e-8)};
   double noise_density_T = 2e-8;  // per root Hz

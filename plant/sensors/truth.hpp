@@ -3,6 +3,8 @@
 #include <Eigen/Geometry>
 #include <array>
 
+#include "plant/base/motor_count.hpp"
+
 namespace whirl::plant {
 
 struct Truth {
@@ -11,8 +13,8 @@ struct Truth {
   Eigen::Quaterniond q_WB = Eigen::Quaterniond::Identity();
   Eigen::Vector3d v_AB_B_mps = Eigen::Vector3d::Zero();  // through the air
   double static_pressure_Pa = 101325.0, air_density_kgpm3 = 1.225;
-  std::array<double, 4> thrust_N{};
-  std::array<double, 4> bus_current_A{};
+  std::array<double, kMostMotors> thrust_N{};  // of motors that are not there: 0
+  std::array<double, kMostMotors> bus_current_A{};
 };
 
 }  // namespace whirl::plant

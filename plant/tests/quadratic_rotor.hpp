@@ -22,16 +22,15 @@ inline double static_torque_Nm(double omega_radps, double figure_of_merit = 0.69
 
 inline RotorSet quadratic_rotors(const AirframeParams& airframe) {
   RotorSet set;
-  for (int i = 0; i < 4; ++i) {
-    const int spin = airframe.rotors[i].spin;
-    set[i] = [spin](const RotorConditions& c, double) {
+  for (const RotorMount& mount : airframe.rotors) {
+    set.emplace_back([spin = mount.spin](const RotorConditions& c, double) {
       RotorLoads loads;
       loads.thrust_N = static_thrust_N(c.omega_radps);
       loads.shaft_torque_Nm = static_torque_Nm(c.omega_radps);
       loads.f_P_N = {0.0, 0.0, -loads.thrust_N};
       loads.tau_P_Nm = {0.0, 0.0, spin * loads.shaft_torque_Nm};
       return loads;
-    };
+    });
   }
   return set;
 }

@@ -56,7 +56,7 @@ TEST(VehicleEnergy, EveryJouleOfThePackIsAccountedForInAnyState) {
 TEST(VehicleEnergy, ClimbInAnUpdraftBalancesFromThePackToTheHeight) {
   VehicleParams params = hp_quad();
   params.airframe.parasitic_area_m2 = params.airframe.rotor_drag_spm = 0.0;
-  RotorSet inner = blade_element_rotors(hobbyking(), params.airframe), watched;
+  RotorSet inner = blade_element_rotors(hobbyking(), params.airframe), watched(inner.size());
   double shaft_J = 0.0, to_air_J = 0.0, ideal_J = 0.0;
   Vector3d force = Vector3d::Zero();
   for (int i = 0; i < 4; ++i) {

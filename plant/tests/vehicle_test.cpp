@@ -216,7 +216,7 @@ TEST(Vehicle, PushActsWhileItLasts) {
 // Rotor by rotor: under a roll rate the right disc goes down into its air, the left one up.
 TEST(Vehicle, EachRotorMeetsItsOwnAir) {
   std::array<double, 4> climb{};
-  RotorSet rotors;
+  RotorSet rotors(4);
   for (int i = 0; i < 4; ++i) {
     rotors[i] = [&climb, i](const RotorConditions& c, double) {
       climb[i] = -c.v_AP_P_mps.z();

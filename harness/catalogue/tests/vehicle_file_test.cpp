@@ -81,6 +81,33 @@ TEST(VehicleFile, InductanceThatNobodyPrintsIsTheUsualOne) {
   EXPECT_TRUE(near(params.value().vehicle.motor.inductance_H, 24e-6, round_off(8, 24e-6)));
 }
 
+// A flat hexa: motors are listed, each with its place from the centre of mass and its sense.
+TEST(VehicleFile, MotorsAreListedOrTheArmOfAQuadIsTold) {
+  std::string motors = "motors = {";
+  for (int i = 0; i < 6; ++i) {
+    motors += " { place = { forward = '" + std::to_string(10 * i) + " cm', right = '-5 cm'" +
+              (i == 0 ? ", above = '7 cm'" : "") + " }, spin = '" + (i % 2 == 0 ? "cw" : "ccw") +
+              "' },";
+  }
+  motors += " },";
+  const auto hexa = read_changed("arm = \"25 cm\",", motors);
+  ASSERT_TRUE(hexa.ok()) << hexa.error().message();
+  const auto& rotors = hexa.value().vehicle.airframe.rotors;
+  ASSERT_EQ(rotors.size(), 6u);
+  EXPECT_TRUE(near(rotors[3].p_BP_B_m.x(), 0.3, round_off(4, 1)));
+  EXPECT_TRUE(near(rotors[3].p_BP_B_m.y(), -0.05, round_off(4, 1)));
+  EXPECT_TRUE(near(rotors[0].p_BP_B_m.z(), -0.07, round_off(4, 1)));
+  EXPECT_TRUE(near(rotors[3].p_BP_B_m.z(), -0.03, round_off(4, 1)));  // the file's rotor_height
+  EXPECT_EQ(rotors[0].spin, -1);
+  EXPECT_EQ(rotors[1].spin, +1);
+  EXPECT_EQ(rotors[5].radius_m, plant::radius_m(*hexa.value().blade));
+  EXPECT_NE(complaint_about("arm = \"25 cm\",", "").find("arm: either"), std::string::npos);
+  EXPECT_NE(complaint_about("arm = \"25 cm\",", "arm = \"25 cm\", " + motors).find("arm: either"),
+            std::string::npos);
+  EXPECT_NE(complaint_about("arm = \"25 cm\",", "motors = {},").find("1 to 12 motors"),
+            std::string::npos);
+}
+
 TEST(VehicleFile, CalibrationHasTheNamesOfTheImagesSet) {
   const auto params = read_changed(
       "esc = { mode = \"thrust_by_rpm\"",

@@ -228,6 +228,35 @@ TEST(FlightWorld, RefusesCommandsItDoesNotUnderstand) {
   EXPECT_FALSE(plan::disturb(flight.world, table("{ duration = '1 s' }"), 0).ok());
 }
 
+// An ESC, its signals and its messages for each motor of a hexa, which a board numbers from 1 to 6.
+TEST(FlightWorld, HasAnEscForEachMotor) {
+  FlightParams params = hp_quad_file();
+  plant::AirframeParams& airframe = params.vehicle.airframe;
+  airframe.rotors.push_back({{0.2, 0.2, -0.03}, +1});
+  airframe.rotors.push_back({{-0.2, -0.2, -0.03}, -1});
+  FlightWorld world(params, 1);
+  EXPECT_TRUE(SignalTable(world.signals()).find("thrust_6").has_value());
+  EXPECT_FALSE(SignalTable(world.signals()).find("thrust_7").has_value());
+  FaultSpec stop;
+  stop.kind = "esc_stopped";
+  stop.place = fault_at::Motor{6};
+  EXPECT_TRUE(world.take_fault(stop).value());
+  stop.place = fault_at::Motor{7};
+  EXPECT_FALSE(world.take_fault(stop).ok());
+  io::Batch happened, sensed;
+  world.step(0, happened, sensed);
+  for (std::uint16_t motor = 1; motor <= 6; ++motor) {
+    happened.add(io::Kind::esc_setpoint, motor, 0, io::EscSetpoint{0, 1, {}, 0});
+  }
+  sensed.clear();
+  world.step(kMs, happened, sensed);
+  std::vector<int> told;
+  for (io::Reader r(sensed.bytes()); r.next();) {
+    if (r.header().kind == io::Kind::esc_state) told.push_back(r.header().port);
+  }
+  EXPECT_EQ(told, (std::vector<int>{1, 2, 3, 4, 5, 6}));
+}
+
 // What only a stand can do is no word of a flight; the key stands in the complaint.
 TEST(FlightWorld, WhatAStandDoesIsRefusedByItsKey) {
   Flight flight;
