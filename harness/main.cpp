@@ -31,13 +31,14 @@ Result<std::unique_ptr<World>> make_world(const cli::Setup& setup) {
 
 Result<std::unique_ptr<Target>> make_target(const cli::Setup& setup) {
   VirtualBoardOptions options;
-  options.board_json = setup.board_text;
+  options.board = {setup.board,
+                   {.image = setup.image, .seed = setup.seed, .gdb_port = setup.gdb_port}};
   if (setup.plan.stand) {
     const auto params = stand_of(setup);
     if (!params) return params.error();
-    auto text = stand::with_stage(setup.board_text, params.value().motor, params.value().stage);
-    if (!text) return text.error();
-    options.board_json = std::move(text.value());
+    const auto set =
+        stand::set_stage(options.board.board, params.value().motor, params.value().stage);
+    if (!set) return set.error();
   }
   options.any_qemu_version = std::getenv("WHIRL_ANY_QEMU") != nullptr;
   return std::unique_ptr<Target>(std::make_unique<VirtualBoard>(std::move(options)));

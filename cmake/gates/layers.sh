@@ -19,6 +19,7 @@ plant/battery            base/ plant/base/ plant/battery/
 plant/motor              base/ plant/base/ plant/motor/
 plant/rotor              base/ plant/rotor/
 plant/sensors            base/ plant/base/ plant/sensors/
+io_bridges/board_description base/ io_bridges/board_description/
 io_bridges/messages      base/ io_bridges/messages/
 io_bridges/protocols     base/ io_bridges/protocols/
 io_bridges/devices       base/ io_bridges/protocols/ io_bridges/devices/
@@ -33,18 +34,18 @@ harness/job              base/ harness/job/
 harness/lua              base/ harness/lua/
 harness/metrics          harness/metrics/
 harness/world            base/ harness/world/ io_bridges/messages/
-harness/board            base/ harness/board/ harness/lua/
+harness/board            base/ harness/board/ harness/lua/ io_bridges/board_description/
 harness/target           base/ harness/target/ io_bridges/
 harness/lockstep         base/ harness/lockstep/ harness/target/target.hpp harness/world/ io_bridges/messages/
 harness/plan             base/ harness/board/ harness/lua/ harness/metrics/ harness/plan/ harness/world/ results/
 harness/executive        base/ harness/board/ harness/executive/ harness/lockstep/ harness/metrics/ harness/plan/ harness/target/ harness/world/ io_bridges/devices/faults.hpp io_bridges/messages/ results/
 harness/catalogue        base/ harness/calibrate/setup.hpp harness/catalogue/ harness/flight/ harness/lua/ harness/stand/ io_bridges/protocols/ plant/ firmware/esc/core/
 harness/flight           base/ harness/flight/ harness/world/ io_bridges/messages/ io_bridges/protocols/ plant/ firmware/esc/core/
-harness/stand            base/ harness/stand/ harness/world/ io_bridges/messages/ io_bridges/protocols/ plant/
+harness/stand            base/ harness/stand/ harness/world/ io_bridges/board_description/ io_bridges/messages/ io_bridges/protocols/ plant/
 harness/sweep            base/ harness/flight/flight_params.hpp harness/sweep/ plant/ results/
 harness/timing           base/ harness/target/ harness/timing/
 harness/calibrate        base/ harness/calibrate/ harness/lockstep/ harness/target/ harness/world/ io_bridges/protocols/ results/ firmware/esc/core/
-harness/cli              base/ harness/board/ harness/calibrate/ harness/catalogue/ harness/cli/ harness/executive/ harness/job/ harness/plan/ harness/sweep/ harness/target/ harness/timing/ harness/world/ plant/validation/ results/
+harness/cli              base/ harness/board/ harness/calibrate/ harness/catalogue/ harness/cli/ harness/executive/ harness/job/ harness/plan/ harness/sweep/ harness/target/ harness/timing/ harness/world/ io_bridges/board_description/ plant/validation/ results/
 harness/fuzz             base/ harness/board/ harness/calibrate/ harness/catalogue/ harness/fuzz/ harness/plan/ io_bridges/ plant/ results/
 cmake                    cmake/
 cmake/mutate             cmake/mutate/

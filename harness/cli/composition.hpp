@@ -22,7 +22,6 @@ struct Setup {
   std::string root;          // of the project: test_plans, build, results
   std::string image;         // path of the ELF
   std::string vehicle_file;  // path; empty for a stand
-  std::string board_text;    // JSON for the board's process
   std::uint64_t seed = 1;
   int gdb_port = 0;  // 0: no gdb
 };

@@ -8,10 +8,8 @@
 #include <cstdio>
 #include <cstring>
 #include <functional>
-#include <nlohmann/json.hpp>
 
 #include "base/argv.hpp"
-#include "base/json_text.hpp"
 #include "base/places.hpp"
 #include "harness/cli/console.hpp"
 #include "harness/cli/parser_fuzzers.hpp"
@@ -97,8 +95,8 @@ Result<Done> run_image(std::uint64_t seed, Ends& ends) {
   const ImageFile file(image.elf);
   if (file.path().empty()) return Error{ErrorKind::host, "fuzz", "no temporary file", ""};
   VirtualBoardOptions options;
-  options.board_json = text_of(nlohmann::json{
-      {"board", "fuzz"}, {"mcu", image.mcu}, {"image", file.path()}, {"hse_Hz", 8e6}});
+  options.board.board = {.name = "fuzz", .mcu = image.mcu, .hse_Hz = 8e6};
+  options.board.run.image = file.path();
   VirtualBoard target(options);
   if (auto started = target.start(); !started) return started.error();
   io::Batch happened;

@@ -9,6 +9,7 @@
 #include "base/places.hpp"
 #include "harness/cli/find_file.hpp"
 #include "harness/cli/versions.hpp"
+#include "io_bridges/board_description/board_text.hpp"
 #include "results/folder.hpp"
 
 namespace whirl::cli {
@@ -52,7 +53,6 @@ Result<RunRecord> run_record(const PlanChoice& choice, const RunOptions& options
               root,
               image.value(),
               "",
-              "",
               options.seed.value_or(plan->seed),
               options.gdb ? options.gdb_port : 0};
   if (!plan->vehicle.empty()) {
@@ -60,9 +60,6 @@ Result<RunRecord> run_record(const PlanChoice& choice, const RunOptions& options
     if (!vehicle) return vehicle.error();
     setup.vehicle_file = shown_path(vehicle.value());
   }
-  setup.board_text = board_json(
-      board.value(),
-      {.image = setup.image, .seed = setup.seed, .gdb = options.gdb, .gdb_port = setup.gdb_port});
   auto world = composition.world(setup);
   if (!world) return world.error();
   auto target = composition.target(setup);
@@ -75,7 +72,8 @@ Result<RunRecord> run_record(const PlanChoice& choice, const RunOptions& options
                                      {"board", board.value().file},
                                      {"vehicle", setup.vehicle_file}});
   add_host(record.report.versions, root);
-  record.board_text = setup.board_text;
+  record.board_text = board_text(
+      {board.value(), {.image = setup.image, .seed = setup.seed, .gdb_port = setup.gdb_port}});
   return record;
 }
 

@@ -1,18 +1,18 @@
 #include "harness/stand/stage_params.hpp"
 
-#include <nlohmann/json.hpp>
+#include "base/check.hpp"
 
 namespace whirl::stand {
 
-Result<std::string> with_stage(const std::string& board_json, int motor,
-                               const StageParams& params) {
-  nlohmann::json board = nlohmann::json::parse(board_json);
-  for (nlohmann::json& device : board["devices"]) {
-    if (device["type"] != "power_stage" || device.value("motor", 0) != motor) continue;
-    for (const auto& [name, value] : params) device["params"][name] = value;
-    return board.dump(1);
+Result<Done> set_stage(BoardDescription& board, int motor, const StageParams& params) {
+  for (BoardDevice& device : board.devices) {
+    if (device.type != "power_stage" || device.motor != motor) continue;
+    for (const auto& [name, value] : params) {
+      WHIRL_CHECK(device.set("params." + name, value), name);
+    }
+    return Done{};
   }
-  return Error{ErrorKind::bad_input, board.value("board", std::string("board")),
+  return Error{ErrorKind::bad_input, board.name,
                "has no power stage of motor " + std::to_string(motor),
                "a stand needs one: esc32v2 has it"};
 }

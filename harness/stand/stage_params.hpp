@@ -7,13 +7,13 @@
 #include <string>
 
 #include "base/result.hpp"
+#include "io_bridges/board_description/board_description.hpp"
 
 namespace whirl::stand {
 
 using StageParams = std::map<std::string, double>;  // SI, by the power stage's own names
 
-// The board's description with these parameters at the power stage of that motor. Refused where the
-// board has no such stage.
-Result<std::string> with_stage(const std::string& board_json, int motor, const StageParams& params);
+// Gives these parameters to the power stage of that motor. Refused where the board has no such stage.
+Result<Done> set_stage(BoardDescription& board, int motor, const StageParams& params);
 
 }  // namespace whirl::stand

@@ -13,12 +13,11 @@
 #include <chrono>
 #include <cstdio>
 #include <cstring>
-#include <nlohmann/json.hpp>
 
 #include "base/interruption.hpp"
-#include "base/json_text.hpp"
 #include "base/outside_signal.hpp"
 #include "base/places.hpp"
+#include "io_bridges/board_description/board_text.hpp"
 #include "io_bridges/link/channel.hpp"
 #include "io_bridges/qemu/board/parts.hpp"
 
@@ -110,17 +109,14 @@ struct Launch {
   int gdb_port = 0;
 };
 
-Result<Launch> read_launch(const std::string& board_json) {
-  const auto json = parse_json(board_json);
-  if (!json.is_object()) return Error{ErrorKind::internal, "board", "description is not JSON", ""};
-  const std::string mcu = json.value("mcu", "");
-  const board::Part* part = board::find_part(mcu);
+Result<Launch> launch_of(const BoardStart& start) {
+  const board::Part* part = board::find_part(start.board.mcu);
   if (part == nullptr) {
-    return Error{ErrorKind::bad_input, "board", "unknown mcu '" + mcu + "'",
+    return Error{ErrorKind::bad_input, "board", "unknown mcu '" + start.board.mcu + "'",
                  "use stm32f405rg or stm32f103cb"};
   }
-  const int ns = json.value("ns_per_instruction", 0);
-  Launch launch{std::string(part->qemu_machine), 0, json.value("gdb_port", 0)};
+  const std::int64_t ns = start.board.ns_per_instruction;
+  Launch launch{std::string(part->qemu_machine), 0, start.run.gdb_port};
   if (ns == 0) return launch;  // by cycles: QEMU counts nanoseconds
   while (launch.icount_shift < 10 && (1 << launch.icount_shift) != ns) ++launch.icount_shift;
   if (launch.icount_shift == 10) {
@@ -238,7 +234,7 @@ pid_t launch_process(const std::vector<std::string>& line, int log_fd, int link_
 }  // namespace
 
 Result<Done> VirtualBoard::start() {
-  auto launch = read_launch(options_.board_json);
+  auto launch = launch_of(options_.board);
   if (!launch) return launch.error();
   if (access(options_.plugin.c_str(), R_OK) != 0) {
     return Error{ErrorKind::internal, options_.plugin, "the board's plug-in is not there",
@@ -247,7 +243,7 @@ Result<Done> VirtualBoard::start() {
   auto link = io::Channel::create(io::Side::harness);
   if (!link) return link.error();
   process_ = std::make_unique<Process>(std::move(link.value()));
-  const int config_fd = text_in_memory("whirl-board", options_.board_json);
+  const int config_fd = text_in_memory("whirl-board", board_text(options_.board));
   process_->log_fd = memfd_create("whirl-qemu-output", MFD_CLOEXEC);
   if (config_fd < 0 || process_->log_fd < 0) {
     return Error{ErrorKind::host, "virtual board", "no shared memory", ""};

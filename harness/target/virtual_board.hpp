@@ -13,11 +13,12 @@
 #include <vector>
 
 #include "harness/target/target.hpp"
+#include "io_bridges/board_description/board_description.hpp"
 
 namespace whirl {
 
 struct VirtualBoardOptions {
-  std::string board_json;  // the board's description; see io_bridges/qemu/board/config.hpp
+  BoardStart board;
   std::string qemu = "qemu-system-arm";
   std::string plugin;  // whirl_board.so; empty: where the build put it
   int silence_s = 30;

@@ -3,15 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
-#include <nlohmann/json.hpp>
 
 #include "base/near.hpp"
 #include "base/scratch_folder.hpp"
 
 namespace whirl {
 namespace {
-
-using nlohmann::json;
 
 Result<Board> read_text(const std::string& text) {
   const ScratchFolder folder;
@@ -56,40 +53,29 @@ TEST(BoardDescription, GivesItsDevicesByNameAndNumber) {
   EXPECT_EQ(b.watch_number("h"), -1);
 }
 
-TEST(BoardDescription, TellsTheBoardsProcessAllInSI) {
+TEST(BoardDescription, HoldsAllInSI) {
   const auto board = read_text(board_with(kDevices));
   ASSERT_TRUE(board);
-  const json told = json::parse(board_json(board.value(), {"i.elf", 7, 2'000'000, true, 1234}));
-  EXPECT_EQ(told["board"], "b");
-  EXPECT_EQ(told["mcu"], "stm32f405rg");
-  EXPECT_EQ(told["hse_Hz"], 24e6);
-  EXPECT_EQ(told["lse_Hz"], 32768.0);
-  EXPECT_EQ(told["image"], "i.elf");
-  EXPECT_EQ(told["ns_per_instruction"], 16);
-  EXPECT_EQ(told["seed"], 7);
-  EXPECT_EQ(told["sync_ns"], 2'000'000);
-  EXPECT_EQ(told["gdb"], true);
-  EXPECT_EQ(told["gdb_port"], 1234);
-  EXPECT_EQ(told["watch"], (json{"f", "g"}));
-  EXPECT_EQ(told["pins"], (json::array({{{"name", "led"}, {"pin", "PA1"}}})));
-  ASSERT_EQ(told["devices"].size(), 5u);
-  const json& imu = told["devices"][0];
-  EXPECT_EQ(imu["name"], "imu");
-  EXPECT_EQ(imu["type"], "mpu6000");
-  EXPECT_EQ(imu["bus"], "spi1");
-  EXPECT_EQ(imu["cs"], "PB0");
-  EXPECT_EQ(imu["int"], "PC5");
-  EXPECT_FALSE(imu.contains("address"));
-  EXPECT_EQ(imu["params"], (json{{"noise", 0.05},
-                                 {"note", "words"},
-                                 {"count", 3.0},
-                                 {"on", true},
-                                 {"axes", {1.0, 2.0, 3.0}},
-                                 {"deep", {{"rate", 1000.0}}}}));
-  EXPECT_EQ(told["devices"][1]["address"], 8);
-  EXPECT_EQ(told["devices"][1]["motor"], 1);
-  EXPECT_EQ(told["devices"][1]["params"], json::object());
-  EXPECT_EQ(told["devices"][4]["baud"], 57600.0);
+  const Board& b = board.value();
+  ASSERT_EQ(b.devices.size(), 5u);
+  const BoardDevice& imu = b.devices[0];
+  EXPECT_EQ(imu.name, "imu");
+  EXPECT_EQ(imu.type, "mpu6000");
+  EXPECT_EQ(imu.bus, "spi1");
+  const std::map<std::string, KeyValue, std::less<>> keys = {
+      {"cs", "PB0"},
+      {"int", "PC5"},
+      {"params.noise", 0.05},
+      {"params.note", "words"},
+      {"params.count", 3.0},
+      {"params.on", true},
+      {"params.axes", std::vector<double>{1.0, 2.0, 3.0}},
+      {"params.deep.rate", 1000.0}};
+  EXPECT_TRUE(imu.keys == keys);
+  EXPECT_TRUE(b.devices[1].keys.empty());
+  EXPECT_TRUE(b.devices[4].value("baud") == KeyValue(57600.0));
+  EXPECT_TRUE(b.pins == (std::vector<BoardPin>{{.name = "led", .pin = "PA1"}}));
+  EXPECT_EQ(b.watch, (std::vector<std::string>{"f", "g"}));
 }
 
 TEST(BoardDescription, WithoutThemItTakesTheDefaults) {

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <numbers>
 #include <vector>
 
@@ -201,21 +200,28 @@ TEST(Stand, MotorAndShuntOfThePlanReachTheBoardsPowerStage) {
   const StandParams stand = params(R"({ prop = "hk_10x4.5", supply = "16 V",
       motor = { inertia = "+12 %", resistance = "90 mohm", kv_rpm_per_V = 950 },
       shunt = { gain = "-5 %" } })");
-  const std::string board = R"({ "devices": [ { "type": "serial" },
-      { "type": "power_stage", "motor": 1, "params": { "inductance": 2e-5, "resistance": 1 } } ] })";
-  const auto text = with_stage(board, stand.motor, stand.stage);
-  ASSERT_TRUE(text) << text.error().message();
-  const auto stage = nlohmann::json::parse(text.value())["devices"][1]["params"];
+  BoardDescription board;
+  board.devices = {{.name = "terminal", .type = "serial"},
+                   {.name = "stage",
+                    .type = "power_stage",
+                    .motor = 1,
+                    .keys = {{"params.inductance", 2e-5}, {"params.resistance", 1.0}}}};
+  const auto set = set_stage(board, stand.motor, stand.stage);
+  ASSERT_TRUE(set) << set.error().message();
+  EXPECT_TRUE(board.devices[0].keys.empty());
+  const auto& stage = board.devices[1].keys;
   EXPECT_EQ(stage.size(), 5u);
   const auto is = [&](const char* key, double want) {
-    EXPECT_TRUE(near(stage[key].get<double>(), want, round_off(4, want))) << key;
+    const auto it = stage.find(std::string("params.") + key);
+    ASSERT_NE(it, stage.end()) << key;
+    EXPECT_TRUE(near(std::get<double>(it->second), want, round_off(4, want))) << key;
   };
   is("inductance", 2e-5);
   is("resistance", 0.09);
   is("inertia", 1.12 * plant::MotorParams{}.inertia_kgm2);
   is("torque_constant", 60.0 / (2.0 * std::numbers::pi * 950.0));
   is("shunt.gain_error", -0.05);
-  EXPECT_FALSE(with_stage(board, 2, stand.stage));  // no such motor
+  EXPECT_FALSE(set_stage(board, 2, stand.stage));  // no such motor
 }
 
 TEST(Stand, RawTransfersGoOutAsTheyStandAndMoveThroughTheirMillisecond) {

@@ -35,12 +35,13 @@ Board::Board(Setup setup, io::Channel channel, Emulator& emulator)
              [this](std::uint32_t address, const CoreState& core) {
                return call_path(setup_.image, peek(), address, core.sp, core.exception() != 0);
              }),
-      chip_(make_chip(*setup_.part,
-                      {events_, *this, *this, *this, [this](const io::Finding& f) { find(f); },
-                       setup_.config.hse_Hz, setup_.config.lse_Hz, setup_.config.hse_start_ns,
-                       setup_.config.hsi_error, setup_.config.hse_error})),
-      devices_({events_, *chip_, happened_, [this](const io::Finding& f) { find(f); },
-                setup_.config.seed}),
+      chip_(make_chip(
+          *setup_.part,
+          {events_, *this, *this, *this, [this](const io::Finding& f) { find(f); },
+           setup_.description.hse_Hz, setup_.description.lse_Hz, setup_.description.hse_start_ns,
+           setup_.description.hsi_error, setup_.description.hse_error})),
+      devices_(
+          {events_, *chip_, happened_, [this](const io::Finding& f) { find(f); }, setup_.run.seed}),
       hangs_(events_, emulator, happened_),
       systick_(
           events_, chip_->clocks(), [this] { return emulator_.ahead_ns(); },
@@ -83,19 +84,19 @@ Peek Board::peek() const {
 }
 
 Result<Done> Board::build_devices() {
-  if (const auto built = devices_.build(setup_.config); !built) return built.error();
+  if (const auto built = devices_.build(setup_.description); !built) return built.error();
   return watch_converters();
 }
 
 // "adc1" in the watch list: each of its sequences is told like a call, from its trigger to its end.
 Result<Done> Board::watch_converters() {
-  for (std::size_t i = 0; i < setup_.config.watch.size(); ++i) {
-    const std::string& name = setup_.config.watch[i];
+  for (std::size_t i = 0; i < setup_.description.watch.size(); ++i) {
+    const std::string& name = setup_.description.watch[i];
     int number = 0;
     if (std::sscanf(name.c_str(), "adc%1d", &number) != 1 || name.size() != 4) continue;
     stm32::Adc* converter = chip_->converter(number);
     if (converter == nullptr) {
-      return Error{ErrorKind::bad_input, setup_.config.board + ": watch",
+      return Error{ErrorKind::bad_input, setup_.description.name + ": watch",
                    "the part has no '" + name + "'", ""};
     }
     const auto place = static_cast<std::uint16_t>(i);
@@ -122,7 +123,7 @@ std::vector<std::uint8_t> Board::system_rom() const {
   const auto put = [&](std::uint32_t address, std::uint64_t value, unsigned size) {
     std::memcpy(&rom[address - part.system_rom.base], &value, size);
   };
-  put(part.uid_base, 0x0032003151470D31u ^ setup_.config.seed, 8);  // one chip per seed
+  put(part.uid_base, 0x0032003151470D31u ^ setup_.run.seed, 8);  // one chip per seed
   put(part.uid_base + 8, 0x30363938, 4);
   put(part.flash_size_base, part.flash.size / 1024, 2);
   return rom;
@@ -145,7 +146,7 @@ void Board::power_on(const std::string& versions) {
 
 // A board file serves many images, so a function that this one lacks is no error, but it is said.
 void Board::report_unknown_watches() {
-  for (const std::string& name : setup_.config.watch) {
+  for (const std::string& name : setup_.description.watch) {
     const bool converter = name.size() == 4 && name.compare(0, 3, "adc") == 0;
     if (converter || !setup_.image.functions_named(name).empty()) continue;
     find({0, "watch", "the image has no function '" + name + "'"});
@@ -185,7 +186,7 @@ void Board::await_orders() {
 }
 
 void Board::hang(const io::FaultCommand& fault) {
-  const auto& watch = setup_.config.watch;
+  const auto& watch = setup_.description.watch;
   const auto number = static_cast<std::size_t>(fault.address);
   if (number < watch.size()) hangs_.add(fault, setup_.image.functions_named(watch[number]));
 }
@@ -240,10 +241,10 @@ void Board::refuse(const Error& error) {
 
 // Instructions take the same time whatever SYSCLK is: a profile for 168 MHz does not fit 16 MHz.
 void Board::check_profile() {
-  if (setup_.config.ns_per_instruction == 0) return;  // it takes cycles
+  if (setup_.description.ns_per_instruction == 0) return;  // it takes cycles
   if (profile_told_Hz_ == clocks_told_.sysclk_Hz) return;
   const double cycles =
-      clocks_told_.sysclk_Hz * 1e-9 * static_cast<double>(setup_.config.ns_per_instruction);
+      clocks_told_.sysclk_Hz * 1e-9 * static_cast<double>(setup_.description.ns_per_instruction);
   if (cycles >= kLeastCycles && cycles <= kMostCycles) return;
   profile_told_Hz_ = clocks_told_.sysclk_Hz;
   char text[160];
@@ -251,7 +252,7 @@ void Board::check_profile() {
                 "SYSCLK of %.6g MHz does not fit the timing profile: %lld ns per instruction are "
                 "%.3g cycles",
                 clocks_told_.sysclk_Hz * 1e-6,
-                static_cast<long long>(setup_.config.ns_per_instruction), cycles);
+                static_cast<long long>(setup_.description.ns_per_instruction), cycles);
   find({events_.now(), "board", text});
 }
 

@@ -11,11 +11,11 @@
 #include <string>
 #include <vector>
 
+#include "io_bridges/board_description/board_description.hpp"
 #include "io_bridges/devices/event_queue.hpp"
 #include "io_bridges/link/channel.hpp"
 #include "io_bridges/messages/messages.hpp"
 #include "io_bridges/qemu/board/code_hang.hpp"
-#include "io_bridges/qemu/board/config.hpp"
 #include "io_bridges/qemu/board/cortex_m.hpp"
 #include "io_bridges/qemu/board/device_rack.hpp"
 #include "io_bridges/qemu/board/emulator.hpp"
@@ -29,12 +29,14 @@ namespace whirl::board {
 
 // What one board process is made of, once its description and image have been found good.
 struct Setup {
-  BoardConfig config;
+  BoardDescription description;
+  BoardRun run;
   const Part* part = nullptr;
   Image image;
 };
 
-Result<Setup> read_setup(std::string_view board_json);
+// `text`: board_description/board_text.hpp.
+Result<Setup> read_setup(std::string_view text);
 
 // Why a core cannot go on: the number that takes the place of an exception's in a cpu_fault message.
 enum class StoppedCore : std::uint32_t {
@@ -50,7 +52,8 @@ class Board final : stm32::InterruptLines, stm32::SystemBus, stm32::FlashArray {
 
   const Part& part() const { return *setup_.part; }
   const Image& image() const { return setup_.image; }
-  const BoardConfig& config() const { return setup_.config; }
+  const BoardDescription& description() const { return setup_.description; }
+  const BoardRun& run() const { return setup_.run; }
   io::EventQueue& events() { return events_; }
 
   // For the plug-in to map: the part's blocks, the rest of the peripheral space, the core's own.

@@ -6,12 +6,12 @@
 namespace whirl::board {
 namespace {
 
-Error wrong(const std::string& board, const PinConfig& pin, const std::string& what) {
+Error wrong(const std::string& board, const BoardPin& pin, const std::string& what) {
   return {ErrorKind::bad_input, board + ": pin " + pin.name, what, ""};
 }
 
-const PinConfig* line_of(const std::vector<PinConfig>& pins, const std::string& line) {
-  for (const PinConfig& pin : pins) {
+const BoardPin* line_of(const std::vector<BoardPin>& pins, const std::string& line) {
+  for (const BoardPin& pin : pins) {
     if (pin.bus == line) return &pin;
   }
   return nullptr;
@@ -26,17 +26,17 @@ int bus_number(const std::string& line) {
 
 }  // namespace
 
-Result<std::set<int>> join_pins(const std::vector<PinConfig>& pins, stm32::ChipModel& chip,
+Result<std::set<int>> join_pins(const std::vector<BoardPin>& pins, stm32::ChipModel& chip,
                                 const std::string& board) {
   std::set<int> soldered;
-  for (const PinConfig& pin : pins) {
+  for (const BoardPin& pin : pins) {
     if (chip.pin(pin.pin) == nullptr) {
       return wrong(board, pin, "the part has no pin '" + pin.pin + "'");
     }
     if (pin.bus.empty()) continue;
     const int number = bus_number(pin.bus);
     const std::string bus = "i2c" + std::to_string(number);
-    const PinConfig *scl = line_of(pins, bus + ".scl"), *sda = line_of(pins, bus + ".sda");
+    const BoardPin *scl = line_of(pins, bus + ".scl"), *sda = line_of(pins, bus + ".sda");
     if (number == 0 || scl == nullptr || sda == nullptr) {
       return wrong(board, pin, "bus '" + pin.bus + "' is not one of a pair i2cN.scl and i2cN.sda");
     }
@@ -45,7 +45,7 @@ Result<std::set<int>> join_pins(const std::vector<PinConfig>& pins, stm32::ChipM
       return wrong(board, pin, "the part has no bus " + bus);
     }
   }
-  for (const PinConfig& pin : pins) {
+  for (const BoardPin& pin : pins) {
     if (pin.pull.empty()) continue;
     if (pin.pull != "up" && pin.pull != "down") {
       return wrong(board, pin, "pull '" + pin.pull + "' is not up or down");

@@ -9,12 +9,12 @@
 #include <vector>
 
 #include "base/result.hpp"
-#include "io_bridges/qemu/board/config.hpp"
+#include "io_bridges/board_description/board_description.hpp"
 #include "io_bridges/qemu/stm32/chip_model.hpp"
 
 namespace whirl::board {
 
-Result<std::set<int>> join_pins(const std::vector<PinConfig>& pins, stm32::ChipModel& chip,
+Result<std::set<int>> join_pins(const std::vector<BoardPin>& pins, stm32::ChipModel& chip,
                                 const std::string& board);
 
 // The first address that firmware asks for on an I2C bus with no device at all is a finding: its bytes

@@ -87,7 +87,7 @@ nlohmann::json Board::long_call(const LongCall& call) const {
 nlohmann::json Board::watched_calls() const {
   nlohmann::json list = nlohmann::json::array();
   for (const auto& [number, worst] : watch_.worst_calls().by_number()) {
-    list.push_back({{"name", setup_.config.watch[number]},
+    list.push_back({{"name", setup_.description.watch[number]},
                     {"worst_execution", long_call(worst.execution)},
                     {"worst_response", long_call(worst.response)}});
   }
@@ -110,8 +110,8 @@ void Board::add_statistics() {
       {"stack_used_bytes", stack_used(*setup_.part, peek())},
       {"slept_ns", emulator_.slept_ns()},
       {"core_waits_for_dma_at_most_ns", std::llround(chip_->core_waits_for_dma_at_most_ns())},
-      {"hse_start_ns", setup_.config.hse_start_ns},
-      {"ns_per_instruction", setup_.config.ns_per_instruction}};
+      {"hse_start_ns", setup_.description.hse_start_ns},
+      {"ns_per_instruction", setup_.description.ns_per_instruction}};
   if (watch_.stacks().count() > 1) statistics["task_stacks"] = task_stacks();
   statistics["watched"] = watched_calls();
   statistics["handlers"] = handlers();

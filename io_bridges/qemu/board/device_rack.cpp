@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cstdlib>
 #include <map>
 #include <set>
 
@@ -13,6 +12,7 @@
 #include "io_bridges/devices/serial_port.hpp"
 #include "io_bridges/devices/wire_faults.hpp"
 #include "io_bridges/qemu/board/board_pins.hpp"
+#include "io_bridges/qemu/board/device_values.hpp"
 #include "io_bridges/qemu/board/i2c_orders.hpp"
 #include "io_bridges/qemu/board/inertial_sensor.hpp"
 #include "io_bridges/qemu/board/power_stage.hpp"
@@ -27,41 +27,30 @@ std::uint16_t port(int number) {
   return static_cast<std::uint16_t>(number);
 }
 
-// "i2c3" is (i2c, 3).
-struct BusName {
-  std::string kind;
-  int number = 0;
-};
-
-BusName split(const std::string& bus) {
-  const auto digit = bus.find_last_not_of("0123456789") + 1;  // "i2c3": the last number counts
-  return {bus.substr(0, digit), std::atoi(bus.substr(digit).c_str())};
-}
-
 }  // namespace
 
 struct DeviceRack::Parts {
   explicit Parts(Site given) : site(std::move(given)) {}
 
-  Result<Done> add(const DeviceConfig& device, int number);
-  Result<Done> add_mpu6000(const DeviceConfig& device, int number);
-  Result<Done> add_esc(const DeviceConfig& device);
-  Result<Done> add_radio(const DeviceConfig& device);
+  Result<Done> add(const BoardDevice& device, int number);
+  Result<Done> add_mpu6000(const BoardDevice& device, int number);
+  Result<Done> add_esc(const BoardDevice& device);
+  Result<Done> add_radio(const BoardDevice& device);
   auto told(Kind kind, int uart) {
     return [this, kind, uart](std::span<const std::uint8_t> bytes, io::Nanoseconds t_ns) {
       site.happened.add(kind, port(uart), t_ns, bytes.data(), std::uint32_t(bytes.size()));
     };
   }
-  Result<Done> add_serial(const DeviceConfig& device);
-  Result<Done> add_i2c_master(const DeviceConfig& device);
-  Result<Done> add_power_stage(const DeviceConfig& device);
-  Result<Done> add_pulse_source(const DeviceConfig& device);
-  Result<Done> add_volts(const DeviceConfig& device);
-  Result<Done> add_jumper(const DeviceConfig& device);
+  Result<Done> add_serial(const BoardDevice& device);
+  Result<Done> add_i2c_master(const BoardDevice& device);
+  Result<Done> add_power_stage(const BoardDevice& device);
+  Result<Done> add_pulse_source(const BoardDevice& device);
+  Result<Done> add_volts(const BoardDevice& device);
+  Result<Done> add_jumper(const BoardDevice& device);
   io::I2cBus* i2c(int number);
   io::SpiBus* spi(int number);
   io::Wire* pin(const std::string& name) { return name.empty() ? nullptr : site.chip.pin(name); }
-  Error wrong(const DeviceConfig& device, const std::string& what) const {
+  Error wrong(const BoardDevice& device, const std::string& what) const {
     return {ErrorKind::bad_input, board + ": " + device.name, what, ""};
   }
 
@@ -94,13 +83,13 @@ DeviceRack::DeviceRack(Site site) : parts_(std::make_unique<Parts>(std::move(sit
 
 DeviceRack::~DeviceRack() = default;
 
-Result<Done> DeviceRack::build(const BoardConfig& config) {
-  parts_->board = config.board;
-  auto soldered = join_pins(config.pins, parts_->site.chip, config.board);
+Result<Done> DeviceRack::build(const BoardDescription& board) {
+  parts_->board = board.name;
+  auto soldered = join_pins(board.pins, parts_->site.chip, board.name);
   if (!soldered) return soldered.error();
   parts_->i2c_soldered = std::move(soldered.value());
   int number = 0;
-  for (const DeviceConfig& device : config.devices) {
+  for (const BoardDevice& device : board.devices) {
     const auto added = parts_->add(device, number++);
     if (!added) return added.error();
   }
@@ -109,7 +98,7 @@ Result<Done> DeviceRack::build(const BoardConfig& config) {
   return Done{};
 }
 
-Result<Done> DeviceRack::Parts::add(const DeviceConfig& device, int number) {
+Result<Done> DeviceRack::Parts::add(const BoardDevice& device, int number) {
   if (device.type == "mpu6000") return add_mpu6000(device, number);
   if (device.type == "esc_i2c") return add_esc(device);
   if (device.type == "mavlink_link") return add_radio(device);
@@ -155,17 +144,18 @@ io::SpiBus* DeviceRack::Parts::spi(int number) {
   return bus;
 }
 
-Result<Done> DeviceRack::Parts::add_mpu6000(const DeviceConfig& device, int number) {
+Result<Done> DeviceRack::Parts::add_mpu6000(const BoardDevice& device, int number) {
   const BusName name = split(device.bus);
   io::SpiBus* bus = name.kind == "spi" ? spi(name.number) : nullptr;
   if (bus == nullptr) return wrong(device, "the part has no bus '" + device.bus + "' for it");
-  io::Wire* select = pin(device.cs);
-  if (select == nullptr) return wrong(device, "the part has no pin '" + device.cs + "' for cs");
-  io::Wire* interrupt = pin(device.interrupt);
-  if (interrupt == nullptr && !device.interrupt.empty()) {
-    return wrong(device, "the part has no pin '" + device.interrupt + "' for int");
+  io::Wire* select = pin(text(device, "cs"));
+  if (select == nullptr)
+    return wrong(device, "the part has no pin '" + text(device, "cs") + "' for cs");
+  io::Wire* interrupt = pin(text(device, "int"));
+  if (interrupt == nullptr && !text(device, "int").empty()) {
+    return wrong(device, "the part has no pin '" + text(device, "int") + "' for int");
   }
-  auto physics = imu_params(device.params, board + ": " + device.name);
+  auto physics = imu_params(params_of(device), board + ": " + device.name);
   if (!physics) return physics.error();
   inertial.push_back(std::make_unique<InertialSensor>(physics.value(), site.seed, device.name));
   InertialSensor& felt = *inertial.back();
@@ -188,7 +178,7 @@ Result<Done> DeviceRack::Parts::add_mpu6000(const DeviceConfig& device, int numb
   return Done{};
 }
 
-Result<Done> DeviceRack::Parts::add_esc(const DeviceConfig& device) {
+Result<Done> DeviceRack::Parts::add_esc(const BoardDevice& device) {
   const BusName name = split(device.bus);
   io::I2cBus* bus = name.kind == "i2c" ? i2c(name.number) : nullptr;
   if (bus == nullptr) return wrong(device, "the part has no bus '" + device.bus + "' for it");
@@ -212,17 +202,18 @@ Result<Done> DeviceRack::Parts::add_esc(const DeviceConfig& device) {
   return Done{};
 }
 
-Result<Done> DeviceRack::Parts::add_radio(const DeviceConfig& device) {
+Result<Done> DeviceRack::Parts::add_radio(const BoardDevice& device) {
   const BusName name = split(device.bus);
   io::MavlinkLink::Params params;
+  const auto given = params_of(device);
   params.seed = site.seed;
   for (const char* loss : {"uplink_loss", "downlink_loss"}) {
-    const auto share = device.params.find(loss);
-    if (share == device.params.end() || (share->second >= 0.0 && share->second <= 1.0)) continue;
+    const auto share = given.find(loss);
+    if (share == given.end() || (share->second >= 0.0 && share->second <= 1.0)) continue;
     return wrong(device, std::string(loss) + " is not between 0 and 100 %");
   }
-  if (device.baud > 0.0) params.baud = device.baud;
-  for (const auto& [key, value] : device.params) {
+  if (const double baud = baud_of(device); baud > 0.0) params.baud = baud;
+  for (const auto& [key, value] : given) {
     if (key == "uplink_loss")
       params.uplink_loss = value;
     else if (key == "downlink_loss")
@@ -247,11 +238,11 @@ Result<Done> DeviceRack::Parts::add_radio(const DeviceConfig& device) {
   return Done{};
 }
 
-Result<Done> DeviceRack::Parts::add_serial(const DeviceConfig& device) {
+Result<Done> DeviceRack::Parts::add_serial(const BoardDevice& device) {
   const BusName name = split(device.bus);
-  if (device.baud <= 0.0) return wrong(device, "needs a baud rate");
+  if (baud_of(device) <= 0.0) return wrong(device, "needs a baud rate");
   auto serial =
-      std::make_unique<io::SerialPort>(site.events, device.name, device.baud, site.finding);
+      std::make_unique<io::SerialPort>(site.events, device.name, baud_of(device), site.finding);
   serial->on_message(told(Kind::uart_received, name.number));
   uart_faults.push_back(
       std::make_unique<io::UartWireFaults>(site.events, faults, *serial, name.number, site.seed));
@@ -263,14 +254,14 @@ Result<Done> DeviceRack::Parts::add_serial(const DeviceConfig& device) {
   return Done{};
 }
 
-Result<Done> DeviceRack::Parts::add_i2c_master(const DeviceConfig& device) {
+Result<Done> DeviceRack::Parts::add_i2c_master(const BoardDevice& device) {
   const BusName name = split(device.bus);
   io::I2cBus* bus = name.kind == "i2c" ? i2c(name.number) : nullptr;
   if (bus == nullptr || masters.count(name.number) != 0) {
     return wrong(device, "the part has no bus '" + device.bus + "' for it");
   }
   double rate_Hz = 400e3;
-  for (const auto& [key, value] : device.params) {
+  for (const auto& [key, value] : params_of(device)) {
     if (key != "rate") return wrong(device, "unknown parameter '" + key + "'");
     rate_Hz = value;
   }
@@ -280,11 +271,11 @@ Result<Done> DeviceRack::Parts::add_i2c_master(const DeviceConfig& device) {
   return Done{};
 }
 
-Result<Done> DeviceRack::Parts::add_power_stage(const DeviceConfig& device) {
+Result<Done> DeviceRack::Parts::add_power_stage(const BoardDevice& device) {
   if (device.motor < 1 || !stages.empty()) {
     return wrong(device, "needs a motor number; a board has one power stage");
   }
-  const auto params = power_stage_params(device.params, board + ": " + device.name);
+  const auto params = power_stage_params(params_of(device), board + ": " + device.name);
   if (!params) return params.error();
   auto stage = std::make_unique<PowerStage>(params.value(), site.seed, device.name);
   if (!stage->join(site.chip)) {
@@ -306,7 +297,7 @@ Result<Done> DeviceRack::Parts::add_power_stage(const DeviceConfig& device) {
   return Done{};
 }
 
-Result<Done> DeviceRack::Parts::add_pulse_source(const DeviceConfig& device) {
+Result<Done> DeviceRack::Parts::add_pulse_source(const BoardDevice& device) {
   io::Wire* wire = pin(device.bus);
   if (wire == nullptr) return wrong(device, "the part has no pin '" + device.bus + "'");
   if (device.motor < 1 || pulses.count(device.motor) != 0) {
@@ -316,18 +307,18 @@ Result<Done> DeviceRack::Parts::add_pulse_source(const DeviceConfig& device) {
   return Done{};
 }
 
-Result<Done> DeviceRack::Parts::add_volts(const DeviceConfig& device) {
-  if (device.params.count("volts") == 0) return wrong(device, "needs params.volts");
-  const double level_V = device.params.at("volts");
+Result<Done> DeviceRack::Parts::add_volts(const BoardDevice& device) {
+  if (params_of(device).count("volts") == 0) return wrong(device, "needs params.volts");
+  const double level_V = params_of(device).at("volts");
   if (!site.chip.set_analog(device.bus, [level_V](io::Nanoseconds) { return level_V; })) {
     return wrong(device, "the part has no analog pin '" + device.bus + "'");
   }
   return Done{};
 }
 
-Result<Done> DeviceRack::Parts::add_jumper(const DeviceConfig& device) {
-  io::Wire* from = pin(device.cs);
-  io::Wire* to = pin(device.interrupt);
+Result<Done> DeviceRack::Parts::add_jumper(const BoardDevice& device) {
+  io::Wire* from = pin(text(device, "cs"));
+  io::Wire* to = pin(text(device, "int"));
   if (from == nullptr || to == nullptr) return wrong(device, "the part lacks one of its two pins");
   const int driver = to->add_driver();
   from->watch([to, driver](bool level, io::Nanoseconds now) {

@@ -17,9 +17,9 @@
 #include <vector>
 
 #include "base/result.hpp"
+#include "io_bridges/board_description/board_description.hpp"
 #include "io_bridges/devices/faults.hpp"
 #include "io_bridges/messages/messages.hpp"
-#include "io_bridges/qemu/board/config.hpp"
 #include "io_bridges/qemu/stm32/chip_model.hpp"
 
 namespace whirl::board {
@@ -37,7 +37,7 @@ class DeviceRack {
   explicit DeviceRack(Site site);
   ~DeviceRack();
 
-  Result<Done> build(const BoardConfig& config);
+  Result<Done> build(const BoardDescription& board);
   // A message from the harness; false: of a kind that is not for devices.
   bool take(const io::Reader& message);
   // At a boundary, before what happened is posted: what devices tell at each one.

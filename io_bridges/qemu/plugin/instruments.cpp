@@ -31,7 +31,7 @@ bool loads_sp(const Code& code) {
 }  // namespace
 
 Instruments::Instruments(Machine& machine) : machine_(machine) {
-  const auto& watched = machine.board().config().watch;
+  const auto& watched = machine.board().description().watch;
   for (std::size_t i = 0; i < watched.size(); ++i) {
     for (const board::Symbol* symbol : machine.board().image().functions_named(watched[i])) {
       functions_.emplace(symbol->address, static_cast<std::uint16_t>(i));

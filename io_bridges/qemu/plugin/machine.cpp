@@ -24,9 +24,9 @@ constexpr int kRounds = 64;  // of a sleep before other work of the CPU's thread
 
 Machine::Machine(const Api& api, board::Setup setup, io::Channel channel)
     : api_(api), board_(std::move(setup), std::move(channel), *this) {
-  const auto& config = board_.config();
-  if (config.ns_per_instruction > 0) {
-    clock_ = std::make_unique<FixedRate>(config.ns_per_instruction);
+  const auto& description = board_.description();
+  if (description.ns_per_instruction > 0) {
+    clock_ = std::make_unique<FixedRate>(description.ns_per_instruction);
   } else {
     clock_ = std::make_unique<CycleClock>(
         api, board_.part().is_m4 ? cycles::Core::cortex_m4f : cycles::Core::cortex_m3,
@@ -79,7 +79,7 @@ Result<Done> Machine::build(const std::string& versions) {
   map_memories();
   load_image();
   board_.power_on(versions);
-  if (board_.config().gdb_port == 0) {
+  if (board_.run().gdb_port == 0) {
     parking_ = api_.qemu_bh_new_full(
         [](void* self) { static_cast<Machine*>(self)->park_main_loop(); }, this, "whirl", nullptr);
     api_.qemu_bh_schedule(parking_);
@@ -99,7 +99,7 @@ Result<Done> Machine::build(const std::string& versions) {
 void Machine::init_timers() {
   constexpr int kExternal = 1;  // QEMU_TIMER_ATTR_EXTERNAL
   const auto fire = [](void* self) { static_cast<Machine*>(self)->on_timer(); };
-  const int marks = board_.config().gdb_port != 0 ? kExternal : 0;
+  const int marks = board_.run().gdb_port != 0 ? kExternal : 0;
   api_.timer_init_full(&timer_, nullptr, kVirtualClock, 1, marks, fire, this);
   api_.timer_init_full(&jump_, nullptr, kVirtualClock, 1, 0, fire, this);
 }
@@ -282,7 +282,7 @@ void Machine::sleep() {
   } else {
     arm(events.next_deadline());
   }
-  if (board_.config().gdb_port != 0) give_way();
+  if (board_.run().gdb_port != 0) give_way();
 }
 
 // Under gdb the main loop lives; a core that sleeps much would hardly let it have the lock. It cannot
@@ -304,7 +304,7 @@ bool Machine::catch_up() {
     api_.timer_del(&timer_);  // the clock moves for the first timer only
     api_.timer_mod(&jump_, sleep_now_ns_);
     const std::int64_t there = api_.qemu_clock_get_ns(kVirtualClock);
-    if (there < sleep_now_ns_ && board_.config().gdb_port != 0) return false;
+    if (there < sleep_now_ns_ && board_.run().gdb_port != 0) return false;
     WHIRL_CHECK(there == sleep_now_ns_, there, sleep_now_ns_);
     api_.timer_del(&jump_);
   }

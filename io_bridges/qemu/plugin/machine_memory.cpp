@@ -116,7 +116,7 @@ void Machine::map_memories() {
   api_.memory_region_add_subregion_overlap(system, part.flash.base, &flash, kMemories);
   MemoryRegion& alias = new_region();
   // A start behind the start of flash: as a boot loader leaves the core that is not there.
-  const std::uint32_t start = board_.config().start;
+  const std::uint32_t start = board_.description().start;
   const std::uint32_t skipped = start != 0 ? start - part.flash.base : 0;
   const std::uint32_t aliased = part.flash.size - skipped;
   api_.memory_region_init_alias(&alias, nullptr, "whirl.boot", &flash, skipped, aliased);

@@ -1,9 +1,12 @@
 #include "io_bridges/qemu/tests/board_run.hpp"
 
+#include <gtest/gtest.h>
+
 #include <cstdlib>
 #include <sstream>
 
 #include "base/digest.hpp"
+#include "io_bridges/board_description/board_text.hpp"
 
 namespace whirl::board_test {
 
@@ -19,9 +22,13 @@ VirtualBoardOptions options_for(const BoardSetup& setup) {
   const std::string more = std::string(timed ? "" : R"(,"ns_per_instruction":8)") +
                            (setup.more.empty() ? "" : "," + setup.more);
   VirtualBoardOptions options;
-  options.board_json = R"({"board":"bench","hse_Hz":8000000,"mcu":")" + setup.mcu +
-                       R"(","image":")" + setup.image + R"(","gdb_port":)" +
-                       std::to_string(setup.gdb_port) + R"(,"watch":[)" + watch + "]" + more + "}";
+  const std::string text = R"({"board":"bench","hse_Hz":8000000,"mcu":")" + setup.mcu +
+                           R"(","image":")" + setup.image + R"(","gdb_port":)" +
+                           std::to_string(setup.gdb_port) + R"(,"watch":[)" + watch + "]" + more +
+                           "}";
+  const auto start = read_board_text(text);
+  EXPECT_TRUE(start) << text;
+  if (start) options.board = start.value();
   options.silence_s = setup.silence_s;
   return options;
 }

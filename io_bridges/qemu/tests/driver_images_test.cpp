@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "harness/target/virtual_board.hpp"
+#include "io_bridges/board_description/board_text.hpp"
 
 namespace whirl::board_test {
 namespace {
@@ -31,10 +32,13 @@ struct ImageRun {
 ImageRun run_image(const std::string& image, const std::string& devices, int milliseconds,
                    const PartUnderTest& part = kF405) {
   VirtualBoardOptions options;
-  options.board_json = std::string(R"({"board":"driver images","mcu":")") + part.mcu +
-                       R"(","hse_Hz":)" + part.hse_Hz + R"(,"image":")" + WHIRL_IMAGES + "/" +
-                       image + R"(.elf","devices":[{"name":"terminal","type":"serial","bus":")" +
-                       part.terminal + R"(","baud":115200})" + devices + "]}";
+  const auto start =
+      read_board_text(std::string(R"({"board":"driver images","mcu":")") + part.mcu +
+                      R"(","hse_Hz":)" + part.hse_Hz + R"(,"image":")" + WHIRL_IMAGES + "/" +
+                      image + R"(.elf","devices":[{"name":"terminal","type":"serial","bus":")" +
+                      part.terminal + R"(","baud":115200})" + devices + "]}");
+  EXPECT_TRUE(start) << devices;
+  if (start) options.board = start.value();
   VirtualBoard board(options);
   ImageRun run;
   const auto started = board.start();
@@ -81,7 +85,7 @@ void expect_between(std::uint32_t low, const Values& got, std::uint32_t high) {
 
 TEST(DriverImages, HalStyle) {
   ImageRun run = run_image("hal_style",
-                           R"(,{"name":"v1","type":"volts","bus":"PA1","params":{"volts":1.65}})"
+                           R"(,{"name":"v1","type":"volts","bus":"PA1","params.volts":1.65})"
                            R"(,{"name":"wire","type":"jumper","cs":"PB6","int":"PA8"})",
                            8000);
   ASSERT_EQ(run.error, "") << run.findings;
@@ -104,8 +108,8 @@ TEST(DriverImages, HalStyle) {
 
 TEST(DriverImages, SplStyle) {
   ImageRun run = run_image("spl_style",
-                           R"(,{"name":"v1","type":"volts","bus":"PA1","params":{"volts":0.825}})"
-                           R"(,{"name":"v4","type":"volts","bus":"PA4","params":{"volts":2.475}})"
+                           R"(,{"name":"v1","type":"volts","bus":"PA1","params.volts":0.825})"
+                           R"(,{"name":"v4","type":"volts","bus":"PA4","params.volts":2.475})"
                            R"(,{"name":"wire","type":"jumper","cs":"PC0","int":"PA0"})",
                            1000);
   ASSERT_EQ(run.error, "") << run.findings;
@@ -151,7 +155,7 @@ TEST(DriverImages, Libopencm3StyleLivesThroughBothWatchdogs) {
 
 TEST(DriverImages, ChibiosStyle) {
   ImageRun run = run_image("chibios_style",
-                           R"(,{"name":"v1","type":"volts","bus":"PA1","params":{"volts":1.1}})"
+                           R"(,{"name":"v1","type":"volts","bus":"PA1","params.volts":1.1})"
                            R"(,{"name":"wire","type":"jumper","cs":"PB0","int":"PB6"})",
                            8000);
   ASSERT_EQ(run.error, "") << run.findings;
@@ -174,10 +178,10 @@ TEST(DriverImages, ChibiosStyle) {
 
 TEST(DriverImages, EscStyleOnTheF103) {
   ImageRun run = run_image("esc_style",
-                           R"(,{"name":"v1","type":"volts","bus":"PA1","params":{"volts":0.55}})"
-                           R"(,{"name":"v2","type":"volts","bus":"PA2","params":{"volts":1.1}})"
-                           R"(,{"name":"v3","type":"volts","bus":"PA3","params":{"volts":1.65}})"
-                           R"(,{"name":"v4","type":"volts","bus":"PA4","params":{"volts":2.2}})"
+                           R"(,{"name":"v1","type":"volts","bus":"PA1","params.volts":0.55})"
+                           R"(,{"name":"v2","type":"volts","bus":"PA2","params.volts":1.1})"
+                           R"(,{"name":"v3","type":"volts","bus":"PA3","params.volts":1.65})"
+                           R"(,{"name":"v4","type":"volts","bus":"PA4","params.volts":2.2})"
                            R"(,{"name":"a","type":"jumper","cs":"PB6","int":"PA8"})"
                            R"(,{"name":"b","type":"jumper","cs":"PB12","int":"PB13"})",
                            1000, kF103);

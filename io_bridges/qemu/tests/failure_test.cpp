@@ -198,12 +198,11 @@ TEST(Failure, NoQemuOutlivesItsTarget) {
 
 TEST(Failure, UnknownMcuAndDeviceAreBadInput) {
   VirtualBoardOptions options = options_for({image("idle"), {}});
-  const std::string good = options.board_json;
-  options.board_json.replace(good.find("bench_m4"), 8, "stm32h743");
+  const BoardStart good = options.board;
+  options.board.board.mcu = "stm32h743";
   EXPECT_EQ(VirtualBoard(options).start().error().kind, ErrorKind::bad_input);
-  options.board_json = good;
-  options.board_json.pop_back();
-  options.board_json += R"(,"devices":[{"name":"x","type":"toaster"}]})";
+  options.board = good;
+  options.board.board.devices.push_back({.name = "x", .type = "toaster"});
   VirtualBoard target(options);
   const auto started = target.start();
   ASSERT_FALSE(started);

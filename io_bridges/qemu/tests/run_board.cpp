@@ -30,9 +30,9 @@ int main(int argc, char** argv) {
   if (argc < 3) return 2;
   whirl::VirtualBoardOptions options;
   const std::string mcu = argc > 3 ? argv[3] : "bench_m4";
-  options.board_json = R"({"board":"bench","mcu":")" + mcu + R"(","image":")" + argv[1] +
-                       R"(","hse_Hz":8000000,"gdb_port":)" +
-                       (std::getenv("GDB_PORT") ? std::getenv("GDB_PORT") : "0") + "}";
+  options.board.board = {.name = "bench", .mcu = mcu, .hse_Hz = 8e6};
+  options.board.run.image = argv[1];
+  if (const char* port = std::getenv("GDB_PORT")) options.board.run.gdb_port = std::atoi(port);
   for (int i = 4; i < argc; ++i) options.qemu_options.emplace_back(argv[i]);
   whirl::VirtualBoard target(options);
   const auto started = target.start();

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "io_bridges/board_description/board_text.hpp"
 #include "io_bridges/qemu/board/device_rack.hpp"
 #include "io_bridges/qemu/stm32/tests/chip_bench.hpp"
 
@@ -17,9 +18,9 @@ struct RackBench {
                    [this](const io::Finding& f) { found.push_back(f.where + ": " + f.what); }, 1}};
 
   std::string refusal(const std::string& lists) {
-    auto config = parse_board(R"({"board":"b","mcu":"stm32f405rg","image":"x",)" + lists + "}");
-    if (!config) return config.error().message();
-    const auto built = rack.build(config.value());
+    auto told = read_board_text(R"({"board":"b","mcu":"stm32f405rg","image":"x",)" + lists + "}");
+    if (!told) return told.error().message();
+    const auto built = rack.build(told.value().board);
     return built ? "" : built.error().message();
   }
 };
@@ -80,9 +81,8 @@ TEST(DeviceRack, TwoDevicesOnOneAddressOrALossBeyondAllAreRefused) {
             std::string::npos);
   for (const char* loss : {"5.0", "-0.1"}) {
     const std::string radio =
-        std::string(
-            R"({"name":"r","type":"mavlink_link","bus":"usart2","params":{"uplink_loss":)") +
-        loss + "}}";
+        std::string(R"({"name":"r","type":"mavlink_link","bus":"usart2","params.uplink_loss":)") +
+        loss + "}";
     EXPECT_NE(refusal(R"("devices":[)" + radio + "]").find("uplink_loss"), std::string::npos);
   }
 }

@@ -1,0 +1,88 @@
+// A board: its part, its clocks, and what hangs on its pins and buses. The one struct of it: the
+// harness fills it from a board file, the board's process builds from it, and a change for one run
+// (a stand's own motor, a plan's watches) is a change of this struct.
+//
+//   Units   SI, and virtual nanoseconds
+//   Keys    of a device by their path in the board file ("cs", "params.uplink_loss"); which there
+//           are, and in what range, its type says (io_bridges/rack)
+//   Text    board_text.hpp: how it gets from one process to the other
+#pragma once
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace whirl {
+
+using KeyValue =
+    std::variant<bool, double, std::string, std::vector<double>, std::vector<std::string>>;
+
+struct BoardDevice {
+  std::string name = {};  // "imu", "esc1"
+  std::string type = {};  // "mpu6000", "esc_i2c"
+  // What plans and logs speak of. In a board file they are keys like the others.
+  std::string bus = {};  // "spi1", "i2c3", "usart2"; of some types a pin
+  int address = -1;      // I2C; -1: none
+  int motor = 0;         // 0: none
+  std::map<std::string, KeyValue, std::less<>> keys = {};  // the others that are given
+
+  // Any key, `bus`, `address` and `motor` too; nothing where it is not given.
+  std::optional<KeyValue> value(std::string_view path) const;
+  // False: no value for that key can look so (an address that is no whole number).
+  bool set(const std::string& path, KeyValue value);
+  std::vector<std::string> paths() const;  // of all that are given
+
+  bool operator==(const BoardDevice&) const = default;
+};
+
+struct BoardPin {
+  std::string name = {}, pin = {};
+  std::string pull = {};  // "up", "down": a resistor of the board
+  std::string bus = {};   // "i2c1.scl": soldered to that line
+
+  bool operator==(const BoardPin&) const = default;
+};
+
+struct BoardDescription {
+  std::string file = {};  // where it was read; may be empty
+  std::string name = {}, mcu = {};
+  double hse_Hz = 0, lse_Hz = 0;          // crystals; 0: not fitted
+  std::int64_t hse_start_ns = 2'000'000;  // until the fast one swings
+  double hsi_error = 0, hse_error = 0;    // of their frequency, as a share: +-0.05, +-0.001
+  std::string boot_image = {};  // of a boot loader that is flashed beside the image; empty: none
+  std::uint32_t start = 0;      // of the vector table at reset; 0: the start of flash
+  std::int64_t ns_per_instruction = 0;    // 0: time passes by the cycles of the core
+  std::vector<BoardDevice> devices = {};  // a device's number is its place here
+  std::vector<BoardPin> pins = {};
+  std::vector<std::string> watch = {};  // functions and converters
+
+  // Of a time that code takes, as a share of it; a fixed rate states none.
+  double timing_accuracy() const { return ns_per_instruction == 0 ? 0.1 : 0.0; }
+  std::string timing_profile() const;  // what the report says of time on this board
+  const BoardDevice* find(const std::string& device) const;
+  int number(const std::string& device) const;  // -1: not there
+  int watch_number(const std::string& function) const;
+
+  bool operator==(const BoardDescription&) const = default;
+};
+
+struct BoardRun {  // what differs from run to run
+  std::string image = {};
+  std::uint64_t seed = 1;
+  int gdb_port = 0;  // 0: no gdb
+
+  bool operator==(const BoardRun&) const = default;
+};
+
+// All that a board's process is told at its start.
+struct BoardStart {
+  BoardDescription board = {};
+  BoardRun run = {};
+
+  bool operator==(const BoardStart&) const = default;
+};
+
+}  // namespace whirl

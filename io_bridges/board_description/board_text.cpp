@@ -1,0 +1,238 @@
+#include "io_bridges/board_description/board_text.hpp"
+
+#include <cmath>
+#include <concepts>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <utility>
+
+namespace whirl {
+namespace {
+
+using nlohmann::json;
+
+// JSON's numbers have no range: a cast of one that does not fit is undefined.
+template <std::integral T>
+bool read_whole(const json& value, T& into) {
+  if (value.is_number_unsigned()) {
+    const auto whole = value.get<std::uint64_t>();
+    into = static_cast<T>(whole);
+    return std::in_range<T>(whole);
+  }
+  if (value.is_number_integer()) {
+    const auto whole = value.get<std::int64_t>();
+    into = static_cast<T>(whole);
+    return std::in_range<T>(whole);
+  }
+  constexpr double kExact = 9007199254740992.0;  // 2^53
+  const double number = value.is_number() ? value.get<double>() : NAN;
+  if (!(std::abs(number) <= kExact) || number != std::floor(number)) return false;
+  const auto whole = static_cast<std::int64_t>(number);
+  into = static_cast<T>(whole);
+  return std::in_range<T>(whole);
+}
+
+// A text of the user's may be long, and no UTF-8.
+std::string shown(const json& value) {
+  return value.dump(-1, ' ', false, json::error_handler_t::replace).substr(0, 40);
+}
+
+// One object: which keys were asked for, and the first thing in the text that is wrong.
+class Keys {
+ public:
+  Keys(const json& object, std::string place, Error& first)
+      : object_(object), place_(std::move(place)), first_(first) {}
+
+  template <typename T>
+  void read(const char* key, T& into) {
+    asked_.insert(key);
+    const auto found = object_.find(key);
+    if (found == object_.end()) return;
+    if constexpr (std::integral<T>) {
+      if (!read_whole(*found, into)) {
+        fail(key, "is not a whole number in range: " + shown(*found));
+      }
+    } else if constexpr (std::floating_point<T>) {
+      if (!found->is_number()) return fail(key, "has the wrong type: " + shown(*found));
+      into = found->get<T>();
+    } else {
+      if (!found->is_string()) return fail(key, "has the wrong type: " + shown(*found));
+      into = found->get<T>();
+    }
+  }
+  const json& list(const char* key) {
+    static const json kNone = json::array();
+    asked_.insert(key);
+    const auto found = object_.find(key);
+    if (found == object_.end()) return kNone;
+    if (found->is_array()) return *found;
+    fail(key, "is not a list");
+    return kNone;
+  }
+  std::vector<std::string> others() const {
+    std::vector<std::string> keys;
+    for (const auto& [key, value] : object_.items()) {
+      if (asked_.count(key) == 0) keys.push_back(key);
+    }
+    return keys;
+  }
+  void refuse_others() {
+    for (const std::string& key : others()) fail(key.substr(0, 40), "is no key");
+  }
+  void fail(const std::string& key, const std::string& what) {
+    if (first_.what.empty()) first_ = {ErrorKind::bad_input, place_ + key, what, ""};
+  }
+
+ private:
+  const json& object_;
+  std::string place_;
+  Error& first_;
+  std::set<std::string> asked_;
+};
+
+template <typename T>
+bool read_items(const json& value, bool (json::*is)() const noexcept, KeyValue& into) {
+  std::vector<T> items;
+  for (const json& item : value) {
+    if (!(item.*is)()) return false;
+    items.push_back(item.get<T>());
+  }
+  into = std::move(items);
+  return true;
+}
+
+bool read_value(const json& value, KeyValue& into) {
+  if (value.is_boolean()) return into = value.get<bool>(), true;
+  if (value.is_number()) return into = value.get<double>(), true;
+  if (value.is_string()) return into = value.get<std::string>(), true;
+  if (!value.is_array()) return false;
+  if (!value.empty() && value[0].is_string()) {
+    return read_items<std::string>(value, &json::is_string, into);
+  }
+  return read_items<double>(value, &json::is_number, into);
+}
+
+BoardDevice read_device(const json& object, const std::string& place, Error& first) {
+  Keys keys(object, place, first);
+  BoardDevice device;
+  keys.read("name", device.name);
+  keys.read("type", device.type);
+  if (device.name.empty()) keys.fail("name", "is missing");
+  if (device.type.empty()) keys.fail("type", "is missing");
+  for (const std::string& path : keys.others()) {
+    KeyValue value;
+    if (!read_value(object[path], value) || !device.set(path, std::move(value))) {
+      keys.fail(path.substr(0, 40), "has the wrong type: " + shown(object[path]));
+    }
+  }
+  return device;
+}
+
+BoardPin read_pin(const json& object, const std::string& place, Error& first) {
+  Keys keys(object, place, first);
+  BoardPin pin;
+  keys.read("name", pin.name);
+  keys.read("pin", pin.pin);
+  keys.read("pull", pin.pull);
+  keys.read("bus", pin.bus);
+  keys.refuse_others();
+  return pin;
+}
+
+template <typename T, typename Read>
+void read_objects(Keys& keys, const char* key, std::vector<T>& into, Error& first, Read read) {
+  for (const json& entry : keys.list(key)) {
+    const std::string place = std::string(key) + "[" + std::to_string(into.size()) + "].";
+    if (!entry.is_object()) return keys.fail(place, "is not an object");
+    into.push_back(read(entry, place, first));
+  }
+}
+
+void check(const BoardStart& start, Keys& keys) {
+  const BoardDescription& board = start.board;
+  if (start.run.image.empty()) keys.fail("image", "is missing");
+  if (!(board.hse_Hz >= 0.0 && board.hse_Hz <= 50e6)) keys.fail("hse_Hz", "is outside 0..50 MHz");
+  if (!(std::abs(board.hsi_error) <= 0.05)) keys.fail("hsi_error", "is outside +-5 %");
+  if (!(std::abs(board.hse_error) <= 1e-3)) keys.fail("hse_error", "is outside +-1000 ppm");
+  if (board.hse_error != 0.0 && board.hse_Hz == 0.0) {
+    keys.fail("hse_error", "is of a crystal that is not fitted");
+  }
+  if (board.hse_start_ns < 0) keys.fail("hse_start_ns", "is negative");
+  if (board.ns_per_instruction < 0) keys.fail("ns_per_instruction", "is negative");
+}
+
+json json_of(const BoardDevice& device) {
+  json out = {{"name", device.name}, {"type", device.type}};
+  for (const std::string& path : device.paths()) {
+    std::visit([&](const auto& value) { out[path] = value; }, *device.value(path));
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string board_text(const BoardStart& start) {
+  const BoardDescription& board = start.board;
+  json out = {{"file", board.file},
+              {"board", board.name},
+              {"mcu", board.mcu},
+              {"hse_Hz", board.hse_Hz},
+              {"lse_Hz", board.lse_Hz},
+              {"hse_start_ns", board.hse_start_ns},
+              {"hsi_error", board.hsi_error},
+              {"hse_error", board.hse_error},
+              {"boot_image", board.boot_image},
+              {"start", board.start},
+              {"ns_per_instruction", board.ns_per_instruction},
+              {"image", start.run.image},
+              {"seed", start.run.seed},
+              {"gdb_port", start.run.gdb_port},
+              {"devices", json::array()},
+              {"pins", json::array()},
+              {"watch", board.watch}};
+  for (const BoardDevice& device : board.devices) out["devices"].push_back(json_of(device));
+  for (const BoardPin& pin : board.pins) {
+    out["pins"].push_back(
+        {{"name", pin.name}, {"pin", pin.pin}, {"pull", pin.pull}, {"bus", pin.bus}});
+  }
+  return out.dump(1, ' ', false, json::error_handler_t::replace);
+}
+
+Result<BoardStart> read_board_text(std::string_view text) {
+  const json top = json::parse(text, nullptr, false);
+  if (!top.is_object()) return Error{ErrorKind::bad_input, "board", "is not a JSON object", ""};
+  Error first;
+  Keys keys(top, "", first);
+  BoardStart start;
+  BoardDescription& board = start.board;
+  keys.read("file", board.file);
+  keys.read("board", board.name);
+  keys.read("mcu", board.mcu);
+  keys.read("hse_Hz", board.hse_Hz);
+  keys.read("lse_Hz", board.lse_Hz);
+  keys.read("hse_start_ns", board.hse_start_ns);
+  keys.read("hsi_error", board.hsi_error);
+  keys.read("hse_error", board.hse_error);
+  keys.read("boot_image", board.boot_image);
+  keys.read("start", board.start);
+  keys.read("ns_per_instruction", board.ns_per_instruction);
+  keys.read("image", start.run.image);
+  keys.read("seed", start.run.seed);
+  keys.read("gdb_port", start.run.gdb_port);
+  read_objects(keys, "devices", board.devices, first, read_device);
+  read_objects(keys, "pins", board.pins, first, read_pin);
+  for (const json& entry : keys.list("watch")) {
+    if (entry.is_string()) {
+      board.watch.push_back(entry.get<std::string>());
+    } else {
+      keys.fail("watch", "is not a list of names");
+    }
+  }
+  keys.refuse_others();
+  check(start, keys);
+  if (first.what.empty()) return start;
+  first.place = (board.name.empty() ? "board" : board.name) + ": " + first.place;
+  return first;
+}
+
+}  // namespace whirl
