@@ -24,6 +24,9 @@ io_bridges/messages      base/ io_bridges/messages/
 io_bridges/protocols     base/ io_bridges/protocols/
 io_bridges/devices       base/ io_bridges/protocols/ io_bridges/devices/
 io_bridges/link          base/ io_bridges/link/
+io_bridges/rack          base/ io_bridges/board_description/ io_bridges/devices/ io_bridges/messages/ io_bridges/rack/
+io_bridges/rack/models   base/ io_bridges/devices/ io_bridges/messages/ io_bridges/rack/models/ plant/
+io_bridges/rack/devices  base/ io_bridges/devices/ io_bridges/messages/ io_bridges/protocols/ io_bridges/rack/ plant/
 io_bridges/qemu/cycles   io_bridges/qemu/cycles/
 io_bridges/qemu/stm32    base/ io_bridges/protocols/ io_bridges/devices/ io_bridges/qemu/stm32/ io_bridges/qemu/cycles/flash_timing.hpp
 io_bridges/qemu/plugin   base/ io_bridges/
@@ -34,7 +37,7 @@ harness/job              base/ harness/job/
 harness/lua              base/ harness/lua/
 harness/metrics          harness/metrics/
 harness/world            base/ harness/world/ io_bridges/messages/
-harness/board            base/ harness/board/ harness/lua/ io_bridges/board_description/
+harness/board            base/ harness/board/ harness/lua/ io_bridges/board_description/ io_bridges/rack/
 harness/target           base/ harness/target/ io_bridges/
 harness/lockstep         base/ harness/lockstep/ harness/target/target.hpp harness/world/ io_bridges/messages/
 harness/plan             base/ harness/board/ harness/lua/ harness/metrics/ harness/plan/ harness/world/ results/
@@ -45,7 +48,7 @@ harness/stand            base/ harness/stand/ harness/world/ io_bridges/board_de
 harness/sweep            base/ harness/flight/flight_params.hpp harness/sweep/ plant/ results/
 harness/timing           base/ harness/target/ harness/timing/
 harness/calibrate        base/ harness/calibrate/ harness/lockstep/ harness/target/ harness/world/ io_bridges/protocols/ results/ firmware/esc/core/
-harness/cli              base/ harness/board/ harness/calibrate/ harness/catalogue/ harness/cli/ harness/executive/ harness/job/ harness/plan/ harness/sweep/ harness/target/ harness/timing/ harness/world/ io_bridges/board_description/ plant/validation/ results/
+harness/cli              base/ harness/board/ harness/calibrate/ harness/catalogue/ harness/cli/ harness/executive/ harness/job/ harness/plan/ harness/sweep/ harness/target/ harness/timing/ harness/world/ io_bridges/board_description/ io_bridges/rack/ plant/validation/ results/
 harness/fuzz             base/ harness/board/ harness/calibrate/ harness/catalogue/ harness/fuzz/ harness/plan/ io_bridges/ plant/ results/
 cmake                    cmake/
 cmake/mutate             cmake/mutate/

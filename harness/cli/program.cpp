@@ -8,6 +8,7 @@
 #include "harness/cli/calibrate_command.hpp"
 #include "harness/cli/composition.hpp"
 #include "harness/cli/console.hpp"
+#include "harness/cli/devices_command.hpp"
 #include "harness/cli/doctor.hpp"
 #include "harness/cli/fuzz_command.hpp"
 #include "harness/cli/history_command.hpp"
@@ -36,6 +37,7 @@ constexpr const char* kExamples = R"(Examples:
                                                constants of an ESC, its motor and its propeller
   whirl history hover                          how the margins went, run by run
   whirl fuzz --smoke                           random registers, images and files, for bugs of whirl
+  whirl devices                                what a board file's devices may be, key by key
   whirl doctor                                 what is missing on this machine
 
 Exit codes: 0 pass, 1 a plan failed, 2 bad input or usage, 3 inconclusive (the host was at fault, the
@@ -123,7 +125,7 @@ int run_chosen(int argc, char** argv, Composition composition) {
   fuzz->add_option("--first", fuzzing.first, "the first seed (default 0)");
 
   auto* job = app.add_subcommand("job", "one run, for whirl itself")->group("");
-
+  auto* devices = app.add_subcommand("devices", "what a board file's devices may be, key by key");
   auto* doctor = app.add_subcommand("doctor", "check tools and versions");
 
   try {
@@ -147,6 +149,7 @@ int run_chosen(int argc, char** argv, Composition composition) {
   }
   if (*fuzz) return fuzz_command(fuzzing);
   if (*job) return job_command(composition);
+  if (*devices) return devices_command();
   if (*doctor) return doctor_command(composition.root);
   return run_command(options, composition);
 }

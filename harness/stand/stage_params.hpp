@@ -1,7 +1,7 @@
 // The motor and the current sensor behind the board's power stage, where a plan's stand differs from
 // the board's own.
 //
-//   Reaches  the board's process as parameters of its power_stage (board/power_stage.hpp)
+//   Reaches  the board's process as parameters of its power_stage (io_bridges/rack/devices/power_stage.cpp)
 #pragma once
 #include <map>
 #include <string>

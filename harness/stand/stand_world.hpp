@@ -1,5 +1,5 @@
 // The thrust stand: the rotor in its air, the supply, the load cell and who commands the ESC. The
-// motor itself is in the board's process, behind its bridge (io_bridges/qemu/board/power_stage.hpp).
+// motor itself is in the board's process, behind its bridge (io_bridges/rack/models/power_stage.hpp).
 //
 //   Step     takes speed and charge of the last millisecond, moves the rotor's inflow and the
 //            supply by it, tells the torque coefficient, the supply and what goes over the bus

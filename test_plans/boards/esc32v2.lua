@@ -1,4 +1,4 @@
--- ESC32v2: STM32F103CB, 8 MHz crystal. The power stage is wired as io_bridges/qemu/board/power_stage.hpp
+-- ESC32v2: STM32F103CB, 8 MHz crystal. The power stage is wired as io_bridges/rack/models/power_stage.hpp
 -- says; a thrust stand commands it on I2C2 (PB10, PB11) or by pulses on PA8, and types on USART1 (PA9, PA10).
 return {
   board = "esc32v2",

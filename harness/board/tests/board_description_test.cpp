@@ -22,13 +22,14 @@ std::string board_with(const std::string& more) {
 }
 
 constexpr const char* kDevices = R"(lse = '32768 Hz', timing = '16 ns', devices = {
-  { name = 'imu', type = 'mpu6000', bus = 'spi1', cs = 'PB0', int = 'PC5',
-    params = { noise = '5 %', note = 'words', count = 3, on = true, axes = { 1, 2, 3 }, deep = { rate = '1 kHz' } } },
+  { name = 'imu', type = 'mpu6000', bus = 'spi1', cs = 'PC4', int = 'PC5', axes = { '-y', '+x', '+z' },
+    params = { place = { '1 cm', '0 m', '-2 mm' }, gyroscope = { scale_error = '5 %', noise_density = 1e-4 } } },
   { name = 'esc1', type = 'esc_i2c', bus = 'i2c3', address = 0x08, motor = 1 },
   { name = 'esc2', type = 'esc_i2c', bus = 'i2c3', address = 0x77, motor = 4 },
-  { name = 'far', type = 'esc_i2c', bus = 'i2c2', address = 0x77 },
-  { name = 'radio', type = 'mavlink_link', bus = 'usart2', baud = '57600 baud' } },
-  pins = { { name = 'led', pin = 'PA1' } }, watch = { 'f', 'g' })";
+  { name = 'far', type = 'esc_i2c', bus = 'i2c2', address = 0x77, motor = 2 },
+  { name = 'radio', type = 'mavlink_link', bus = 'usart2', baud = '57600 baud' },
+  { name = 'stage', type = 'power_stage', motor = 1, params = { swap_wires = true, resistance = '90 mohm' } } },
+  pins = { { name = 'led', pin = 'PA15' } }, watch = { 'f', 'g' })";
 
 TEST(BoardDescription, GivesItsDevicesByNameAndNumber) {
   const auto board = read_text(board_with(kDevices));
@@ -57,24 +58,24 @@ TEST(BoardDescription, HoldsAllInSI) {
   const auto board = read_text(board_with(kDevices));
   ASSERT_TRUE(board);
   const Board& b = board.value();
-  ASSERT_EQ(b.devices.size(), 5u);
+  ASSERT_EQ(b.devices.size(), 6u);
   const BoardDevice& imu = b.devices[0];
   EXPECT_EQ(imu.name, "imu");
   EXPECT_EQ(imu.type, "mpu6000");
   EXPECT_EQ(imu.bus, "spi1");
   const std::map<std::string, KeyValue, std::less<>> keys = {
-      {"cs", "PB0"},
+      {"cs", "PC4"},
       {"int", "PC5"},
-      {"params.noise", 0.05},
-      {"params.note", "words"},
-      {"params.count", 3.0},
-      {"params.on", true},
-      {"params.axes", std::vector<double>{1.0, 2.0, 3.0}},
-      {"params.deep.rate", 1000.0}};
+      {"axes", std::vector<std::string>{"-y", "+x", "+z"}},
+      {"params.place", std::vector<double>{0.01, 0.0, -0.002}},
+      {"params.gyroscope.scale_error", 0.05},
+      {"params.gyroscope.noise_density", 1e-4}};
   EXPECT_TRUE(imu.keys == keys);
   EXPECT_TRUE(b.devices[1].keys.empty());
   EXPECT_TRUE(b.devices[4].value("baud") == KeyValue(57600.0));
-  EXPECT_TRUE(b.pins == (std::vector<BoardPin>{{.name = "led", .pin = "PA1"}}));
+  EXPECT_TRUE(b.devices[5].value("params.swap_wires") == KeyValue(true));
+  EXPECT_TRUE(b.devices[5].value("params.resistance") == KeyValue(0.09));
+  EXPECT_TRUE(b.pins == (std::vector<BoardPin>{{.name = "led", .pin = "PA15"}}));
   EXPECT_EQ(b.watch, (std::vector<std::string>{"f", "g"}));
 }
 
@@ -87,23 +88,25 @@ TEST(BoardDescription, WithoutThemItTakesTheDefaults) {
 
 TEST(BoardDescription, RefusesDoublesAndWhatIsOutOfRange) {
   const auto two = [](const std::string& a, const std::string& b) {
-    return read_text(
-        board_with("devices = { { type = 't', " + a + " }, { type = 't', " + b + " } }"));
+    return read_text(board_with("devices = { { type = 'esc_i2c', " + a +
+                                " }, { type = 'esc_i2c', " + b + " } }"));
   };
+  const std::string other = "name = 'b', bus = 'i2c1', address = 9, motor = 2";
   struct Bad {
     Result<Board> board;
     const char* words;
   };
   const Bad kAll[] = {
-      {two("name = 'a', bus = 'i2c1'", "name = 'a', bus = 'i2c2'"), "two devices are called 'a'"},
-      {two("name = 'a', bus = 'i2c1', address = 9", "name = 'b', bus = 'i2c1', address = 9"),
+      {two("name = 'a', bus = 'i2c1', address = 8, motor = 1",
+           "name = 'a', bus = 'i2c2', address = 9, motor = 2"),
+       "two devices are called 'a'"},
+      {two("name = 'a', bus = 'i2c1', address = 9, motor = 1", other),
        "a and b share one address on i2c1"},
-      {two("name = 'a', bus = 'i2c1', address = 7", "name = 'b', bus = 'i2c1'"), "address"},
-      {two("name = 'a', bus = 'i2c1', address = 0x78", "name = 'b', bus = 'i2c1'"), "address"},
-      {two("name = 'a', bus = 'i2c1', motor = 0", "name = 'b', bus = 'i2c1'"), "motor"},
-      {two("name = 'a', bus = 'i2c1', motor = 5", "name = 'b', bus = 'i2c1'"), "motor"},
-      {two("name = 'a', bus = 'i2c1', baud = '0 baud'", "name = 'b', bus = 'i2c1'"), "baud"},
-      {two("name = 'a', bus = 'i2c1', colour = 1", "name = 'b', bus = 'i2c1'"), "unknown key"},
+      {two("name = 'a', bus = 'i2c1', address = 8, motor = 2", other), "share one motor, 2"},
+      {two("name = 'a', bus = 'i2c1', address = 7, motor = 1", other), "address: 0x07 is outside"},
+      {two("name = 'a', bus = 'i2c1', address = 0x78, motor = 1", other), "address: 0x78"},
+      {two("name = 'a', bus = 'i2c1', address = 8, motor = 0", other), "motor: 0 is outside 1..4"},
+      {two("name = 'a', bus = 'i2c1', address = 8, motor = 5", other), "motor: 5 is outside 1..4"},
       {read_text(board_with("timing = '0.5 ns'")), "timing"},
       {read_text(board_with("timing = '2 us'")), "timing"},
       {read_text("return { board = 'b', mcu = 'm', hse = '0 Hz' }"), "hse"},
@@ -115,9 +118,7 @@ TEST(BoardDescription, RefusesDoublesAndWhatIsOutOfRange) {
     EXPECT_NE(bad.board.error().message().find(bad.words), std::string::npos)
         << bad.board.error().message();
   }
-  EXPECT_TRUE(
-      two("name = 'a', bus = 'i2c1', address = 9", "name = 'b', bus = 'i2c2', address = 9"));
-  EXPECT_TRUE(two("name = 'a', bus = 'spi1'", "name = 'b', bus = 'spi1'"));
+  EXPECT_TRUE(two("name = 'a', bus = 'i2c2', address = 9, motor = 1", other));
 }
 
 }  // namespace

@@ -98,7 +98,8 @@ TEST(BoardFile, FiguresOutsideOfWhatExistsAreRefused) {
 // JSON is UTF-8, and a library that throws on other bytes must not end the program.
 TEST(BoardFile, BytesThatAreNoUtf8AreRefused) {
   EXPECT_NE(complaint("watch = { \"f\\xFF\" }").find("UTF-8"), std::string::npos);
-  EXPECT_NE(complaint("devices = { { name = \"d\\xC3\", type = \"serial\", bus = \"usart1\" } }")
+  EXPECT_NE(complaint("devices = { { name = \"d\\xC3\", type = \"serial\", bus = \"usart1\", baud "
+                      "= \"9600 baud\" } }")
                 .find("UTF-8"),
             std::string::npos);
   EXPECT_NE(complaint("pins = { { name = \"p\\x80\", pin = \"PB1\" } }").find("UTF-8"),
@@ -140,8 +141,12 @@ TEST(BoardFile, EachLimitBelongsToItsRange) {
                              {"motor", "4", "5"}};
   for (const Edge& edge : kOfDevices) {
     const auto with = [&](const std::string& value) {
-      return complaint("devices = { { name = 'd', type = 't', bus = 'i2c1', " + edge.key + " = " +
-                       value + " } }");
+      const bool serial = edge.key == "baud";
+      std::string keys =
+          serial ? "type = 'serial', bus = 'usart1'" : "type = 'esc_i2c', bus = 'i2c1'";
+      if (!serial) keys += edge.key == "motor" ? ", address = 9" : ", motor = 1";
+      return complaint("devices = { { name = 'd', " + keys + ", " + edge.key + " = " + value +
+                       " } }");
     };
     EXPECT_EQ(with(edge.inside), "");
     EXPECT_NE(with(edge.outside).find(edge.key), std::string::npos) << edge.outside;
@@ -160,13 +165,14 @@ TEST(BoardFile, WhatItSaysInSIIsExact) {
 TEST(BoardFile, APinIsOneDevicesHoweverTheyNameIt) {
   const std::string sensor =
       R"({ name = "a", type = "mpu6000", bus = "spi1", cs = "PB0", int = "PC5" })";
-  const std::string level = R"({ name = "a", type = "volts", bus = "PA0" })";
+  const std::string level =
+      R"({ name = "a", type = "volts", bus = "PA0", params = { volts = "1 V" } })";
   struct Pair {
     std::string first, second, pin;
   };
   const Pair kPairs[] = {
-      {level, R"({ name = "b", type = "volts", bus = "PA0" })", "PA0"},
-      {level, R"({ name = "b", type = "pulse_source", bus = "PA0" })", "PA0"},
+      {level, R"({ name = "b", type = "volts", bus = "PA0", params = { volts = "1 V" } })", "PA0"},
+      {level, R"({ name = "b", type = "pulse_source", bus = "PA0", motor = 1 })", "PA0"},
       {level, R"({ name = "b", type = "jumper", bus = "pins", cs = "PA1", int = "PA0" })", "PA0"},
       {sensor, R"({ name = "b", type = "mpu6000", bus = "spi1", cs = "PC5", int = "PC4" })", "PC5"},
       {sensor, R"({ name = "b", type = "mpu6000", bus = "spi1", cs = "PB1", int = "PC5" })", "PC5"},
@@ -182,9 +188,12 @@ TEST(BoardFile, APinIsOneDevicesHoweverTheyNameIt) {
   }
   // Two that no pin joins, and the third pair of three.
   EXPECT_EQ(
-      complaint("devices = { " + level + R"(, { name = "b", type = "volts", bus = "PA1" } })"), "");
-  EXPECT_NE(complaint(R"(devices = { { name = "x", type = "t", bus = "pins" },
-      { name = "y", type = "t", bus = "pins" }, { name = "y", type = "t", bus = "pins" } })")
+      complaint("devices = { " + level +
+                R"(, { name = "b", type = "volts", bus = "PA1", params = { volts = "1 V" } } })"),
+      "");
+  EXPECT_NE(complaint(R"(devices = { { name = "x", type = "jumper", cs = "PA1", int = "PA2" },
+      { name = "y", type = "jumper", cs = "PA1", int = "PA3" },
+      { name = "y", type = "jumper", cs = "PA1", int = "PA4" } })")
                 .find("two devices are called 'y'"),
             std::string::npos);
 }

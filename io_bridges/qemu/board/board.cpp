@@ -13,6 +13,7 @@
 #include "io_bridges/qemu/board/chip_factory.hpp"
 #include "io_bridges/qemu/board/post_mortem.hpp"
 #include "io_bridges/qemu/stm32/adc.hpp"
+#include "io_bridges/rack/devices/table.hpp"
 
 namespace whirl::board {
 namespace {
@@ -40,8 +41,8 @@ Board::Board(Setup setup, io::Channel channel, Emulator& emulator)
           {events_, *this, *this, *this, [this](const io::Finding& f) { find(f); },
            setup_.description.hse_Hz, setup_.description.lse_Hz, setup_.description.hse_start_ns,
            setup_.description.hsi_error, setup_.description.hse_error})),
-      devices_(
-          {events_, *chip_, happened_, [this](const io::Finding& f) { find(f); }, setup_.run.seed}),
+      devices_({events_, *chip_, happened_, [this](const io::Finding& f) { find(f); },
+                setup_.run.seed, rack::device_types()}),
       hangs_(events_, emulator, happened_),
       systick_(
           events_, chip_->clocks(), [this] { return emulator_.ahead_ns(); },
@@ -196,7 +197,7 @@ void Board::obey(const io::Reader& message) {
     const auto fault = message.as<io::FaultCommand>();
     if (fault.kind == static_cast<std::uint32_t>(io::FaultKind::code_hangs)) return hang(fault);
   }
-  if (devices_.take(message)) return;
+  if (devices_.on_message(message)) return;
   if (message.header().kind == io::Kind::end_of_run) {
     watch_.run_ends(events_.now());
     add_statistics();

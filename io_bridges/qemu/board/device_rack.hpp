@@ -1,26 +1,18 @@
-// The devices of a board: built from its description, hung on the chip's pins and buses, joined to
-// the messages of the link.
+// The devices of a board: built from its description by their types (io_bridges/rack), hung on the
+// chip's pins and buses, joined to the messages of the link.
 //
-//   Numbers   a device's number is its place in the description's list; motors and UARTs have theirs
-//   Types     mpu6000 (bus spiN, cs, int), esc_i2c (bus i2cN, address, motor), mavlink_link
-//             (bus usartN or uartN, baud), serial (bus, baud: text lines and bytes as messages),
-//             i2c_master (bus i2cN; params rate: orders from the harness), power_stage (motor,
-//             params of motor and shunt; pins as power_stage.hpp says), pulse_source (bus: the pin it
-//             drives; motor), volts (bus: an analog pin; params volts), jumper (cs: the pin it copies,
-//             int: the pin it drives)
 //   Logs      every I2C transaction; every SPI transaction with its first 16 pairs of bytes (MOSI,
-//             MISO); data-ready edges; set-points; frames down the radio and
-//             lines from a serial port
-//   Errors    bad_input: unknown type, a bus or pin that the part does not have, a missing key
+//             MISO)
+//   Messages  go to the devices that take their kind and port; faults into the book that all share
+//   Errors    bad_input: what check_board.hpp refuses, a bus or pin that the part does not have
 #pragma once
 #include <memory>
-#include <vector>
 
 #include "base/result.hpp"
 #include "io_bridges/board_description/board_description.hpp"
-#include "io_bridges/devices/faults.hpp"
 #include "io_bridges/messages/messages.hpp"
 #include "io_bridges/qemu/stm32/chip_model.hpp"
+#include "io_bridges/rack/device_type.hpp"
 
 namespace whirl::board {
 
@@ -31,21 +23,22 @@ class DeviceRack {
     stm32::ChipModel& chip;
     io::Batch& happened;
     io::FindingSink finding;
-    std::uint64_t seed = 1;
+    std::uint64_t seed;
+    const rack::DeviceTypes& types;
   };
 
   explicit DeviceRack(Site site);
   ~DeviceRack();
 
   Result<Done> build(const BoardDescription& board);
-  // A message from the harness; false: of a kind that is not for devices.
-  bool take(const io::Reader& message);
+  // A message from the harness; false: no device takes it.
+  bool on_message(const io::Reader& message);
   // At a boundary, before what happened is posted: what devices tell at each one.
   void report(io::Nanoseconds now);
 
  private:
-  struct Parts;
-  std::unique_ptr<Parts> parts_;
+  class Wiring;
+  std::unique_ptr<Wiring> wiring_;
 };
 
 }  // namespace whirl::board

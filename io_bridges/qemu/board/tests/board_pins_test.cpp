@@ -6,6 +6,7 @@
 #include "io_bridges/board_description/board_text.hpp"
 #include "io_bridges/qemu/board/device_rack.hpp"
 #include "io_bridges/qemu/stm32/tests/chip_bench.hpp"
+#include "io_bridges/rack/devices/table.hpp"
 
 namespace whirl::board {
 namespace {
@@ -15,7 +16,8 @@ struct RackBench {
   io::Batch happened;
   std::vector<std::string> found;
   DeviceRack rack{{bench.events(), bench.chip(), happened,
-                   [this](const io::Finding& f) { found.push_back(f.where + ": " + f.what); }, 1}};
+                   [this](const io::Finding& f) { found.push_back(f.where + ": " + f.what); }, 1,
+                   rack::device_types()}};
 
   std::string refusal(const std::string& lists) {
     auto told = read_board_text(R"({"board":"b","mcu":"stm32f405rg","image":"x",)" + lists + "}");
@@ -76,8 +78,8 @@ TEST(BoardPins, TheOnlyPairOfPinsIsSolderedWithTheFirstDevice) {
 
 TEST(DeviceRack, TwoDevicesOnOneAddressOrALossBeyondAllAreRefused) {
   const std::string e = R"({"name":"e","type":"esc_i2c","bus":"i2c3","address":41,"motor":1})";
-  const std::string f = R"({"name":"f","type":"esc_i2c","bus":"i2c03","address":41,"motor":2})";
-  EXPECT_NE(refusal(R"("devices":[)" + e + "," + f + "]").find("another device has its address"),
+  const std::string f = R"({"name":"f","type":"esc_i2c","bus":"i2c3","address":41,"motor":2})";
+  EXPECT_NE(refusal(R"("devices":[)" + e + "," + f + "]").find("e and f share one address on i2c3"),
             std::string::npos);
   for (const char* loss : {"5.0", "-0.1"}) {
     const std::string radio =

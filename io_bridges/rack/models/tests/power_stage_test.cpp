@@ -1,5 +1,5 @@
 // The power stage without a chip: six wires driven by hand.
-#include "io_bridges/qemu/board/power_stage.hpp"
+#include "io_bridges/rack/models/power_stage.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 
 #include "base/near.hpp"
 
-namespace whirl::board {
+namespace whirl::rack {
 namespace {
 
 constexpr Nanoseconds kUs = 1000, kMs = 1'000'000;
@@ -207,11 +207,5 @@ TEST(PowerStage, BrakeStopsTheRotorAsItsTorqueAndInertiaSay) {
   EXPECT_GT(s.stage.motor().speed_radps(), 100.0);  // released, it turns again
 }
 
-TEST(PowerStage, UnknownParameterIsRefusedByName) {
-  const auto wrong = power_stage_params({{"resistence", 0.1}}, "esc32v2: motor");
-  ASSERT_FALSE(wrong);
-  EXPECT_NE(wrong.error().message().find("resistence"), std::string::npos);
-}
-
 }  // namespace
-}  // namespace whirl::board
+}  // namespace whirl::rack

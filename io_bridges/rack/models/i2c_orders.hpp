@@ -11,7 +11,7 @@
 #include "io_bridges/devices/i2c_master.hpp"
 #include "io_bridges/messages/messages.hpp"
 
-namespace whirl::board {
+namespace whirl::rack {
 
 class I2cOrders {
  public:
@@ -38,4 +38,4 @@ class I2cOrders {
   std::deque<Waiting> waiting_;
 };
 
-}  // namespace whirl::board
+}  // namespace whirl::rack

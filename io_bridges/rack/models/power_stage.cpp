@@ -1,11 +1,11 @@
-#include "io_bridges/qemu/board/power_stage.hpp"
+#include "io_bridges/rack/models/power_stage.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "base/check.hpp"
 
-namespace whirl::board {
+namespace whirl::rack {
 namespace {
 
 constexpr double kDivider = 1.5 / 11.5;
@@ -27,62 +27,10 @@ plant::Leg leg_of(const std::array<bool, 2>& on) {
   return on[1] ? plant::Leg::high : plant::Leg::off;
 }
 
-bool set_one(PowerStageParams& p, const std::string& key, double value) {
-  if (key == "torque_constant") return p.motor.torque_constant_NmpA = value, true;
-  if (key == "resistance") return p.motor.resistance_ohm = value, true;
-  if (key == "inductance") return p.motor.inductance_H = value, true;
-  if (key == "no_load_current") return p.motor.no_load_current_A = value, true;
-  if (key == "inertia") return p.motor.inertia_kgm2 = value, true;
-  if (key == "bus_capacitance") return p.bus_capacitance_F = value, true;
-  if (key == "swap_wires") return p.swap_wires = value != 0.0, true;
-  if (key == "shunt.offset") return p.shunt.offset_low_A = p.shunt.offset_high_A = value, true;
-  if (key == "shunt.gain") return p.shunt.gain_tolerance = value, true;
-  if (key == "shunt.gain_error") {
-    return p.shunt.gain_error = value, p.shunt.gain_tolerance = 0.0, true;
-  }
-  if (key == "shunt.warm_up") return p.shunt.warm_up_A = value, true;
-  if (key == "shunt.wander") return p.shunt.wander_A = value, true;
-  if (key == "shunt.noise") return p.shunt.noise_A = value, p.shunt.noise_per_A = 0.0, true;
-  return false;
-}
-
 }  // namespace
-
-Result<PowerStageParams> power_stage_params(const std::map<std::string, double>& params,
-                                            const std::string& place) {
-  PowerStageParams result;
-  for (const auto& [key, value] : params) {
-    if (!set_one(result, key, value)) {
-      return Error{ErrorKind::bad_input, place, "unknown parameter '" + key + "'",
-                   "torque_constant, resistance, inductance, no_load_current, inertia, "
-                   "bus_capacitance, swap_wires, shunt { offset, gain, gain_error, noise, warm_up, "
-                   "wander }"};
-    }
-  }
-  if (!(result.bus_capacitance_F >= 10e-6 && result.bus_capacitance_F <= 0.1)) {
-    return Error{ErrorKind::bad_input, place, "bus_capacitance must be 10 uF to 0.1 F", ""};
-  }
-  const auto good = plant::validate(result.motor, place);
-  if (!good) return good.error();
-  return result;
-}
 
 PowerStage::PowerStage(const PowerStageParams& params, std::uint64_t seed, const std::string& name)
     : params_(params), motor_(params.motor), shunt_(params.shunt, seed, name + ".shunt") {}
-
-bool PowerStage::join(stm32::ChipModel& chip) {
-  for (int leg = 0; leg < 3; ++leg) {
-    io::Wire *upper = chip.pin(kUpper_pins[leg]), *lower = chip.pin(kLower_pins[leg]);
-    const auto phase = [this, leg](Nanoseconds now) { return phase_V(leg, now); };
-    if (upper == nullptr || lower == nullptr || !chip.set_analog(kPhase_pins[leg], phase)) {
-      return false;
-    }
-    wire(leg, true, *upper);
-    wire(leg, false, *lower);
-  }
-  return chip.set_analog(kBus_pin, [this](Nanoseconds now) { return bus_V(now); }) &&
-         chip.set_analog(kShunt_pin, [this](Nanoseconds now) { return shunt_V(now); });
-}
 
 void PowerStage::wire(int leg, bool upper, io::Wire& wire) {
   wire.drive(wire.add_driver(), io::Drive::pull_low, now_ns_);
@@ -213,4 +161,4 @@ io::ShaftState PowerStage::report(Nanoseconds now) {
   return told;
 }
 
-}  // namespace whirl::board
+}  // namespace whirl::rack

@@ -1,11 +1,11 @@
 // The harness's orders on a bus that sticks and comes free.
-#include "io_bridges/qemu/board/i2c_orders.hpp"
+#include "io_bridges/rack/models/i2c_orders.hpp"
 
 #include <gtest/gtest.h>
 
 #include <map>
 
-namespace whirl::board {
+namespace whirl::rack {
 namespace {
 
 constexpr io::Nanoseconds kMs = 1'000'000;
@@ -62,4 +62,4 @@ TEST(I2cOrders, WhatAStuckBusMadeLateIsToldAndNotSent) {
 }
 
 }  // namespace
-}  // namespace whirl::board
+}  // namespace whirl::rack

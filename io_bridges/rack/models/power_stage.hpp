@@ -14,18 +14,15 @@
 #include <array>
 #include <cstdint>
 #include <functional>
-#include <map>
 #include <string>
 
-#include "base/result.hpp"
 #include "io_bridges/devices/event_queue.hpp"
 #include "io_bridges/devices/wire.hpp"
 #include "io_bridges/messages/messages.hpp"
-#include "io_bridges/qemu/stm32/chip_model.hpp"
 #include "plant/motor/switched_motor.hpp"
 #include "plant/sensors/current_shunt.hpp"
 
-namespace whirl::board {
+namespace whirl::rack {
 
 using io::Nanoseconds;
 
@@ -35,12 +32,6 @@ struct PowerStageParams {
   double bus_capacitance_F = 470e-6;
   bool swap_wires = false;  // two of the motor's wires: it turns the other way
 };
-
-// From a device's parameters: torque_constant, resistance, inductance, no_load_current, inertia,
-// bus_capacitance, swap_wires; shunt.offset, shunt.gain (a tolerance to draw from), shunt.gain_error (this part's
-// own, nothing is drawn), shunt.noise, shunt.warm_up, shunt.wander.
-Result<PowerStageParams> power_stage_params(const std::map<std::string, double>& params,
-                                            const std::string& place);
 
 class PowerStage {
  public:
@@ -56,7 +47,6 @@ class PowerStage {
   PowerStage(const PowerStage&) = delete;
   PowerStage& operator=(const PowerStage&) = delete;
 
-  bool join(stm32::ChipModel& chip);               // all of the pins; false: one is missing
   void wire(int leg, bool upper, io::Wire& wire);  // the six switches, once each
   // Told once, when the motor has turned the other way for a while: the air's load is that of the
   // propeller's own direction only.
@@ -98,4 +88,4 @@ class PowerStage {
   double source_charge_C_ = 0.0, window_charge_C_ = 0.0, window_s_ = 0.0;
 };
 
-}  // namespace whirl::board
+}  // namespace whirl::rack

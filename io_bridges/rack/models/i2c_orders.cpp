@@ -1,8 +1,8 @@
-#include "io_bridges/qemu/board/i2c_orders.hpp"
+#include "io_bridges/rack/models/i2c_orders.hpp"
 
 #include <algorithm>
 
-namespace whirl::board {
+namespace whirl::rack {
 namespace {
 
 constexpr io::Nanoseconds kTooLate_ns = 10'000'000;
@@ -59,4 +59,4 @@ void I2cOrders::report(std::uint32_t number, const io::I2cReply& reply) {
                 static_cast<std::uint32_t>(reply.bytes.size()));
 }
 
-}  // namespace whirl::board
+}  // namespace whirl::rack

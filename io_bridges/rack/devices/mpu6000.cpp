@@ -1,0 +1,112 @@
+// InvenSense MPU-6000 on SPI: the part register by register (io_bridges/devices), what it senses by
+// the plant's IMU, soldered as the board file's `axes` say.
+#include "io_bridges/devices/mpu6000.hpp"
+
+#include "io_bridges/rack/devices/table.hpp"
+#include "io_bridges/rack/models/inertial_sensor.hpp"
+
+namespace whirl::rack {
+namespace {
+
+void read_triad(const DeviceSlot& slot, const std::string& group, plant::TriadParams& triad) {
+  const std::string path = "params." + group + ".";
+  triad.noise_density = slot.quantity(path + "noise_density");
+  triad.bias_instability = slot.quantity(path + "bias_instability");
+  triad.turn_on_bias = slot.quantity(path + "turn_on_bias");
+  triad.scale_error = slot.quantity(path + "scale_error");
+  triad.vibration_per_radps2 = slot.quantity(path + "vibration");
+}
+
+plant::ImuParams physics_of(const DeviceSlot& slot) {
+  plant::ImuParams params = plant::mpu6000_physics();
+  read_triad(slot, "accelerometer", params.accelerometer);
+  read_triad(slot, "gyroscope", params.gyroscope);
+  const auto place_m = slot.triple("params.place");
+  const auto turn_rad = slot.triple("params.misalignment");
+  params.p_BS_B_m = {place_m[0], place_m[1], place_m[2]};
+  params.misalignment_rad = {turn_rad[0], turn_rad[1], turn_rad[2]};
+  return params;
+}
+
+io::Mpu6000::Params part_of(const DeviceSlot& slot) {
+  io::Mpu6000::Params params;
+  params.name = slot.name();
+  params.bus = slot.bus_number();
+  params.device = slot.number();
+  return params;
+}
+
+class Mpu6000Device final : public RackDevice {
+ public:
+  Mpu6000Device(DeviceSlot& slot, const plant::ImuParams& physics)
+      : sensor_(physics, mounting_of(slot.axes("axes")), slot.rack().seed(), slot.name()),
+        part_(
+            slot.rack().events(), part_of(slot),
+            [this](Nanoseconds now) { return sensor_.sample(now); },
+            slot.given("int") ? &slot.pin("int") : nullptr, &slot.rack().faults(),
+            slot.rack().finding()) {
+    slot.join_spi(part_);
+    if (!slot.given("int")) return;
+    slot.pin("int").watch(
+        [&happened = slot.rack().happened(), number = slot.number()](bool level, Nanoseconds now) {
+          if (level) happened.add(io::Kind::data_ready, number, now, nullptr, 0);
+        });
+  }
+
+  std::vector<Intake> intakes() const override { return {{io::Kind::body_motion}}; }
+  void on_message(const io::Reader& message) override {
+    sensor_.set_motion(message.as<io::BodyMotion>(), message.header().t_ns);
+  }
+
+ private:
+  InertialSensor sensor_;
+  io::Mpu6000 part_;
+};
+
+std::unique_ptr<RackDevice> make(DeviceSlot& slot) {
+  const plant::ImuParams physics = physics_of(slot);
+  if (slot.failed(plant::validate(physics, slot.place()))) return nullptr;
+  return std::make_unique<Mpu6000Device>(slot, physics);
+}
+
+void add_triad(std::vector<DeviceKey>& keys, const std::string& group, const std::string& unit,
+               Dimension dimension, const plant::TriadParams& usual) {
+  const std::string path = "params." + group + ".";
+  const auto bare = [&](const char* name, const std::string& of, double high, const char* about) {
+    return quantity_key(path + name, Dimension::none, of, {0.0, high}, about);
+  };
+  const auto own = [&](const char* name, double high, const char* about) {
+    return quantity_key(path + name, dimension, unit, {0.0, high}, about);
+  };
+  keys.push_back(bare("noise_density", unit + "/sqrt(Hz)", 10.0, "white noise, a bare number")
+                     .with(usual.noise_density));
+  keys.push_back(own("bias_instability", 10.0, "Allan floor / 0.664").with(usual.bias_instability));
+  keys.push_back(own("turn_on_bias", 20.0, "standard deviation per axis").with(usual.turn_on_bias));
+  keys.push_back(quantity_key(path + "scale_error", Dimension::ratio, "%", {0.0, 0.5},
+                              "standard deviation per axis")
+                     .with(usual.scale_error));
+  keys.push_back(bare("vibration", unit + "/(rad/s)^2", 1.0, "by rotor speed squared, bare")
+                     .with(usual.vibration_per_radps2));
+}
+
+}  // namespace
+
+DeviceType mpu6000_type() {
+  const plant::ImuParams usual = plant::mpu6000_physics();
+  std::vector<DeviceKey> keys = {
+      bus_key("spi", "the bus").need(),
+      pin_key("cs", "chip select, active low").need(),
+      pin_key("int", "interrupt output"),
+      axes_key("axes", "where its x, y, z point in the body (x forward, y right, z down)")
+          .with(std::vector<std::string>{"+x", "-y", "-z"}),
+      triple_key("params.place", Dimension::length, "m", {-5.0, 5.0}, "from the centre of mass")
+          .with(std::vector<double>{0.0, 0.0, 0.0}),
+      triple_key("params.misalignment", Dimension::angle, "deg", {-0.5, 0.5}, "a small turn")
+          .with(std::vector<double>{0.0, 0.0, 0.0}),
+  };
+  add_triad(keys, "accelerometer", "m/s2", Dimension::acceleration, usual.accelerometer);
+  add_triad(keys, "gyroscope", "rad/s", Dimension::angular_rate, usual.gyroscope);
+  return {"mpu6000", "accelerometer and gyroscope on SPI", std::move(keys), make};
+}
+
+}  // namespace whirl::rack
