@@ -33,7 +33,7 @@ Result<std::unique_ptr<Target>> make_target(const cli::Setup& setup) {
   VirtualBoardOptions options;
   options.board = {setup.board,
                    {.image = setup.image, .seed = setup.seed, .gdb_port = setup.gdb_port}};
-  if (setup.plan.stand) {
+  if (setup.plan.stand && setup.node == 0) {
     const auto params = stand_of(setup);
     if (!params) return params.error();
     const auto set =

@@ -36,85 +36,86 @@ void EventLog::add_bus(const io::Reader& reader, bool spi) {
 
 bool EventLog::add(const io::Batch& batch) {
   io::Reader reader(batch.bytes());
-  while (reader.next()) {
-    const io::Header& header = reader.header();
-    switch (header.kind) {
-      case io::Kind::i2c_transaction:
-        add_bus(reader, false);
-        break;
-      case io::Kind::spi_transaction:
-        add_bus(reader, true);
-        break;
-      case io::Kind::uart_frame:
-      case io::Kind::uart_received:
-        uart.push_back({header.port, header.kind == io::Kind::uart_frame, header.t_ns,
-                        keep(reader.payload()), header.size});
-        break;
-      case io::Kind::data_ready:
-        data_ready_ns[header.port].push_back(header.t_ns);
-        break;
-      case io::Kind::finding:
-        findings.push_back(finding_of(header.t_ns, text_of(reader.payload())));
-        break;
-      case io::Kind::cpu_fault:
-        cpu_faults.push_back({header.t_ns, reader.as<io::CpuFault>(),
-                              text_of(reader.tail_after(sizeof(io::CpuFault)))});
-        break;
-      case io::Kind::fault_applied:
-        faults_applied_ns.emplace(header.port, header.t_ns);
-        break;
-      case io::Kind::function_call: {
-        const auto call = reader.as<io::FunctionCall>();
-        if (call.execution_ns < 0) {
-          open_calls_ns[header.port].push_back(call.entry_ns);
-          break;
-        }
-        calls[header.port].push_back({call.entry_ns, header.t_ns, call.execution_ns,
-                                      call.latency_ns, call.execution_cycles,
-                                      call.response_cycles});
-        break;
-      }
-      case io::Kind::statistics:
-        statistics = text_of(reader.payload());
-        break;
-      case io::Kind::board_reset:
-        resets.push_back({header.t_ns, header.port});
-        break;
-      case io::Kind::clock_setup:
-        clocks.push_back({header.t_ns, reader.as<io::ClockSetup>()});
-        break;
-      case io::Kind::busy_time: {
-        const auto piece = reader.as<io::BusyTime>();
-        busy.push_back({piece.since_ns, header.t_ns, piece.busy_ns});
+  while (reader.next()) add(reader);
+  return reader.complete();
+}
+
+void EventLog::add(const io::Reader& reader) {
+  const io::Header& header = reader.header();
+  switch (header.kind) {
+    case io::Kind::i2c_transaction:
+      add_bus(reader, false);
+      break;
+    case io::Kind::spi_transaction:
+      add_bus(reader, true);
+      break;
+    case io::Kind::uart_frame:
+    case io::Kind::uart_received:
+      uart.push_back({header.port, header.kind == io::Kind::uart_frame, header.t_ns,
+                      keep(reader.payload()), header.size});
+      break;
+    case io::Kind::data_ready:
+      data_ready_ns[header.port].push_back(header.t_ns);
+      break;
+    case io::Kind::finding:
+      findings.push_back(finding_of(header.t_ns, text_of(reader.payload())));
+      break;
+    case io::Kind::cpu_fault:
+      cpu_faults.push_back({header.t_ns, reader.as<io::CpuFault>(),
+                            text_of(reader.tail_after(sizeof(io::CpuFault)))});
+      break;
+    case io::Kind::fault_applied:
+      faults_applied_ns.emplace(header.port, header.t_ns);
+      break;
+    case io::Kind::function_call: {
+      const auto call = reader.as<io::FunctionCall>();
+      if (call.execution_ns < 0) {
+        open_calls_ns[header.port].push_back(call.entry_ns);
         break;
       }
-      case io::Kind::body_motion:
-      case io::Kind::esc_state:
-      case io::Kind::fault:
-      case io::Kind::end_of_run:
-      case io::Kind::esc_setpoint:
-      case io::Kind::shaft_load:
-      case io::Kind::shaft_state:
-      case io::Kind::i2c_order:
-      case io::Kind::pulse_train:
-      case io::Kind::i2c_reply:
-      case io::Kind::shoot_through:
-      case io::Kind::uart_delivered:
-        break;  // truth.csv, the bus log and the findings have them
-      case io::Kind::interrupt_latency: {
-        const double took_ns = static_cast<double>(header.t_ns) -
-                               static_cast<double>(reader.as<io::InterruptLatency>().raised_ns);
-        LatencyRecord& record = latencies[header.port];
-        ++record.count;
-        record.sum_ns += took_ns;
-        if (took_ns <= record.max_ns && record.count > 1) break;
-        record.max_ns = took_ns;
-        record.max_at_ns = header.t_ns;
-        break;
-      }
+      calls[header.port].push_back({call.entry_ns, header.t_ns, call.execution_ns, call.latency_ns,
+                                    call.execution_cycles, call.response_cycles});
+      break;
+    }
+    case io::Kind::statistics:
+      statistics = text_of(reader.payload());
+      break;
+    case io::Kind::board_reset:
+      resets.push_back({header.t_ns, header.port});
+      break;
+    case io::Kind::clock_setup:
+      clocks.push_back({header.t_ns, reader.as<io::ClockSetup>()});
+      break;
+    case io::Kind::busy_time: {
+      const auto piece = reader.as<io::BusyTime>();
+      busy.push_back({piece.since_ns, header.t_ns, piece.busy_ns});
+      break;
+    }
+    case io::Kind::body_motion:
+    case io::Kind::esc_state:
+    case io::Kind::fault:
+    case io::Kind::end_of_run:
+    case io::Kind::esc_setpoint:
+    case io::Kind::shaft_load:
+    case io::Kind::shaft_state:
+    case io::Kind::i2c_order:
+    case io::Kind::pulse_train:
+    case io::Kind::i2c_reply:
+    case io::Kind::shoot_through:
+    case io::Kind::uart_delivered:
+      break;  // truth.csv, the bus log and the findings have them
+    case io::Kind::interrupt_latency: {
+      const double took_ns = static_cast<double>(header.t_ns) -
+                             static_cast<double>(reader.as<io::InterruptLatency>().raised_ns);
+      LatencyRecord& record = latencies[header.port];
+      ++record.count;
+      record.sum_ns += took_ns;
+      if (took_ns <= record.max_ns && record.count > 1) break;
+      record.max_ns = took_ns;
+      record.max_at_ns = header.t_ns;
+      break;
     }
   }
-  return reader.complete();
 }
 
 double EventLog::busy_share(std::int64_t from_ns, std::int64_t to_ns) const {
@@ -158,8 +159,13 @@ bool EventLog::speaks_mavlink() const {
   });
 }
 
+std::string EventLog::bus_name() const {
+  return "bus" + (node.empty() ? "" : "_" + node) + ".csv";
+}
+
 std::string EventLog::telemetry_name() const {
-  return speaks_mavlink() ? "telemetry.tlog" : "serial.txt";
+  const std::string whose = node.empty() ? "" : "_" + node;
+  return speaks_mavlink() ? "telemetry" + whose + ".tlog" : "serial" + whose + ".txt";
 }
 
 Result<Done> EventLog::write_telemetry(const std::string& path) const {

@@ -74,8 +74,11 @@ struct ClockRecord {
 
 class EventLog {
  public:
+  std::string node;  // whose board it was, for the names of files; empty: the only one's
+
   // Takes a batch of either direction; false: it was cut short, which no target may do.
   bool add(const io::Batch& batch);
+  void add(const io::Reader& message);  // where the reader stands
 
   std::vector<BusRecord> bus;
   std::vector<UartRecord> uart;
@@ -99,6 +102,7 @@ class EventLog {
   // What the board sent on a UART. MAVLink is telemetry.tlog, framed as it came: time in us
   // (big-endian u64) before each chunk of one message, as ground stations keep their logs. Anything
   // else is serial.txt, byte for byte.
+  std::string bus_name() const;
   std::string telemetry_name() const;
   Result<Done> write_telemetry(const std::string& path) const;
 

@@ -136,13 +136,15 @@ class Filing {
 }  // namespace
 
 bool write_run(const RunFolder& folder, Report& report, const TruthLog& truth,
-               const EventLog& events) {
+               const std::vector<EventLog>& logs) {
   const auto begin = std::chrono::steady_clock::now();
   Filing filing(folder, report);
   filing.keep("truth.csv", [&](const std::string& path) { return truth.write_csv(path); });
-  filing.keep("bus.csv", [&](const std::string& path) { return events.write_bus_csv(path); });
-  filing.keep(events.telemetry_name(),
-              [&](const std::string& path) { return events.write_telemetry(path); });
+  for (const EventLog& log : logs) {
+    filing.keep(log.bus_name(), [&](const std::string& path) { return log.write_bus_csv(path); });
+    filing.keep(log.telemetry_name(),
+                [&](const std::string& path) { return log.write_telemetry(path); });
+  }
   conclude(report);  // what was lost is in what follows
   filing.keep_text("junit.xml", junit_xml({&report}));
   filing.keep_text("index.html", page_html(report, truth));

@@ -1,7 +1,8 @@
 // The folder of one run: RESULTS/runs/<time>-<plan>/ and the link `latest` beside it.
 //
 //   Files     run.json, junit.xml, index.html, truth.csv, bus.csv,
-//             telemetry.tlog (serial.txt where it is no MAVLink)
+//             telemetry.tlog (serial.txt where it is no MAVLink); of nodes with names bus_NODE.csv and
+//             telemetry_NODE.tlog
 //   Name      from the host's clock; a second run within one second gets a number
 //   Whole     it is written as .unfinished-..., and gets its name by one rename when all is in it. A
 //             run that was interrupted ends in "-interrupted", one that lost a file in "-incomplete".
@@ -39,7 +40,7 @@ class RunFolder {
 // All files but those that need the whole history. What is lost becomes a reason of the report, which
 // is concluded anew; false then. Fills Report::host.results_s before run.json.
 bool write_run(const RunFolder& folder, Report& report, const TruthLog& truth,
-               const EventLog& events);
+               const std::vector<EventLog>& logs);
 
 // Of a run that was refused before it began: run.json, junit.xml and the page with the reason.
 bool write_refusal(const RunFolder& folder, Report& report);

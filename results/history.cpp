@@ -160,7 +160,8 @@ void History::prepare_schema() {
 std::string inputs_of(const Report& r) {
   std::string all;
   for (const auto& [what, version] : r.versions) {
-    const bool is_input = what == "image" || what == "plan" || what == "board" || what == "vehicle";
+    const std::string role = what.substr(what.find('/') + 1);  // without the node's name
+    const bool is_input = role == "image" || role == "plan" || role == "board" || role == "vehicle";
     if (is_input) all += (all.empty() ? "" : ", ") + version;
   }
   return all;

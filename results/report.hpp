@@ -125,7 +125,8 @@ struct Report {
   std::vector<Note> log;
   std::vector<Note> steps;  // t:step
   std::vector<CpuFaultRow> cpu_faults;
-  std::string statistics_json;  // the board's own words; may be empty
+  std::string statistics_json;  // the (first) board's own words; may be empty
+  std::vector<std::pair<std::string, std::string>> boards;  // of nodes with names: what each said
 
   double speed_factor() const { return host.total_s > 0 ? virtual_s / host.total_s : 0.0; }
 };

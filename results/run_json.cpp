@@ -143,6 +143,10 @@ std::string run_json(const Report& r) {
   }
   const auto board = parse_ordered_json(r.statistics_json);
   out["board"] = board.is_discarded() ? ordered_json(nullptr) : board;
+  for (const auto& [node, said] : r.boards) {
+    const auto words = parse_ordered_json(said);
+    out["boards"][legal_text(node)] = words.is_discarded() ? ordered_json(nullptr) : words;
+  }
   make_legal(out);
   return text_of(out, 2) + "\n";
 }

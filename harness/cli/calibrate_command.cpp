@@ -41,7 +41,7 @@ Result<Done> compose(const catalogue::CalibrationFile& file, const Composition& 
   parts.plan.stand = file.stand;
   const auto image = find_file(setup.image, who, {root + "/build/firmware"}, ".elf");
   if (!image) return image.error();
-  const Setup all{parts.plan, parts.board, root, image.value(), "", setup.seed, 0};
+  const Setup all{parts.plan, 0, parts.board, root, image.value(), "", setup.seed, 0};
   auto world = composition.world(all);
   if (!world) return world.error();
   auto target = composition.target(all);

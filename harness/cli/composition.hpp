@@ -16,9 +16,10 @@
 
 namespace whirl::cli {
 
-struct Setup {
+struct Setup {  // of a run; of one board of it, where a target is made
   const plan::Plan& plan;
-  const Board& board;
+  std::size_t node;          // in the plan's list; the world surrounds the first
+  const Board& board;        // of that node
   std::string root;          // of the project: test_plans, build, results
   std::string image;         // path of the ELF
   std::string vehicle_file;  // path; empty for a stand

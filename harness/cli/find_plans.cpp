@@ -101,6 +101,16 @@ std::string shown_path(const std::string& path) {
   return !status && !near.starts_with("..") ? near : path;
 }
 
+namespace {
+
+std::string images_of(const plan::Plan& plan) {
+  std::string all;
+  for (const plan::PlanNode& node : plan.nodes) all += (all.empty() ? "" : "+") + node.image;
+  return all;
+}
+
+}  // namespace
+
 FoundPlans find_plans(const RunOptions& options, const std::string& root) {
   FoundPlans found;
   for (const std::string& path : plan_files(options, root, found.errors)) {
@@ -112,7 +122,7 @@ FoundPlans find_plans(const RunOptions& options, const std::string& root) {
     for (const plan::Plan& p : file.value()->plans()) {
       if (!options.tag.empty() && !p.has_tag(options.tag)) continue;
       if (!options.only.empty() && p.name != options.only) continue;
-      found.plans.push_back({path, p.name, p.tags, p.image, p.board, p.vehicle, p.timeout_ns});
+      found.plans.push_back({path, p.name, p.tags, images_of(p), p.vehicle, p.timeout_ns});
     }
   }
   if (found.plans.empty() && found.errors.empty()) {

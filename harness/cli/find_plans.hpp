@@ -13,7 +13,7 @@ struct PlanChoice {
   std::string file;
   std::string name;
   std::vector<std::string> tags;
-  std::string image, board, vehicle;
+  std::string image, vehicle;  // for people
   std::int64_t timeout_ns = 0;
 };
 

@@ -9,6 +9,7 @@
 #include "base/places.hpp"
 #include "harness/cli/find_file.hpp"
 #include "harness/cli/versions.hpp"
+#include "harness/target/node_set.hpp"
 #include "io_bridges/board_description/board_text.hpp"
 #include "results/folder.hpp"
 
@@ -18,11 +19,99 @@ namespace {
 using results::RunFolder;
 
 void announce_gdb(const Setup& setup) {
+  const std::string& node = setup.plan.nodes[setup.node].name;
   std::fprintf(
       stderr,
-      "whirl: the board waits for gdb; the world's time stands still while it is stopped:\n"
+      "whirl: the board%s waits for gdb; the world's time stands still while it is stopped:\n"
       "       gdb-multiarch %s -ex 'target remote 127.0.0.1:%d'\n",
-      setup.image.c_str(), setup.gdb_port);
+      node.empty() ? "" : (" " + node).c_str(), setup.image.c_str(), setup.gdb_port);
+}
+
+Result<Node> read_node(const plan::PlanNode& wanted, const Asker& who, const std::string& root) {
+  const auto path = find_file(wanted.board, who, {root + "/test_plans/boards"}, ".lua");
+  if (!path) return path.error();
+  auto board = read_board(shown_path(path.value()));
+  if (!board) return board.error();
+  for (const std::string& function : wanted.watch) {
+    if (board.value().watch_number(function) < 0) board.value().watch.push_back(function);
+  }
+  return Node{wanted.name, std::move(board.value())};
+}
+
+// All that a run needs, from the names in its plan.
+struct Prepared {
+  std::vector<Node> nodes;
+  std::vector<Setup> setups;  // of the nodes
+  std::unique_ptr<World> world;
+  std::unique_ptr<Target> target;
+
+  BoardStart start_of(std::size_t node) const {
+    const Setup& s = setups[node];
+    return {nodes[node].board, {.image = s.image, .seed = s.seed, .gdb_port = s.gdb_port}};
+  }
+};
+
+// One board's target stands for itself.
+Result<std::unique_ptr<Target>> make_target(const plan::Plan& plan,
+                                            const std::vector<Setup>& setups,
+                                            const Composition& composition) {
+  std::vector<NodeSet::Entry> entries;
+  for (const Setup& setup : setups) {
+    auto target = composition.target(setup);
+    if (!target) return target.error();
+    if (plan.nodes.size() == 1) return std::move(target.value());
+    entries.push_back({plan.nodes[setup.node].name, std::move(target.value())});
+  }
+  std::vector<UartWire> wires;
+  for (const plan::PlanWire& wire : plan.wires) {
+    wires.push_back({{wire.a.node, wire.a.uart}, {wire.b.node, wire.b.uart}});
+  }
+  return std::unique_ptr<Target>(std::make_unique<NodeSet>(std::move(entries), std::move(wires)));
+}
+
+Result<Prepared> prepare(const plan::Plan& plan, const RunOptions& options,
+                         const Composition& composition) {
+  const std::string& root = composition.root;
+  const Asker who{plan.file, plan.place};
+  std::string vehicle_file;
+  if (!plan.vehicle.empty()) {
+    const auto vehicle = find_file(plan.vehicle, who, {root + "/test_plans/vehicles"}, ".lua");
+    if (!vehicle) return vehicle.error();
+    vehicle_file = shown_path(vehicle.value());
+  }
+  Prepared all;
+  all.nodes.reserve(plan.nodes.size());  // the setups point at them
+  for (std::size_t i = 0; i < plan.nodes.size(); ++i) {
+    auto node = read_node(plan.nodes[i], who, root);
+    if (!node) return node.error();
+    const auto image = find_file(plan.nodes[i].image, who, image_folders(root), ".elf");
+    if (!image) return image.error();
+    all.nodes.push_back(std::move(node.value()));
+    const int port = options.gdb ? options.gdb_port + static_cast<int>(i) : 0;
+    all.setups.push_back({plan, i, all.nodes.back().board, root, image.value(), vehicle_file,
+                          options.seed.value_or(plan.seed), port});
+  }
+  auto world = composition.world(all.setups.front());
+  if (!world) return world.error();
+  all.world = std::move(world.value());
+  auto target = make_target(plan, all.setups, composition);
+  if (!target) return target.error();
+  all.target = std::move(target.value());
+  return all;
+}
+
+// What went into the run: files by role, and on which machine.
+void add_versions(const Prepared& prepared, const plan::Plan& plan, const std::string& root,
+                  RunRecord& record) {
+  for (const Setup& setup : prepared.setups) {
+    const Node& node = prepared.nodes[setup.node];
+    add_files(record.report.versions,
+              {{node.qualified("image"), setup.image}, {node.qualified("board"), node.board.file}});
+    record.board_texts.emplace_back(node.name, board_text(prepared.start_of(setup.node)));
+  }
+  add_files(record.report.versions,
+            {{"plan", plan.file}, {"vehicle", prepared.setups.front().vehicle_file}});
+  add_host(record.report.versions, root);
 }
 
 Result<RunRecord> run_record(const PlanChoice& choice, const RunOptions& options,
@@ -35,45 +124,16 @@ Result<RunRecord> run_record(const PlanChoice& choice, const RunOptions& options
     if (p.name == choice.name) plan = &p;
   }
   WHIRL_CHECK(plan != nullptr, choice.name);
-
-  const std::string& root = composition.root;
-  const Asker who{plan->file, plan->place};
-  const auto board_path = find_file(plan->board, who, {root + "/test_plans/boards"}, ".lua");
-  if (!board_path) return board_path.error();
-  auto board = read_board(shown_path(board_path.value()));
-  if (!board) return board.error();
-  for (const std::string& function : plan->watch) {
-    if (board.value().watch_number(function) < 0) board.value().watch.push_back(function);
+  auto prepared = prepare(*plan, options, composition);
+  if (!prepared) return prepared.error();
+  const Prepared& parts = prepared.value();
+  for (const Setup& setup : parts.setups) {
+    if (options.gdb) announce_gdb(setup);
   }
-  const auto image = find_file(plan->image, who, image_folders(root), ".elf");
-  if (!image) return image.error();
-
-  Setup setup{*plan,
-              board.value(),
-              root,
-              image.value(),
-              "",
-              options.seed.value_or(plan->seed),
-              options.gdb ? options.gdb_port : 0};
-  if (!plan->vehicle.empty()) {
-    const auto vehicle = find_file(plan->vehicle, who, {root + "/test_plans/vehicles"}, ".lua");
-    if (!vehicle) return vehicle.error();
-    setup.vehicle_file = shown_path(vehicle.value());
-  }
-  auto world = composition.world(setup);
-  if (!world) return world.error();
-  auto target = composition.target(setup);
-  if (!target) return target.error();
-  if (options.gdb) announce_gdb(setup);
   RunRecord record = execute(
-      {*file.value(), *plan, board.value(), *world.value(), *target.value(), setup.seed}, progress);
-  add_files(record.report.versions, {{"image", setup.image},
-                                     {"plan", plan->file},
-                                     {"board", board.value().file},
-                                     {"vehicle", setup.vehicle_file}});
-  add_host(record.report.versions, root);
-  record.board_text = board_text(
-      {board.value(), {.image = setup.image, .seed = setup.seed, .gdb_port = setup.gdb_port}});
+      {*file.value(), *plan, parts.nodes, *parts.world, *parts.target, parts.setups.front().seed},
+      progress);
+  add_versions(parts, *plan, composition.root, record);
   return record;
 }
 
@@ -136,11 +196,14 @@ Finished file(RunFolder& folder, results::Report report, Write write) {
 
 Finished file_run(RunFolder& folder, RunRecord record, const RunOptions& options) {
   return file(folder, std::move(record.report), [&](results::Report& report) {
-    bool whole = results::write_run(folder, report, record.truth, record.events);
+    bool whole = results::write_run(folder, report, record.truth, record.logs);
     if (options.keep) {
-      const auto kept = results::write_text(folder.file("board.json"), record.board_text);
-      whole = whole && kept.ok();
-      if (!kept) report.reasons.push_back(results::reason_of(kept.error()));
+      for (const auto& [node, text] : record.board_texts) {
+        const std::string name = "board" + (node.empty() ? "" : "_" + node) + ".json";
+        const auto kept = results::write_text(folder.file(name), text);
+        whole = whole && kept.ok();
+        if (!kept) report.reasons.push_back(results::reason_of(kept.error()));
+      }
     }
     return whole;
   });

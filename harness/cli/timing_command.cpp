@@ -46,7 +46,7 @@ Result<std::string> run_image(const Subject& subject, const Composition& composi
   plan::Plan plan;
   plan.name = "timing";
   plan.file = plan.place = "--timing";
-  const auto target = composition.target({plan, board.value(), root, image.value(), ""});
+  const auto target = composition.target({plan, 0, board.value(), root, image.value(), ""});
   if (!target) return target.error();
   return timing::capture(*target.value(), subject.uart);
 }

@@ -58,26 +58,42 @@ std::pair<std::int32_t, std::int32_t> on_wire(const FaultPlace& place) {
       place);
 }
 
+std::string timing_profile(const std::vector<Node>& nodes) {
+  std::string all;
+  for (const Node& node : nodes) {
+    const std::string whose = node.name.empty() ? "" : node.name + ": ";
+    all += (all.empty() ? "" : "; ") + whose + node.board.timing_profile();
+  }
+  return all;
+}
+
+std::vector<results::EventLog> logs_for(const std::vector<Node>& nodes) {
+  std::vector<results::EventLog> logs(nodes.size());
+  for (std::size_t i = 0; i < nodes.size(); ++i) logs[i].node = nodes[i].name;
+  return logs;
+}
+
 class Run {
  public:
   explicit Run(const RunParts& parts)
       : parts_(parts),
-        record_{{}, truth_log_for(parts.world), {}},
+        record_{{}, truth_log_for(parts.world), logs_for(parts.nodes)},
         stage_{parts.world,
                SignalTable(parts.world.signals()),
-               parts.board,
+               parts.nodes,
                record_.truth,
-               record_.events,
+               record_.logs,
                record_.report,
                [this](const FaultSpec& f) { return inject(f); }},
         script_(parts.file, parts.plan, stage_),
-        lockstep_(parts.world, parts.target) {
+        lockstep_(parts.world, parts.target),
+        acted_(parts.nodes.size()) {
     results::Report& r = record_.report;
     r.plan = parts.plan.name;
     r.file = parts.plan.file;
     r.tags = parts.plan.tags;
     r.seed = parts.seed;
-    r.timing_profile = parts.board.timing_profile();
+    r.timing_profile = timing_profile(parts.nodes);
   }
 
   RunRecord go(const ProgressSink& progress) {
@@ -161,9 +177,13 @@ class Run {
 
   // Says what is wrong with it.
   bool firmware_is_well() {
-    if (!record_.events.cpu_faults.empty()) return core_fault();
-    const char* watchdog = parts_.plan.may_reset ? nullptr : bitten(record_.events.resets);
-    return watchdog == nullptr || watchdog_reset(watchdog);
+    for (std::size_t i = 0; i < parts_.nodes.size(); ++i) {
+      const results::EventLog& log = record_.logs[i];
+      if (!log.cpu_faults.empty()) return core_fault(parts_.nodes[i], log.cpu_faults.front());
+      const char* watchdog = parts_.plan.may_reset ? nullptr : bitten(log.resets);
+      if (watchdog != nullptr) return watchdog_reset(parts_.nodes[i], watchdog);
+    }
+    return true;
   }
 
   void end() {
@@ -171,16 +191,33 @@ class Run {
     file_batch(lockstep_.happened());
     if (!firmware_failed()) firmware_is_well();  // its last words may be a fault
     results::Report& report = record_.report;
-    report.statistics_json = record_.events.statistics;
-    log_clocks(record_.events, report);
-    report.tasks = task_table(parts_.board.watch, record_.events);
-    report.interrupts = interrupt_table(record_.events);
+    for (std::size_t i = 0; i < parts_.nodes.size(); ++i)
+      report_node(parts_.nodes[i], record_.logs[i]);
     // Guards and windows are judged also when the run has failed: their figures help to see why.
     for (const Error& error : script_.finish(completed_)) end_for(error);
     if (completed_) judge_faults();
     if (completed_) judge_evidence();
-    for (const results::TextRecord& f : record_.events.findings) {
-      report.findings.push_back({static_cast<double>(f.t_ns) * 1e-9, f.where, f.what});
+    for (std::size_t i = 0; i < parts_.nodes.size(); ++i) {
+      for (const results::TextRecord& f : record_.logs[i].findings) {
+        report.findings.push_back(
+            {static_cast<double>(f.t_ns) * 1e-9, parts_.nodes[i].qualified(f.where), f.what});
+      }
+    }
+  }
+
+  // What one board had to say of itself.
+  void report_node(const Node& node, const results::EventLog& log) {
+    results::Report& report = record_.report;
+    if (report.statistics_json.empty()) report.statistics_json = log.statistics;
+    if (!node.name.empty()) report.boards.emplace_back(node.name, log.statistics);
+    log_clocks(log, node.qualified("RCC"), report);
+    for (results::TaskRow& row : task_table(node.board.watch, log)) {
+      row.name = node.qualified(row.name);
+      report.tasks.push_back(std::move(row));
+    }
+    for (results::InterruptRow& row : interrupt_table(log)) {
+      row.handler = node.qualified(row.handler);
+      report.interrupts.push_back(std::move(row));
     }
   }
 
@@ -196,10 +233,13 @@ class Run {
 
   // A pass says something of firmware that runs.
   void judge_evidence() {
-    if (!firmware_acted_) {
+    for (std::size_t i = 0; i < acted_.size(); ++i) {
+      if (acted_[i]) continue;
+      const std::string& name = parts_.nodes[i].name;
       end_with(results::Blame::not_shown,
-               "the image was never seen to run: no byte on a bus, no call of a watched function, "
-               "no interrupt served");
+               (name.empty() ? "the image" : "the image of " + name) +
+                   " was never seen to run: no byte on a bus, no call of a watched function, "
+                   "no interrupt served");
     }
     if (!script_.has_looked()) {
       end_with(
@@ -248,15 +288,17 @@ class Run {
         "still waiting" + where + " at the plan's timeout of " + limit + " virtual time");
   }
 
-  bool core_fault() {
-    const results::CpuFaultRow row = describe(record_.events.cpu_faults.front());
+  bool core_fault(const Node& node, const results::CpuFaultRecord& record) {
+    results::CpuFaultRow row = describe(record);
+    row.where = node.qualified(row.where);
     record_.report.cpu_faults.push_back(row);
     must_hold("the firmware runs without a fault", row.name + " in " + row.where);
     return end_with(results::Blame::firmware, "firmware fault: " + row.name + " in " + row.where);
   }
 
-  bool watchdog_reset(const char* watchdog) {
-    const std::string what = std::string("reset by the ") + watchdog + " watchdog";
+  bool watchdog_reset(const Node& node, const char* watchdog) {
+    const std::string whose = node.name.empty() ? "" : node.name + ": ";
+    const std::string what = whose + "reset by the " + watchdog + " watchdog";
     must_hold("the firmware keeps its watchdogs fed", what);
     return end_with(results::Blame::firmware, "firmware fault: " + what);
   }
@@ -270,10 +312,16 @@ class Run {
 
   bool file_batch(const io::Batch& batch) {
     digest_.add_bytes(batch.bytes().data(), batch.bytes().size());
-    for (io::Reader r(batch.bytes()); !firmware_acted_ && r.next();) {
-      firmware_acted_ = is_act_of_firmware(r.header().kind);
+    io::Reader r(batch.bytes());
+    while (r.next()) {
+      const std::size_t board = r.header().board;
+      if (board >= record_.logs.size()) {
+        return end_for({ErrorKind::internal, "", "a message of a board that is not there", ""});
+      }
+      acted_[board] = acted_[board] || is_act_of_firmware(r.header().kind);
+      record_.logs[board].add(r);
     }
-    if (record_.events.add(batch)) return true;
+    if (r.complete()) return true;
     return end_for({ErrorKind::internal, "", "a batch of messages was cut short", ""});
   }
 
@@ -289,9 +337,10 @@ class Run {
     std::tie(command.bus, command.address) = on_wire(spec.place);
     command.axis = spec.axis;
     command.value = spec.value;
-    lockstep_.to_send().add(io::Kind::fault, static_cast<std::uint16_t>(spec.number), stage_.now_ns,
-                            command, spec.kind.data(),
-                            static_cast<std::uint32_t>(spec.kind.size()));
+    io::Batch order;
+    order.add(io::Kind::fault, static_cast<std::uint16_t>(spec.number), stage_.now_ns, command,
+              spec.kind.data(), static_cast<std::uint32_t>(spec.kind.size()));
+    io::add_for_board(order, spec.board, lockstep_.to_send());
     return Done{};
   }
 
@@ -301,8 +350,8 @@ class Run {
   plan::Script script_;
   Lockstep lockstep_;
   Digest digest_;
-  bool completed_ = false;  // the script has returned
-  bool firmware_acted_ = false;
+  bool completed_ = false;   // the script has returned
+  std::vector<bool> acted_;  // of the nodes: their firmware was seen to run
 };
 
 }  // namespace

@@ -9,7 +9,7 @@
 #include <functional>
 #include <memory>
 
-#include "harness/board/board_file.hpp"
+#include "harness/board/node.hpp"
 #include "harness/plan/plan_file.hpp"
 #include "harness/target/target.hpp"
 #include "harness/world/world.hpp"
@@ -22,7 +22,7 @@ namespace whirl {
 struct RunParts {
   plan::PlanFile& file;
   const plan::Plan& plan;
-  const Board& board;
+  const std::vector<Node>& nodes;  // the world surrounds the first
   World& world;
   Target& target;
   std::uint64_t seed = 1;
@@ -31,8 +31,9 @@ struct RunParts {
 struct RunRecord {
   results::Report report;
   results::TruthLog truth;
-  results::EventLog events;
-  std::string board_text = {};  // what the board's process was told
+  std::vector<results::EventLog> logs;  // of the nodes
+  // What the boards' processes were told, by the names of their nodes.
+  std::vector<std::pair<std::string, std::string>> board_texts = {};
 };
 
 struct Progress {

@@ -19,8 +19,9 @@ Result<TargetState> Lockstep::step(const std::function<void(const io::Batch&)>& 
   if (sent) sent(sensed_);
   {
     const Stopwatch watch(times_.world_s);
+    const io::Batch& happened = of_first_board();
     sensed_.clear();
-    world_.step(next_ns, happened_, sensed_);
+    world_.step(next_ns, happened, sensed_);
   }
   happened_.clear();
   std::optional<Result<TargetState>> arrived;
@@ -32,6 +33,19 @@ Result<TargetState> Lockstep::step(const std::function<void(const io::Batch&)>& 
   now_ns_ = next_ns;
   world_.read(row_);
   return *arrived;
+}
+
+const io::Batch& Lockstep::of_first_board() {
+  of_first_.clear();
+  bool others = false;
+  for (io::Reader r(happened_.bytes()); r.next();) {
+    if (r.header().board == 0) {
+      of_first_.add(r.header(), r.payload());
+    } else {
+      others = true;
+    }
+  }
+  return others ? of_first_ : happened_;
 }
 
 void Lockstep::stop() {

@@ -3,6 +3,7 @@
 //   Step     the target runs (t_k, t_k+1] with what was sensed until t_k, while the world takes the
 //            same step with what the target had done until t_k; then the target's deeds arrive and
 //            the signals are read
+//   Boards   the world surrounds the first one: it sees that one's messages only
 //   Order    neither waits for what the other does within the step, so that host speed changes nothing
 #pragma once
 #include <cstdint>
@@ -43,9 +44,12 @@ class Lockstep {
   const HostTimes& host_times() const { return times_; }
 
  private:
+  // What the first board did in the latest step.
+  const io::Batch& of_first_board();
+
   World& world_;
   Target& target_;
-  io::Batch sensed_, happened_;
+  io::Batch sensed_, happened_, of_first_;
   std::vector<double> row_;
   std::int64_t now_ns_ = 0;
   HostTimes times_;

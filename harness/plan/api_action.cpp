@@ -41,9 +41,9 @@ fault_at::Device device_at(lua_State* L, const std::string& name, const Board& b
           device->address != -1 ? device->address : board.number(name), device->motor};
 }
 
-fault_at::Wire wire_at(lua_State* L, const lua::Table& asked) {
+fault_at::Wire wire_at(lua_State* L, const lua::Table& asked, const std::string& bus) {
   fault_at::Wire wire;
-  wire.name = asked.text_or("bus", "");
+  wire.name = bus;
   if (asked.has("bus")) wire.bus = named_bus(L, wire.name);
   wire.address = static_cast<int>(asked.integer_or("address", -1, 0, 0x7F));
   return wire;
@@ -55,20 +55,32 @@ fault_at::Function function_at(lua_State* L, const std::string& name, const Boar
   return {name, number};
 }
 
-// device, bus and address, motor or function; without any it is everywhere.
-FaultPlace place_of_fault(lua_State* L, const lua::Table& asked, const Board& board) {
+// The board that a fault's place is on, and the place without its node's name.
+NodePlace node_of_fault(lua_State* L, const lua::Table& asked, const std::vector<Node>& nodes) {
+  for (const char* key : {"device", "bus", "function"}) {
+    if (!asked.has(key)) continue;
+    const auto place = node_place(nodes, asked.text(key));
+    if (!place) raise(L, place.error().what, place.error().cure);
+    return place.value();
+  }
+  return {};
+}
+
+// device, bus and address, motor or function; without any it is everywhere. `at` is where.
+FaultPlace place_of_fault(lua_State* L, const lua::Table& asked, const std::string& at,
+                          const Board& board) {
   const bool on_wire = asked.has("bus") || asked.has("address");
   const int places = static_cast<int>(asked.has("device")) + static_cast<int>(on_wire) +
                      static_cast<int>(asked.has("motor")) + static_cast<int>(asked.has("function"));
   if (places > 1) {
     raise(L, "a fault has one place", "device, bus (and address), motor or function");
   }
-  if (asked.has("device")) return device_at(L, asked.text("device"), board);
-  if (asked.has("function")) return function_at(L, asked.text("function"), board);
+  if (asked.has("device")) return device_at(L, at, board);
+  if (asked.has("function")) return function_at(L, at, board);
   if (asked.has("motor")) {
     return fault_at::Motor{static_cast<int>(asked.integer("motor", 1, kMost_motors))};
   }
-  if (on_wire) return wire_at(L, asked);
+  if (on_wire) return wire_at(L, asked, at);
   return fault_at::Anywhere{};
 }
 
@@ -86,7 +98,10 @@ int fault(lua_State* L) {
   const lua::Table asked = check_table(L, 2);
   FaultSpec fault;
   fault.kind = asked.text("kind");
-  fault.place = place_of_fault(L, asked, self.stage().board);
+  const std::vector<Node>& nodes = self.stage().nodes;
+  const NodePlace at = node_of_fault(L, asked, nodes);
+  fault.board = static_cast<std::uint8_t>(at.node);
+  fault.place = place_of_fault(L, asked, at.rest, nodes[at.node].board);
   if (asked.has("axis")) fault.axis = axis_number(asked);
   fault.start_ns = self.stage().now_ns + asked.duration_ns_or("start", 0);
   if (asked.has("duration")) fault.end_ns = fault.start_ns + asked.duration_ns("duration");
@@ -94,7 +109,8 @@ int fault(lua_State* L) {
   check_finish(L, asked);
   fault.number = static_cast<std::uint32_t>(self.faults.size() + 1);
   self.faults.push_back(fault);
-  const auto taken = self.stage().world.take_fault(fault);
+  // The world surrounds the first board.
+  const Result<bool> taken = at.node == 0 ? self.stage().world.take_fault(fault) : false;
   if (!taken) raise(L, taken.error());
   if (!taken.value()) {
     if (auto sent = self.stage().inject(fault); !sent) raise(L, sent.error());

@@ -58,6 +58,8 @@ struct Budget {
   std::string function, place;
   std::optional<Limit> period, jitter, execution, response, latency, busy;
   double margin = 0.0;  // of each limit, to be left
+  std::size_t node = 0;
+  int number = -1;  // of the function on its board
 };
 
 Limit less_margin(const Limit& limit, double margin) {
@@ -87,15 +89,30 @@ void judge_code_time(Script& self, std::span<const double> values, const Budget&
   self.judge_in_window({d.max, Dimension::time, b.function + " " + what}, Script::Figure::extreme,
                        less_margin(limit, b.margin), b.place, seconds(to_ns),
                        spread(d, limit.unit) + (less.empty() ? "" : "; " + less),
-                       self.stage().board.timing_accuracy());
+                       self.stage().nodes[b.node].board.timing_accuracy());
+}
+
+NodePlace node_at(lua_State* L, Script& self, const std::string& text) {
+  const auto place = node_place(self.stage().nodes, text);
+  if (!place) raise(L, place.error().what, place.error().cure);
+  return place.value();
+}
+
+// Of one trace: all of it is on one board, so that its node's name need be given once only.
+std::string on_node(lua_State* L, Script& self, std::size_t node, const std::string& text) {
+  if (text.find('/') == std::string::npos) return text;
+  const NodePlace at = node_at(L, self, text);
+  if (at.node != node) raise(L, "'" + text + "' is on another board", "a latency is of one board");
+  return at.rest;
 }
 
 void judge_calls(Script& self, const Budget& b, std::int64_t from, std::int64_t to) {
   std::vector<std::int64_t> entries;
   std::vector<double> execution, response, latency;
-  const int number = self.stage().board.watch_number(b.function);
-  const auto found = self.stage().events.calls.find(static_cast<std::uint16_t>(number));
-  if (found != self.stage().events.calls.end()) {
+  const results::EventLog& events = self.stage().logs[b.node];
+  const auto number = static_cast<std::uint16_t>(b.number);
+  const auto found = events.calls.find(number);
+  if (found != events.calls.end()) {
     for (const auto& call : found->second) {
       if (call.entry_ns < from || call.entry_ns > to) continue;
       entries.push_back(call.entry_ns);  // one that is still running at the window's end has come
@@ -106,8 +123,8 @@ void judge_calls(Script& self, const Budget& b, std::int64_t from, std::int64_t 
       latency.push_back(call.latency_ns < 0 ? std::nan("") : seconds(call.latency_ns));
     }
   }
-  const auto open = self.stage().events.open_calls_ns.find(static_cast<std::uint16_t>(number));
-  if (open != self.stage().events.open_calls_ns.end()) {
+  const auto open = events.open_calls_ns.find(number);
+  if (open != events.open_calls_ns.end()) {
     for (const std::int64_t entry_ns : open->second) {
       if (entry_ns >= from && entry_ns <= to) entries.push_back(entry_ns);
     }
@@ -128,10 +145,10 @@ void judge_calls(Script& self, const Budget& b, std::int64_t from, std::int64_t 
 }
 
 void judge_busy(Script& self, const Budget& b, std::int64_t from, std::int64_t to) {
-  self.judge_in_window(
-      {self.stage().events.busy_share(from, to), Dimension::ratio, "CPU busy share"},
-      Script::Figure::of_all, less_margin(*b.busy, b.margin), b.place, seconds(to),
-      margin_note(b, *b.busy), self.stage().board.timing_accuracy());
+  self.judge_in_window({self.stage().logs[b.node].busy_share(from, to), Dimension::ratio,
+                        self.stage().nodes[b.node].qualified("CPU busy share")},
+                       Script::Figure::of_all, less_margin(*b.busy, b.margin), b.place, seconds(to),
+                       margin_note(b, *b.busy), self.stage().nodes[b.node].board.timing_accuracy());
 }
 
 // The { ... } of t:budget("name") { ... }
@@ -152,7 +169,10 @@ int take_budget(lua_State* L) {
   if (b.period.has_value() != b.jitter.has_value()) raise(L, "period and jitter go together");
   if (!calls && !b.busy)
     raise(L, "a budget of nothing", "give jitter, execution, response, latency or busy");
-  if (calls && self.stage().board.watch_number(b.function) < 0) {
+  const NodePlace at = node_at(L, self, b.function);
+  b.node = at.node;
+  b.number = self.stage().nodes[at.node].board.watch_number(at.rest);
+  if (calls && b.number < 0) {
     raise(L, "'" + b.function + "' is not watched",
           "add it to the watch list of the plan or board");
   }
@@ -174,6 +194,7 @@ struct BusWish {
   std::string name, place;
   bool spi = false, any_direction = true, read = false;
   int bus = 0, address = 0;
+  std::size_t node = 0;
   std::int64_t bytes = 0;  // 0: transactions of any length
   std::optional<Limit> period, tolerance;
   std::int64_t nacks = 0;
@@ -182,7 +203,7 @@ struct BusWish {
 void judge_bus(Script& self, const BusWish& w, std::int64_t from, std::int64_t to) {
   std::vector<std::int64_t> starts;
   std::int64_t refused = 0;
-  for (const auto& r : self.stage().events.bus) {
+  for (const auto& r : self.stage().logs[w.node].bus) {
     if (r.spi != w.spi || r.bus != w.bus || r.address != w.address) continue;
     if (!w.any_direction && r.read != w.read) continue;
     if (w.bytes > 0 && r.length != w.bytes) continue;
@@ -211,19 +232,21 @@ int numbered_bus(lua_State* L, const BoardDevice& device) {
 // bytes = n judges the transactions of that length only: a driver may check a register in between.
 int bus(lua_State* L) {
   Script& self = Script::of(L);
-  const Board& board = self.stage().board;
   const lua::Table wish = check_table(L, 2);
   const std::string name = wish.text("device");
-  const BoardDevice* device = board.find(name);
-  if (device == nullptr) raise(L, "unknown device '" + name + "' on " + board.name);
+  const NodePlace at = node_at(L, self, name);
+  const Board& board = self.stage().nodes[at.node].board;
+  const BoardDevice* device = board.find(at.rest);
+  if (device == nullptr) raise(L, "unknown device '" + at.rest + "' on " + board.name);
   BusWish w;
   w.name = name;
+  w.node = at.node;
   w.place = place_of(L);
   w.spi = device->bus.starts_with("spi");
   if (!w.spi && !device->bus.starts_with("i2c"))
     raise(L, name + " is on " + device->bus + ", not I2C or SPI");
   w.bus = numbered_bus(L, *device);
-  w.address = w.spi ? board.number(name) : device->address;
+  w.address = w.spi ? board.number(at.rest) : device->address;
   if (wish.has("direction")) {
     w.any_direction = false;
     w.read = wish.choice("direction", {"read", "write"}) == "read";
@@ -248,16 +271,17 @@ struct Actuator {
 
 struct LatencyWish {
   std::string name, place;
+  std::size_t node = 0;
   std::uint16_t sensor = 0;
   std::vector<std::uint16_t> through;
   std::vector<Actuator> actuators;
   Limit limit;
 };
 
-std::vector<metrics::Span> writes_to(const Stage& stage, const Actuator& actuator,
+std::vector<metrics::Span> writes_to(const results::EventLog& log, const Actuator& actuator,
                                      std::int64_t from, std::int64_t to) {
   std::vector<metrics::Span> writes;
-  for (const auto& r : stage.events.bus) {
+  for (const auto& r : log.bus) {
     if (r.spi || r.read || r.bus != actuator.bus || r.address != actuator.address) continue;
     if (r.start_ns >= from && r.stop_ns <= to) writes.push_back({r.start_ns, r.stop_ns});
   }
@@ -265,7 +289,7 @@ std::vector<metrics::Span> writes_to(const Stage& stage, const Actuator& actuato
 }
 
 void judge_latency(Script& self, const LatencyWish& w, std::int64_t from, std::int64_t to) {
-  const auto& events = self.stage().events;
+  const auto& events = self.stage().logs[w.node];
   std::vector<std::vector<metrics::Span>> tasks;
   for (std::uint16_t number : w.through) {
     auto& spans = tasks.emplace_back();
@@ -279,7 +303,7 @@ void judge_latency(Script& self, const LatencyWish& w, std::int64_t from, std::i
   for (const Actuator& actuator : w.actuators) {
     const auto trace = metrics::trace_latency(
         ready == events.data_ready_ns.end() ? std::span<const std::int64_t>{} : ready->second,
-        tasks, writes_to(self.stage(), actuator, from, to));
+        tasks, writes_to(events, actuator, from, to));
     for (const auto& sample : trace.samples) histogram.samples.push_back(sample.latency_s);
     untraced += trace.untraced;
   }
@@ -297,16 +321,18 @@ void judge_latency(Script& self, const LatencyWish& w, std::int64_t from, std::i
 // t:latency { from = "imu", through = { "fw::imu_task", ... }, to = "esc", at_most = "7 ms" }
 int latency(lua_State* L) {
   Script& self = Script::of(L);
-  const Board& board = self.stage().board;
   const lua::Table wish = check_table(L, 2);
-  const std::string from = wish.text("from"), to = wish.text("to");
+  const NodePlace at = node_at(L, self, wish.text("from"));
+  const Board& board = self.stage().nodes[at.node].board;
+  const std::string from = at.rest, to = on_node(L, self, at.node, wish.text("to"));
   LatencyWish w;
-  w.name = from + " to " + to + " latency";
+  w.name = self.stage().nodes[at.node].qualified(from) + " to " + to + " latency";
+  w.node = at.node;
   w.place = place_of(L);
   if (board.number(from) < 0) raise(L, "unknown device '" + from + "' on " + board.name);
   w.sensor = static_cast<std::uint16_t>(board.number(from));
   for (const std::string& function : wish.texts("through")) {
-    const int number = board.watch_number(function);
+    const int number = board.watch_number(on_node(L, self, at.node, function));
     if (number < 0) raise(L, "'" + function + "' is not watched", "add it to the watch list");
     w.through.push_back(static_cast<std::uint16_t>(number));
   }

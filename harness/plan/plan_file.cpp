@@ -5,12 +5,76 @@
 
 #include "base/text.hpp"
 #include "harness/lua/node.hpp"
+#include "harness/plan/bus_name.hpp"
 #include "harness/plan/raise.hpp"
 
 namespace whirl::plan {
 namespace {
 
+constexpr std::size_t kMost_nodes = 16;
 constexpr std::int64_t kDefaultTimeout_ns = 120'000'000'000;
+
+PlanNode read_node(const lua::Table& t) {
+  return {"", t.text("image"), t.text_or("board", "px4fmu_v1"), t.texts("watch")};
+}
+
+// Names stand before a slash, in file names and in front of a dot.
+bool is_node_name(const std::string& name) {
+  const auto plain = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';
+  };
+  return !name.empty() && name.size() <= 32 && std::all_of(name.begin(), name.end(), plain);
+}
+
+// "esc.usart1"
+PlanWire::End wire_end(const lua::Table& t, const char* key, const Plan& plan) {
+  const std::string text = t.text(key);
+  const auto dot = text.find('.');
+  PlanWire::End end;
+  const auto node = std::find_if(plan.nodes.begin(), plan.nodes.end(),
+                                 [&](const PlanNode& n) { return n.name == text.substr(0, dot); });
+  const std::string bus = dot == std::string::npos ? "" : text.substr(dot + 1);
+  const auto number =
+      bus.starts_with("usart") || bus.starts_with("uart") ? bus_number(bus) : std::nullopt;
+  if (node == plan.nodes.end() || !number) {
+    t.refuse(key, "'" + text + "' is no UART of a node", "write NODE.usart1");
+    return end;
+  }
+  end.node = static_cast<std::size_t>(node - plan.nodes.begin());
+  end.uart = static_cast<std::uint16_t>(*number);
+  return end;
+}
+
+void read_wires(const lua::Table& t, Plan& plan) {
+  for (const lua::Table& entry : t.tables("wires")) {
+    const PlanWire wire{wire_end(entry, "from", plan), wire_end(entry, "to", plan)};
+    if (wire.a.node == wire.b.node) entry.refuse("to", "a wire joins two boards");
+    plan.wires.push_back(wire);
+  }
+}
+
+void read_nodes(const lua::Table& t, Plan& plan) {
+  if (!t.has("nodes")) {
+    plan.nodes.push_back(read_node(t));
+    return;
+  }
+  for (const char* key : {"image", "board", "watch"}) {
+    if (t.has(key)) t.refuse(key, "stands in each of the nodes");
+  }
+  for (const lua::Table& entry : t.tables("nodes")) {
+    PlanNode node = read_node(entry);
+    node.name = entry.text("name");
+    if (!is_node_name(node.name)) entry.refuse("name", "is made of a-z, 0-9 and _ only");
+    for (const PlanNode& other : plan.nodes) {
+      if (other.name == node.name) entry.refuse("name", "two nodes are called so");
+    }
+    plan.nodes.push_back(std::move(node));
+  }
+  if (plan.nodes.empty() || plan.nodes.size() > kMost_nodes) {
+    t.refuse("nodes", "are 1 to " + std::to_string(kMost_nodes));
+  }
+  if (t.has("wires")) read_wires(t, plan);
+}
 
 Result<Plan> read_plan(const lua::Table& t, std::string name, const std::string& file,
                        const std::string& place) {
@@ -18,15 +82,13 @@ Result<Plan> read_plan(const lua::Table& t, std::string name, const std::string&
   plan.name = std::move(name);
   plan.file = file;
   plan.place = place;
-  plan.image = t.text("image");
-  plan.board = t.text_or("board", "px4fmu_v1");
+  read_nodes(t, plan);
   plan.vehicle = t.text_or("vehicle", "");
   if (t.has("stand")) plan.stand = t.table("stand");
   if (t.has("vehicle") == t.has("stand")) {
     t.refuse("vehicle", "a plan has a vehicle or a stand, one of the two");
   }
   plan.tags = t.texts("tags");
-  plan.watch = t.texts("watch");
   plan.seed = static_cast<std::uint64_t>(t.integer_or("seed", 1, 0));
   plan.timeout_ns = t.duration_ns_or("timeout", kDefaultTimeout_ns);
   plan.may_reset = t.flag_or("may_reset", false);

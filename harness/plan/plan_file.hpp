@@ -4,6 +4,9 @@
 //                  seed = 1, timeout = "60 s", watch = { "fw::imu_task" },
 //                  may_reset = false,
 //                  run = function(t) ... end }
+//   Nodes    instead of image, board and watch: nodes = { { name = "esc", image = "esc", board = "esc32v2",
+//            watch = { ... } }, ... }; the vehicle or stand surrounds the first. wires = { { from = "esc.usart1",
+//            to = "fc.usart2" }, ... } join their UARTs, both ways, at the grain of the exchange
 //   Stand    instead of vehicle: stand = { prop = "hk_10x4.5", battery = "4s_2200" }
 //   Limits   tags and names are checked; a plan without run, image or name is refused with its line
 #pragma once
@@ -19,10 +22,26 @@
 
 namespace whirl::plan {
 
+struct PlanNode {
+  std::string name;          // empty: the plan has one image and one board
+  std::string image, board;  // as written: names or paths
+  std::vector<std::string> watch;
+};
+
+struct PlanWire {  // from UART to UART, both ways
+  struct End {
+    std::size_t node = 0;
+    std::uint16_t uart = 1;
+  };
+  End a, b;
+};
+
 struct Plan {
   std::string name, file, place;
-  std::string image, board, vehicle;  // as written: names or paths
-  std::vector<std::string> tags, watch;
+  std::string vehicle;          // as written: a name or a path
+  std::vector<PlanNode> nodes;  // one at least
+  std::vector<PlanWire> wires;
+  std::vector<std::string> tags;
   std::uint64_t seed = 1;
   std::int64_t timeout_ns = 0;
   bool may_reset = false;  // by a watchdog, without failing the plan

@@ -280,11 +280,12 @@ void Script::judge_windows(bool completed) {
 void Script::list_faults() {
   for (const FaultSpec& fault : faults) {
     results::FaultRow row{
-        fault.kind, target_of(fault), seconds(fault.start_ns),
+        fault.kind, stage_.nodes[fault.board].qualified(target_of(fault)), seconds(fault.start_ns),
         fault.end_ns == kForever ? std::numeric_limits<double>::infinity() : seconds(fault.end_ns)};
-    const auto it = stage_.events.faults_applied_ns.find(fault.number);
+    const auto& applied_ns = stage_.logs[fault.board].faults_applied_ns;
+    const auto it = applied_ns.find(static_cast<std::uint16_t>(fault.number));
     const auto mine = stage_.world.applied_faults();
-    if (it != stage_.events.faults_applied_ns.end()) {
+    if (it != applied_ns.end()) {
       row.applied_s = seconds(it->second);
     } else if (std::find(mine.begin(), mine.end(), fault.number) != mine.end()) {
       row.applied_s = row.start_s;

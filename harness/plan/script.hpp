@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/board/board_file.hpp"
+#include "harness/board/node.hpp"
 #include "harness/plan/plan_file.hpp"
 #include "harness/world/world.hpp"
 #include "results/event_log.hpp"
@@ -30,9 +30,9 @@ inline constexpr std::int64_t kForever = INT64_MAX;
 struct Stage {
   World& world;
   SignalTable signals;  // the world's
-  const Board& board;
+  const std::vector<Node>& nodes;
   const results::TruthLog& truth;
-  const results::EventLog& events;
+  const std::vector<results::EventLog>& logs;  // of the nodes
   results::Report& report;
   std::function<Result<Done>(const FaultSpec&)> inject;  // into the board
   std::int64_t now_ns = 0;

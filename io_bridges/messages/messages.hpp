@@ -187,6 +187,11 @@ class Batch {
   std::span<const std::uint8_t> bytes() const { return bytes_; }
   void assign(std::span<const std::uint8_t> bytes) { bytes_.assign(bytes.begin(), bytes.end()); }
 
+  // A message as it is, under this header.
+  void add(const Header& header, std::span<const std::uint8_t> payload) {
+    append(&header, sizeof header);
+    append(payload.data(), payload.size());
+  }
   void add(Kind kind, std::uint16_t port, std::int64_t t_ns, const void* payload,
            std::uint32_t size) {
     const Header header{t_ns, kind, 0, port, size};
@@ -250,5 +255,14 @@ class Reader {
   std::span<const std::uint8_t> payload_;
   Header header_{};
 };
+
+// The messages of `from`, as those of this board, at the end of `to`.
+inline void add_for_board(const Batch& from, std::uint8_t board, Batch& to) {
+  for (Reader r(from.bytes()); r.next();) {
+    Header header = r.header();
+    header.board = board;
+    to.add(header, r.payload());
+  }
+}
 
 }  // namespace whirl::io

@@ -216,7 +216,7 @@ std::vector<std::string> names_in(const std::string& folder) {
 TEST(RunFolder, LatestPointsAtTheNewestAndNoRunOverwritesAnother) {
   const ScratchFolder folder;
   Report r = sample();
-  const EventLog events;
+  const std::vector<EventLog> events(1);
   std::string paths[2];
   for (std::string& path : paths) {
     auto made = RunFolder::create(folder.path(), r.plan);
@@ -263,7 +263,7 @@ TEST(RunFolder, WhatCannotBeWrittenIsAReasonAndTheRestIsThere) {
   passed.expectations.pop_back();
   conclude(passed);
   ASSERT_EQ(exit_code(passed), 0);
-  EXPECT_FALSE(write_run(made.value(), passed, truth(), EventLog()));
+  EXPECT_FALSE(write_run(made.value(), passed, truth(), std::vector<EventLog>(1)));
   EXPECT_EQ(exit_code(passed), 3);
   const auto json = parse_json(contents(made.value().file("run.json")));
   EXPECT_EQ(json["verdict"], "inconclusive");
@@ -272,7 +272,7 @@ TEST(RunFolder, WhatCannotBeWrittenIsAReasonAndTheRestIsThere) {
   fs::create_directory(made.value().file("bus.csv.x"));
   Report failed = sample();
   fs::create_directories(made.value().file("truth.csv") + "/x");
-  EXPECT_FALSE(write_run(made.value(), failed, truth(), EventLog()));
+  EXPECT_FALSE(write_run(made.value(), failed, truth(), std::vector<EventLog>(1)));
   EXPECT_EQ(exit_code(failed), 1);  // what was seen of the firmware stays
 }
 

@@ -13,7 +13,7 @@ TEST(ClockLog, EachChangeIsARowAtItsTime) {
   ASSERT_TRUE(events.add(batch));
   results::Report report;
   report.log.push_back({0.002, "plan", "between"});
-  log_clocks(events, report);
+  log_clocks(events, "RCC", report);
   ASSERT_EQ(report.log.size(), 3u);
   EXPECT_EQ(report.log[0].text, "SYSCLK is 16 MHz, HCLK 16, PCLK1 16, PCLK2 16");
   EXPECT_EQ(report.log[1].text, "between");
@@ -29,7 +29,7 @@ TEST(ClockLog, WhatWasLoggedAtTheSameTimeStaysBeforeIt) {
   results::Report report;
   report.log.push_back({0.001, "plan", "first"});
   report.log.push_back({0.001, "plan", "second"});
-  log_clocks(events, report);
+  log_clocks(events, "RCC", report);
   ASSERT_EQ(report.log.size(), 3u);
   EXPECT_EQ(report.log[0].text, "first");
   EXPECT_EQ(report.log[1].text, "second");

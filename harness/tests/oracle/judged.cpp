@@ -218,10 +218,10 @@ results::Report run_scenario(const Scenario& scenario, const std::string& file,
     report.reason = loaded.error().message();
     return report;
   }
-  const Board board = board_of(scenario);
+  const std::vector<Node> nodes{{"", board_of(scenario)}};
   PlayedWorld world(scenario);
   PlayedTarget target(scenario);
-  const RunParts parts{*loaded.value(), loaded.value()->plans().front(), board, world, target, 1};
+  const RunParts parts{*loaded.value(), loaded.value()->plans().front(), nodes, world, target, 1};
   return execute(parts, progress).report;
 }
 

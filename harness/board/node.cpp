@@ -1,0 +1,21 @@
+#include "harness/board/node.hpp"
+
+namespace whirl {
+
+Result<NodePlace> node_place(const std::vector<Node>& nodes, const std::string& text) {
+  const auto slash = text.find('/');
+  std::string names;
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    if (slash != std::string::npos && nodes[i].name == text.substr(0, slash) && slash > 0) {
+      return NodePlace{i, text.substr(slash + 1)};
+    }
+    names += (names.empty() ? "" : ", ") + nodes[i].name;
+  }
+  if (nodes.size() == 1 && slash == std::string::npos) return NodePlace{0, text};
+  if (nodes.size() == 1 && nodes[0].name.empty()) return NodePlace{0, text};
+  return Error{ErrorKind::bad_input, "", "'" + text + "' names no board of this plan",
+               "write NODE/" + (slash == std::string::npos ? text : text.substr(slash + 1)) +
+                   " with NODE of: " + names};
+}
+
+}  // namespace whirl

@@ -1,0 +1,32 @@
+// The boards of a run. A plan that names one image and one board has one node without a name.
+//
+//   Names    "esc1/fw::esc::control_task", "esc1/imu", "esc1/i2c2": what stands on that node's board. Where
+//            there is only one node its name may be left out.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "base/result.hpp"
+#include "harness/board/board_file.hpp"
+
+namespace whirl {
+
+struct Node {
+  std::string name;  // empty: the only one
+  Board board;
+
+  // As reports name it: with the node's name where it has one.
+  std::string qualified(const std::string& what) const {
+    return name.empty() ? what : name + "/" + what;
+  }
+};
+
+struct NodePlace {
+  std::size_t node = 0;
+  std::string rest;  // without the node's name
+};
+
+// Errors  bad_input: of several nodes none is named, or one that is not there
+Result<NodePlace> node_place(const std::vector<Node>& nodes, const std::string& text);
+
+}  // namespace whirl
