@@ -30,7 +30,7 @@ Mpu6000::Mpu6000(EventQueue& queue, const Params& params, Sense sense, Wire* int
       registers_(register_map(), params.name, std::move(findings)),
       sample_due_(queue, [this] { take_sample(); }),
       pulse_end_(queue, [this] { drive_interrupt(false, queue_.now()); }) {
-  if (interrupt_ != nullptr) driver_ = interrupt_->add_driver();
+  if (interrupt_ != nullptr) driver_ = interrupt_->add_driver(params_.name);
   reset(queue_.now());
 }
 

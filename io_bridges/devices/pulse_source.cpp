@@ -4,10 +4,10 @@
 
 namespace whirl::io {
 
-PulseSource::PulseSource(EventQueue& queue, Wire& wire)
+PulseSource::PulseSource(EventQueue& queue, Wire& wire, const std::string& name)
     : queue_(queue),
       wire_(wire),
-      driver_(wire.add_driver()),
+      driver_(wire.add_driver(name)),
       period_(queue, [this] { begin(); }),
       fall_(queue, [this] { drive(false); }),
       glitch_(queue, [this] { invert(); }),

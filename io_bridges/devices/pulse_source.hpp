@@ -4,6 +4,8 @@
 //   Silence  width 0: the line stays low
 //   Glitch   the line inverted for `glitch`, `glitch_after` behind each rising edge
 #pragma once
+#include <string>
+
 #include "io_bridges/devices/event_queue.hpp"
 #include "io_bridges/devices/wire.hpp"
 
@@ -17,7 +19,7 @@ class PulseSource {
     Nanoseconds glitch_ns = 0, glitch_after_ns = 0;
   };
 
-  PulseSource(EventQueue& queue, Wire& wire);
+  PulseSource(EventQueue& queue, Wire& wire, const std::string& name = "pulse source");
 
   void set(const Train& train);
 

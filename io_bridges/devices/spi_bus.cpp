@@ -16,7 +16,10 @@ std::uint8_t SpiBus::transfer(std::uint8_t mosi, std::uint32_t sck_Hz, int mode,
   const Wire* selected = nullptr;
   for (const auto& seat : seats_) {
     if (!seat->selected) continue;
-    if (selected != nullptr) ++clashes_;
+    if (selected != nullptr) {
+      ++clashes_;
+      if (clash_) clash_(*selected, *seat->chip_select, now);
+    }
     selected = seat->chip_select;
     miso &= seat->target->transfer(mosi, sck_Hz, mode, now);
   }

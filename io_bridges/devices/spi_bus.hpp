@@ -2,7 +2,7 @@
 //
 //   Chip select   a wire, active low; a change of its level selects or releases the target
 //   MISO          driven by the one selected target; 0xFF (pull-up) if none, and a clash of two
-//                 gives the AND of both and is counted
+//                 gives the AND of both, is counted and reported
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -33,6 +33,8 @@ class SpiBus {
   void add(SpiTarget& target, Wire& chip_select);
   void set_faults(SpiFaults* faults) { faults_ = faults; }
   void on_byte(Log log) { log_ = std::move(log); }
+  using Clash = std::function<void(const Wire& first, const Wire& second, Nanoseconds now)>;
+  void on_clash(Clash clash) { clash_ = std::move(clash); }  // with each byte
   // The controller: one byte has passed.
   std::uint8_t transfer(std::uint8_t mosi, std::uint32_t sck_Hz, int mode, Nanoseconds now);
 
@@ -50,6 +52,7 @@ class SpiBus {
   std::vector<std::unique_ptr<Seat>> seats_;
   SpiFaults* faults_ = nullptr;
   Log log_;
+  Clash clash_;
   std::uint64_t clashes_ = 0;
 };
 

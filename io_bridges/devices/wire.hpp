@@ -1,8 +1,8 @@
 // One electrical node with several drivers: chip selects, interrupt lines, SDA, SCL, LEDs.
 //
-//   Level     strong drives beat pulls; a strong low beats a strong high (and is counted as a
-//   fight);
-//             with nobody driving, the last resolved level stays
+//   Level     strong drives beat pulls; a strong low beats a strong high, and that is a fight: it is
+//             counted, and reported with the names of two that take part; with nobody driving, the
+//             last resolved level stays
 //   Watchers  are told each change of the resolved level, with its time, in the order of joining
 #pragma once
 #include <cstdint>
@@ -25,13 +25,18 @@ class Wire {
   Wire(const Wire&) = delete;
   Wire& operator=(const Wire&) = delete;
 
-  int add_driver();  // returns the handle for drive()
+  int add_driver(std::string name = "a driver");  // returns the handle for drive()
   void drive(int driver, Drive drive, Nanoseconds now);
   void watch(Watcher watcher) { watchers_.push_back(std::move(watcher)); }
 
   bool level() const { return level_; }
   const std::string& name() const { return name_; }
   std::uint64_t fights() const { return fights_; }
+  bool was_driven() const { return was_driven_; }  // strongly, by anybody, so far
+
+  using Fight =
+      std::function<void(const std::string& low, const std::string& high, Nanoseconds now)>;
+  void on_fight(Fight fight) { fight_ = std::move(fight); }
 
   // A fault on the wire itself: holds it whatever the drivers say; Drive::none lets go.
   void force(Drive forced, Nanoseconds now);
@@ -39,8 +44,13 @@ class Wire {
  private:
   void resolve(Nanoseconds now);
 
+  const std::string& driver_with(Drive drive) const;
+
   std::string name_;
   std::vector<Drive> drives_;
+  std::vector<std::string> names_;  // of the drivers
+  Fight fight_;
+  bool was_driven_ = false;
   std::vector<Watcher> watchers_;
   Drive forced_ = Drive::none;
   bool level_;

@@ -200,6 +200,7 @@ void Board::obey(const io::Reader& message) {
   if (devices_.on_message(message)) return;
   if (message.header().kind == io::Kind::end_of_run) {
     watch_.run_ends(events_.now());
+    devices_.run_ends(events_.now());
     add_statistics();
     finish(io::BoardState::ended);
   }

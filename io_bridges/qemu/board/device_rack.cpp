@@ -26,13 +26,14 @@ class DeviceRack::Wiring final : public rack::Rack {
   void report(io::Nanoseconds now) {
     for (const auto& device : devices_) device->report(now);
   }
+  void run_ends(io::Nanoseconds now);
 
   io::EventQueue& events() override { return site_.events; }
   io::FaultBook& faults() override { return faults_; }
   io::Batch& happened() override { return site_.happened; }
   io::FindingSink finding() override { return site_.finding; }
   std::uint64_t seed() const override { return site_.seed; }
-  io::Wire* pin(const std::string& name) override { return site_.chip.pin(name); }
+  io::Wire* pin(const std::string& name) override;
   bool set_analog(const std::string& pin, std::function<double(io::Nanoseconds)> volts) override {
     return site_.chip.set_analog(pin, std::move(volts));
   }
@@ -46,10 +47,14 @@ class DeviceRack::Wiring final : public rack::Rack {
   Result<Done> add(const BoardDescription& board, int number);
   Result<Done> subscribe(rack::RackDevice& device, const std::string& place);
   io::SpiBus* spi(int number);
+  void find_once(io::Nanoseconds now, const std::string& where, const std::string& what);
 
   Site site_;
   io::FaultBook faults_;
-  std::set<int> i2c_soldered_;  // to the pins that the board names
+  std::set<std::string> reported_;                // findings
+  std::map<const io::Wire*, std::string> names_;  // of devices by their chip select
+  std::vector<BoardPin> named_pins_;              // with neither resistor nor bus
+  std::set<int> i2c_soldered_;                    // to the pins that the board names
   std::map<int, std::unique_ptr<io::I2cWireFaults>> i2c_buses_;
   std::map<int, io::SpiBus*> spi_buses_;
   std::map<const io::Wire*, std::unique_ptr<SpiLog>> spi_logs_;
@@ -65,6 +70,9 @@ Result<Done> DeviceRack::Wiring::build(const BoardDescription& board) {
   auto soldered = join_pins(board.pins, site_.chip, board.name);
   if (!soldered) return soldered.error();
   i2c_soldered_ = std::move(soldered.value());
+  for (const BoardPin& pin : board.pins) {
+    if (pin.pull.empty() && pin.bus.empty()) named_pins_.push_back(pin);
+  }
   for (std::size_t i = 0; i < board.devices.size(); ++i) {
     if (auto added = add(board, static_cast<int>(i)); !added) return added.error();
   }
@@ -111,6 +119,28 @@ Result<Done> DeviceRack::Wiring::subscribe(rack::RackDevice& device, const std::
   return Done{};
 }
 
+void DeviceRack::Wiring::find_once(io::Nanoseconds now, const std::string& where,
+                                   const std::string& what) {
+  if (reported_.insert(where + what).second) site_.finding({now, where, what});
+}
+
+io::Wire* DeviceRack::Wiring::pin(const std::string& name) {
+  io::Wire* wire = site_.chip.pin(name);
+  if (wire == nullptr) return nullptr;
+  wire->on_fight(
+      [this, name](const std::string& low, const std::string& high, io::Nanoseconds now) {
+        find_once(now, name, low + " drives it low, " + high + " drives it high");
+      });
+  return wire;
+}
+
+void DeviceRack::Wiring::run_ends(io::Nanoseconds now) {
+  for (const BoardPin& pin : named_pins_) {
+    if (site_.chip.pin(pin.pin)->was_driven()) continue;
+    find_once(now, pin.pin, "the board names it '" + pin.name + "', but nothing ever drove it");
+  }
+}
+
 io::I2cBus* DeviceRack::Wiring::i2c(int number) {
   io::I2cBus* bus = site_.chip.i2c(number);
   if (bus == nullptr || i2c_buses_.count(number) != 0) return bus;
@@ -133,6 +163,10 @@ io::SpiBus* DeviceRack::Wiring::spi(int number) {
   io::SpiBus* bus = site_.chip.spi(number);
   if (bus == nullptr || spi_buses_.count(number) != 0) return bus;
   spi_buses_[number] = bus;
+  bus->on_clash([this, number](const io::Wire& first, const io::Wire& second, io::Nanoseconds now) {
+    find_once(now, "spi" + std::to_string(number),
+              names_[&first] + " and " + names_[&second] + " are selected at once");
+  });
   bus->on_byte(
       [this](const io::Wire* chip_select, std::uint8_t mosi, std::uint8_t miso, io::Nanoseconds) {
         const auto log = spi_logs_.find(chip_select);
@@ -142,9 +176,10 @@ io::SpiBus* DeviceRack::Wiring::spi(int number) {
 }
 
 bool DeviceRack::Wiring::join_spi(int number, io::Wire& chip_select, io::SpiTarget& target,
-                                  const BoardDevice& /*device*/, int device_number) {
+                                  const BoardDevice& device, int device_number) {
   io::SpiBus* bus = spi(number);
   if (bus == nullptr) return false;
+  names_[&chip_select] = device.name;
   spi_faults_.push_back(
       std::make_unique<io::SpiWireFaults>(faults_, target, number, device_number));
   bus->add(*spi_faults_.back(), chip_select);
@@ -192,6 +227,10 @@ bool DeviceRack::on_message(const io::Reader& message) {
 
 void DeviceRack::report(io::Nanoseconds now) {
   wiring_->report(now);
+}
+
+void DeviceRack::run_ends(io::Nanoseconds now) {
+  wiring_->run_ends(now);
 }
 
 }  // namespace whirl::board

@@ -4,6 +4,8 @@
 //   Logs      every I2C transaction; every SPI transaction with its first 16 pairs of bytes (MOSI,
 //             MISO)
 //   Messages  go to the devices that take their kind and port; faults into the book that all share
+//   Findings  two that drive one pin against each other, and two devices selected at once on one SPI
+//             bus (once for each two), a pin of the board file that nothing ever drove (at the end)
 //   Errors    bad_input: what check_board.hpp refuses, a bus or pin that the part does not have
 #pragma once
 #include <memory>
@@ -35,6 +37,7 @@ class DeviceRack {
   bool on_message(const io::Reader& message);
   // At a boundary, before what happened is posted: what devices tell at each one.
   void report(io::Nanoseconds now);
+  void run_ends(io::Nanoseconds now);
 
  private:
   class Wiring;

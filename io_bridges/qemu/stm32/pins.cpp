@@ -10,7 +10,7 @@ Pin::Pin(std::string name, Watcher watcher) : own_(std::move(name)), watcher_(st
 
 void Pin::attach(io::Wire& wire) {
   wire_ = &wire;
-  driver_ = wire.add_driver();
+  driver_ = wire.add_driver("the microcontroller");
   wire.watch([this, at = &wire](bool level, Nanoseconds now) {
     if (at != wire_) return;  // left behind when the pin joined another net
     for (Signal* signal : setting_.signals) {

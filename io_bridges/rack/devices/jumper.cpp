@@ -8,7 +8,7 @@ class JumperDevice final : public RackDevice {
  public:
   explicit JumperDevice(DeviceSlot& slot) {
     io::Wire &from = slot.pin("cs"), &to = slot.pin("int");
-    const int driver = to.add_driver();
+    const int driver = to.add_driver(slot.name());
     from.watch([&to, driver](bool level, Nanoseconds now) {
       to.drive(driver, level ? io::Drive::high : io::Drive::low, now);
     });

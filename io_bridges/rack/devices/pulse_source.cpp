@@ -9,7 +9,7 @@ namespace {
 class PulseDevice final : public RackDevice {
  public:
   explicit PulseDevice(DeviceSlot& slot)
-      : motor_(slot.whole("motor")), source_(slot.rack().events(), slot.pin("bus")) {}
+      : motor_(slot.whole("motor")), source_(slot.rack().events(), slot.pin("bus"), slot.name()) {}
 
   std::vector<Intake> intakes() const override { return {{io::Kind::pulse_train, motor_}}; }
   void on_message(const io::Reader& message) override {

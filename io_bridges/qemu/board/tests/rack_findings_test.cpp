@@ -1,0 +1,90 @@
+// What a board's wiring does that no board should, told while it runs.
+#include <gtest/gtest.h>
+
+#include "io_bridges/qemu/board/device_rack.hpp"
+#include "io_bridges/qemu/stm32/tests/chip_bench.hpp"
+#include "io_bridges/rack/devices/table.hpp"
+
+namespace whirl::board {
+namespace {
+
+constexpr std::uint32_t kGpioC = 0x40020800, kAhb1enr = 0x40023830;
+
+struct Bench {
+  void build(std::vector<BoardDevice> devices, std::vector<BoardPin> pins = {}) {
+    const auto built =
+        rack.build({.name = "b", .devices = std::move(devices), .pins = std::move(pins)});
+    ASSERT_TRUE(built) << built.error().message();
+    chip.set_bits(kAhb1enr, 0xFF);
+  }
+  // A pin of port C as an output at that level.
+  void output(int pin, bool high) {
+    chip.put(kGpioC + 0x18, 1u << (high ? pin : pin + 16));
+    chip.set_bits(kGpioC, 1u << (2 * pin));
+  }
+
+  stm32::ChipBench chip;
+  io::Batch happened;
+  std::vector<io::Finding> found;
+  DeviceRack rack{{chip.events(), chip.chip(), happened,
+                   [this](const io::Finding& f) { found.push_back(f); }, 1, rack::device_types()}};
+};
+
+BoardDevice jumper(const std::string& from, const std::string& to) {
+  return {.name = "jumper_" + to, .type = "jumper", .keys = {{"cs", from}, {"int", to}}};
+}
+
+BoardDevice imu(const std::string& name, const std::string& cs) {
+  return {.name = name, .type = "mpu6000", .bus = "spi1", .keys = {{"cs", cs}}};
+}
+
+TEST(RackFindings, ADeviceAndTheChipOnOneWireAreNamedWithTheTime) {
+  Bench b;
+  b.build({jumper("PC1", "PC2")});
+  b.output(2, false);
+  b.output(1, false);
+  ASSERT_TRUE(b.found.empty()) << b.found[0].what;
+  b.chip.run(1234);
+  b.output(1, true);  // the jumper drives PC2 high, the chip low
+  ASSERT_EQ(b.found.size(), 1u);
+  EXPECT_EQ(b.found[0].t_ns, b.chip.now());
+  EXPECT_EQ(b.found[0].where, "PC2");
+  EXPECT_EQ(b.found[0].what, "the microcontroller drives it low, jumper_PC2 drives it high");
+  b.output(1, false);
+  b.output(1, true);
+  EXPECT_EQ(b.found.size(), 1u);  // once
+}
+
+TEST(RackFindings, TwoSelectedDevicesOnOneBusAreNamedOnce) {
+  Bench b;
+  b.build({imu("imu", "PC4"), imu("spare", "PC5")});
+  b.output(4, false);
+  b.output(5, true);
+  b.chip.run(20'000'000);  // the parts' own start-up
+  b.chip.chip().spi(1)->transfer(0xF5, 1'000'000, 3, b.chip.now());
+  EXPECT_TRUE(b.found.empty()) << b.found[0].what;
+  b.output(5, false);
+  const io::Nanoseconds now = b.chip.now();
+  b.chip.chip().spi(1)->transfer(0xF5, 1'000'000, 3, now + 20);
+  b.chip.chip().spi(1)->transfer(0x00, 1'000'000, 3, now + 30);
+  std::erase_if(b.found, [](const io::Finding& f) { return f.where != "spi1"; });
+  ASSERT_EQ(b.found.size(), 1u);
+  EXPECT_EQ(b.found[0].t_ns, now + 20);
+  EXPECT_EQ(b.found[0].where, "spi1");
+  EXPECT_EQ(b.found[0].what, "imu and spare are selected at once");
+}
+
+TEST(RackFindings, APinThatTheBoardNamesAndNothingDrivesIsSaidAtTheEnd) {
+  Bench b;
+  b.build({}, {{.name = "led", .pin = "PC7"},
+               {.name = "dark", .pin = "PC8"},
+               {.name = "strap", .pin = "PC9", .pull = "up"}});
+  b.output(7, true);
+  b.rack.run_ends(99);
+  ASSERT_EQ(b.found.size(), 1u);
+  EXPECT_EQ(b.found[0].where, "PC8");
+  EXPECT_EQ(b.found[0].what, "the board names it 'dark', but nothing ever drove it");
+}
+
+}  // namespace
+}  // namespace whirl::board
