@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "harness/lua/node.hpp"
+#include "harness/lua/place_in_source.hpp"
 
 namespace whirl::lua {
 namespace {
@@ -49,7 +50,7 @@ bool name_char(char c) {
 }
 
 // The line on which `key =` stands, or 0 where it stands nowhere or in several places.
-int line_of(const std::string& source, std::string_view key) {
+int only_line_of(const std::string& source, std::string_view key) {
   int line = 1, found = 0;
   for (std::size_t i = 0; i < source.size(); ++i) {
     if (source[i] == '\n') ++line;
@@ -89,6 +90,15 @@ std::string known_keys(const Node& table) {
 std::string_view last_part(std::string_view path) {
   const auto dot = path.find_last_of('.');
   return dot == std::string_view::npos ? path : path.substr(dot + 1);
+}
+
+// Of a path. Where the file does not spell it out: of its key if that stands in one place only, or,
+// of a key that is missing, of what should hold it.
+int line_of(const std::string& source, const std::string& path, bool missing) {
+  const SourcePlace place = place_in_source(source, path);
+  if (place.exact || (missing && place.line != 0)) return place.line;
+  const int only = only_line_of(source, last_part(path));
+  return only != 0 ? only : place.line;
 }
 
 }  // namespace
@@ -335,7 +345,7 @@ std::string Table::place(std::string_view key) const {
                                ? std::string(key)
                                : node_->path + "." + std::string(key);
   if (!doc_->call_place.empty()) return doc_->call_place + ": " + path;
-  const int line = line_of(doc_->source, last_part(key));
+  const int line = line_of(doc_->source, path, !has(key) && key != node_->path);
   return doc_->file + (line == 0 ? "" : ":" + std::to_string(line)) + ": " + path;
 }
 
@@ -356,8 +366,7 @@ Result<Done> Table::finish_except(const std::vector<std::string>& keys) const {
   const Unknown unknown = unknown_below(doc_->root, keys);
   if (unknown.value == nullptr) return Done{};
   const std::string& path = unknown.value->path;
-  const std::string key(last_part(path));
-  const int line = doc_->call_place.empty() ? line_of(doc_->source, key) : 0;
+  const int line = doc_->call_place.empty() ? line_of(doc_->source, path, false) : 0;
   std::string where = doc_->call_place.empty() ? doc_->file : doc_->call_place;
   if (line != 0) where += ":" + std::to_string(line);
   return Error{ErrorKind::bad_input, where, "unknown key '" + path + "'",

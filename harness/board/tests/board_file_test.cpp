@@ -204,5 +204,36 @@ TEST(BoardFile, AResistorPullsUpOrDown) {
             std::string::npos);
 }
 
+// However often a key's word stands in the file.
+TEST(BoardFile, AMistakeIsToldWithItsLineAndWithWhatThereIs) {
+  const auto said = [](const std::string& second) {
+    const std::string text = complaint(
+        "devices = {\n{ name = 'a', type = 'serial', bus = 'usart1', baud = '9600 baud' },\n" +
+        second + " }");
+    const auto file = text.find("b.lua");
+    return file == std::string::npos ? text : text.substr(file);
+  };
+  EXPECT_EQ(said("{ name = 'b',\n type = 'toaster' }"),
+            "b.lua:4: devices[2].type: unknown type 'toaster' (use one of mpu6000, esc_i2c, "
+            "mavlink_link, serial, i2c_master, power_stage, pulse_source, volts, jumper)");
+  EXPECT_EQ(said("{ name = 'b', type = 'serial', bus = 'usart2', baud = '1 baud' }"),
+            "b.lua:3: devices[2].baud: 1 baud is outside 50..1.2e+07 baud");
+  EXPECT_EQ(said("{ name = 'b', type = 'serial', bus = 'usart2', baud = 'fast' }").substr(0, 26),
+            "b.lua:3: devices[2].baud: ");
+  EXPECT_EQ(said("{ name = 'b', type = 'serial', bus = 'usart2' }"),
+            "b.lua:3: devices[2].baud: is missing: a serial needs it (of the UART, baud)");
+  EXPECT_EQ(said("{ name = 'b', type = 'serial', bus = 'usart1', baud = '9600 baud' }"),
+            "b.lua:3: devices[2].bus: a and b share one bus, usart1");
+  EXPECT_EQ(said("{ name = 'b', type = 'i2c_master', bus = 'i2c1', params = { rate = '1 kHz',\n"
+                 "  colour = 'red' } }"),
+            "b.lua:4: devices[2].params.colour: is no key of the type i2c_master (it has name, "
+            "type, bus, params.rate)");
+  EXPECT_EQ(said("{ name = 'b', type = 'i2c_master', bus = 'i2c1', params = 'fast' }"),
+            "b.lua:3: devices[2].params: is a text, not a table");
+  EXPECT_EQ(said("{ name = 'b', type = 'mpu6000', bus = 'spi1', cs = 'PB0',\n"
+                 "  axes = { '+x', '+y', '-z' } }"),
+            "b.lua:4: devices[2].axes: +x +y -z is left-handed: no part can be soldered so");
+}
+
 }  // namespace
 }  // namespace whirl
