@@ -24,7 +24,7 @@ Result<std::unique_ptr<World>> make_world(const cli::Setup& setup) {
     if (!params) return params.error();
     return std::unique_ptr<World>(std::make_unique<stand::StandWorld>(params.value(), setup.seed));
   }
-  const auto params = catalogue::read_vehicle(setup.vehicle_file);
+  const auto params = catalogue::read_vehicle(setup.vehicle_file, setup.settings);
   if (!params) return params.error();
   return std::unique_ptr<World>(std::make_unique<flight::FlightWorld>(params.value(), setup.seed));
 }

@@ -162,6 +162,8 @@ std::string inputs_of(const Report& r) {
   for (const auto& [what, version] : r.versions) {
     const std::string role = what.substr(what.find('/') + 1);  // without the node's name
     const bool is_input = role == "image" || role == "plan" || role == "board" || role == "vehicle";
+    if (what.starts_with("set "))
+      all += (all.empty() ? "" : ", ") + what.substr(4) + " = " + version;
     if (is_input) all += (all.empty() ? "" : ", ") + version;
   }
   return all;

@@ -85,9 +85,14 @@ void read_capture(const Table& t, flight::CaptureParams& c) {
 
 }  // namespace
 
-Result<flight::FlightParams> read_vehicle(const std::string& path) {
-  const auto file = lua::read_file(path);
+Result<flight::FlightParams> read_vehicle(const std::string& path, const Settings& settings) {
+  auto file = lua::read_file(path);
   if (!file) return file.error();
+  for (const Setting& setting : settings) {
+    const std::string_view key = path_in(setting, "vehicle");
+    if (key.empty()) continue;
+    if (const auto set = file.value().put(key, setting.value); !set) return set.error();
+  }
   const Table& t = file.value();
   flight::FlightParams p;
   std::ignore = t.choice("kind", {"vehicle"});

@@ -5,10 +5,12 @@
 #include <string>
 
 #include "base/result.hpp"
+#include "base/setting.hpp"
 #include "harness/flight/flight_params.hpp"
 
 namespace whirl::catalogue {
 
-Result<flight::FlightParams> read_vehicle(const std::string& path);
+// settings: those of "vehicle." take the place of what the file says.
+Result<flight::FlightParams> read_vehicle(const std::string& path, const Settings& settings = {});
 
 }  // namespace whirl::catalogue

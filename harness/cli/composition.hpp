@@ -25,6 +25,7 @@ struct Setup {  // of a run; of one board of it, where a target is made
   std::string vehicle_file;  // path; empty for a stand
   std::uint64_t seed = 1;
   int gdb_port = 0;  // 0: no gdb
+  Settings settings = {};
 };
 
 struct Composition {

@@ -114,7 +114,7 @@ std::string images_of(const plan::Plan& plan) {
 FoundPlans find_plans(const RunOptions& options, const std::string& root) {
   FoundPlans found;
   for (const std::string& path : plan_files(options, root, found.errors)) {
-    const auto file = plan::PlanFile::load(path);
+    const auto file = plan::PlanFile::load(path, {}, options.settings);
     if (!file) {
       found.errors.push_back(file.error());
       continue;

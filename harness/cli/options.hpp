@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/job/job.hpp"
+#include "base/setting.hpp"
 
 namespace whirl::cli {
 
@@ -21,7 +21,7 @@ struct RunOptions {
   std::string out;  // where results go; empty: results/ of the house
   std::string tag;
   std::string only;  // the plan of this name
-  std::vector<Setting> settings;
+  Settings settings;
 };
 
 }  // namespace whirl::cli

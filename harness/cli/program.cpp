@@ -60,6 +60,15 @@ std::string seed_complaint(const std::string& text) {
   return good ? "" : "'" + text + "' is no seed (0 to 18446744073709551615)";
 }
 
+// "vehicle.motor.inertia=3e-5": of a plan, its stand or its vehicle.
+std::string setting_complaint(const std::string& text) {
+  const Setting setting{text.substr(0, text.find('=')), ""};
+  bool known = text.find('=') != std::string::npos;
+  known = known && !(path_in(setting, "plan").empty() && path_in(setting, "stand").empty() &&
+                     path_in(setting, "vehicle").empty());
+  return known ? "" : "'" + text + "' is no plan.KEY=VALUE, stand.KEY=VALUE or vehicle.KEY=VALUE";
+}
+
 int run_chosen(int argc, char** argv, Composition composition) {
   CLI::App app{"Whirlstand: a test stand for rotorcraft firmware", "whirl"};
   app.footer(kExamples);
@@ -79,6 +88,12 @@ int run_chosen(int argc, char** argv, Composition composition) {
   run->add_flag("--keep", options.keep, "keep what went into the board's process as well");
   run->add_flag("--twice", options.twice, "run twice and expect the same digest");
   run->add_flag("--json", options.json, "run.json on standard output");
+  std::vector<std::string> settings;
+  run->add_option("--set", settings,
+                  "KEY=VALUE in place of what a file says: vehicle.motor.resistance=\"90 mohm\", "
+                  "stand.supply=\"15 V\", plan.timeout=\"9 s\"")
+      ->check(setting_complaint)
+      ->allow_extra_args(false);
   run->add_option("--out", options.out, "where runs and the history go (default: results)");
 
   auto* list = app.add_subcommand("list", "list plans");
@@ -134,6 +149,10 @@ int run_chosen(int argc, char** argv, Composition composition) {
     return app.exit(e) == 0 ? 0 : 2;
   }
   if (seed_option->count() > 0) options.seed = std::stoull(seed);
+  for (const std::string& text : settings) {
+    const auto cut = text.find('=');
+    options.settings.push_back({text.substr(0, cut), text.substr(cut + 1)});
+  }
   if (!options.out.empty()) composition.results = options.out;
   if (*list) return list_command(options, composition);
   if (*past) return history_command(history, composition.results);

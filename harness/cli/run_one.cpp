@@ -74,6 +74,11 @@ Result<Prepared> prepare(const plan::Plan& plan, const RunOptions& options,
   const std::string& root = composition.root;
   const Asker who{plan.file, plan.place};
   std::string vehicle_file;
+  for (const Setting& setting : options.settings) {
+    if (!plan.vehicle.empty() || path_in(setting, "vehicle").empty()) continue;
+    return Error{ErrorKind::bad_input, plan.place,
+                 "--set " + setting.key + ": this plan has a stand and no vehicle", ""};
+  }
   if (!plan.vehicle.empty()) {
     const auto vehicle = find_file(plan.vehicle, who, {root + "/test_plans/vehicles"}, ".lua");
     if (!vehicle) return vehicle.error();
@@ -89,7 +94,7 @@ Result<Prepared> prepare(const plan::Plan& plan, const RunOptions& options,
     all.nodes.push_back(std::move(node.value()));
     const int port = options.gdb ? options.gdb_port + static_cast<int>(i) : 0;
     all.setups.push_back({plan, i, all.nodes.back().board, root, image.value(), vehicle_file,
-                          options.seed.value_or(plan.seed), port});
+                          options.seed.value_or(plan.seed), port, options.settings});
   }
   auto world = composition.world(all.setups.front());
   if (!world) return world.error();
@@ -109,6 +114,9 @@ void add_versions(const Prepared& prepared, const plan::Plan& plan, const std::s
               {{node.qualified("image"), setup.image}, {node.qualified("board"), node.board.file}});
     record.board_texts.emplace_back(node.name, board_text(prepared.start_of(setup.node)));
   }
+  for (const Setting& setting : prepared.setups.front().settings) {
+    record.report.versions.emplace_back("set " + setting.key, setting.value);
+  }
   add_files(record.report.versions,
             {{"plan", plan.file}, {"vehicle", prepared.setups.front().vehicle_file}});
   add_host(record.report.versions, root);
@@ -117,7 +125,7 @@ void add_versions(const Prepared& prepared, const plan::Plan& plan, const std::s
 Result<RunRecord> run_record(const PlanChoice& choice, const RunOptions& options,
                              const Composition& composition, const ProgressSink& progress) {
   // Loaded anew: no run sees what another left in its Lua.
-  auto file = plan::PlanFile::load(choice.file);
+  auto file = plan::PlanFile::load(choice.file, {}, options.settings);
   if (!file) return file.error();
   const plan::Plan* plan = nullptr;
   for (const plan::Plan& p : file.value()->plans()) {

@@ -13,18 +13,14 @@
 #include <vector>
 
 #include "base/result.hpp"
+#include "base/setting.hpp"
 
 namespace whirl {
-
-// One value in place of what a file says: "vehicle.motor.resistance", "120 mohm".
-struct Setting {
-  std::string key, value;
-};
 
 struct Job {
   std::string file, plan;
   std::optional<std::uint64_t> seed;
-  std::vector<Setting> settings;
+  Settings settings;
   std::string results;  // folder of runs and history
   bool keep = false, twice = false;
 };

@@ -1,6 +1,7 @@
 #include "harness/lua/table.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>

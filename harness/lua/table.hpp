@@ -91,6 +91,10 @@ class Table {
   // A value of any kind, for what is only passed on: what quantity() would read without a wish.
   Quantity any_quantity(std::string_view key) const;
 
+  // Puts a value where a path of this table says, in place of what stands there or as a new key; see
+  // base/setting.hpp. Errors  bad_input: no such element of a list, or the path leads through no table
+  Result<Done> put(std::string_view path, const std::string& value);
+
   void refuse(std::string_view key, std::string what, std::string cure = {}) const;
   void ignore(std::string_view key) const;               // counts as asked for
   std::string place(std::string_view key) const;         // "hp_quad.lua:12: frame.arm"

@@ -97,6 +97,17 @@ Result<Plan> read_plan(const lua::Table& t, std::string name, const std::string&
   return plan;
 }
 
+// What was set for the plan, and for its stand, which is a table of the plan.
+Result<Done> put_settings(const Settings& settings, lua::Table& plan) {
+  for (const Setting& setting : settings) {
+    const std::string_view of_plan = path_in(setting, "plan");
+    const std::string_view path = path_in(setting, "stand").empty() ? of_plan : setting.key;
+    if (path.empty()) continue;
+    if (const auto set = plan.put(path, setting.value); !set) return set;
+  }
+  return Done{};
+}
+
 // Names stand in one line of a terminal and choose plans on command lines. Null: nothing is wrong.
 const char* fault_of_name(const std::string& name) {
   if (name.empty()) return "is empty";
@@ -137,7 +148,9 @@ int PlanFile::take(lua_State* L) {
   const std::string place = place_of(L);
   const auto tree = lua::tree_from_stack(L, 1, self->path_, "", place);
   if (!tree) raise(L, tree.error());
-  auto plan = read_plan({tree.value(), &tree.value()->root}, name, self->path_, place);
+  lua::Table table(tree.value(), &tree.value()->root);
+  if (auto set = put_settings(self->settings_, table); !set) raise(L, set.error());
+  auto plan = read_plan(table, name, self->path_, place);
   if (!plan) raise(L, plan.error());
   for (const Plan& other : self->plans_) {
     if (other.name == name) return luaL_error(L, "two plans are called \"%s\"", name.c_str());
@@ -147,8 +160,9 @@ int PlanFile::take(lua_State* L) {
   return 0;
 }
 
-Result<std::unique_ptr<PlanFile>> PlanFile::load(const std::string& path, lua::Limits limits) {
-  std::unique_ptr<PlanFile> file(new PlanFile(path, limits));
+Result<std::unique_ptr<PlanFile>> PlanFile::load(const std::string& path, lua::Limits limits,
+                                                 const Settings& settings) {
+  std::unique_ptr<PlanFile> file(new PlanFile(path, limits, settings));
   file->sandbox_.set_owner(file.get());
   const auto registered =
       file->sandbox_.protect(0, [](lua_State* L) { lua_register(L, "plan", declare); });

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "base/result.hpp"
+#include "base/setting.hpp"
 #include "harness/lua/sandbox.hpp"
 #include "harness/lua/table.hpp"
 
@@ -53,17 +54,21 @@ struct Plan {
 
 class PlanFile {
  public:
-  static Result<std::unique_ptr<PlanFile>> load(const std::string& path, lua::Limits limits = {});
+  // settings: those of "plan." and "stand." take the place of what each plan of the file says.
+  static Result<std::unique_ptr<PlanFile>> load(const std::string& path, lua::Limits limits = {},
+                                                const Settings& settings = {});
 
   const std::vector<Plan>& plans() const { return plans_; }
   lua::Sandbox& sandbox() { return sandbox_; }
 
  private:
-  PlanFile(std::string path, lua::Limits limits) : path_(std::move(path)), sandbox_(limits) {}
+  PlanFile(std::string path, lua::Limits limits, Settings settings)
+      : path_(std::move(path)), settings_(std::move(settings)), sandbox_(limits) {}
   static int declare(lua_State* L);
   static int take(lua_State* L);
 
   std::string path_;
+  Settings settings_;
   lua::Sandbox sandbox_;
   std::vector<Plan> plans_;
 };

@@ -299,6 +299,23 @@ TEST(Program, ARunThatIsRefusedLeavesItsFolder) {
   EXPECT_EQ(root.read("results/runs/latest/truth.csv"), "");
 }
 
+// What a campaign varies, without a file of its own for each case.
+TEST(Program, ASettingTakesThePlaceOfWhatThePlanSays) {
+  FakeRoot root;
+  root.write("test_plans/p.lua",
+             plan_text("t:wait \"1 s\" t:expect(t:value \"tilt\"):at_most \"1 rad\""));
+  EXPECT_EQ(whirl(root, {"run"}).code, 0);
+  EXPECT_EQ(whirl(root, {"run", "--set", "plan.timeout=500 ms"}).code, 1);
+  const json run = parse_json(root.read("results/runs/latest/run.json"));
+  EXPECT_EQ(run["versions"]["set plan.timeout"], "500 ms");
+  const Outcome unknown = whirl(root, {"run", "--set", "plan.timeuot=1 s"});
+  EXPECT_EQ(unknown.code, 2);
+  EXPECT_NE(unknown.err.find("unknown key 'timeuot'"), std::string::npos) << unknown.err;
+  for (const char* wrong : {"timeout=1 s", "plan.timeout", "plan.=1", "board.hse=1 Hz"}) {
+    EXPECT_EQ(whirl(root, {"run", "--set", wrong}).code, 2) << wrong;
+  }
+}
+
 TEST(Program, TagsChooseAndListShows) {
   FakeRoot root;
   root.write("test_plans/a.lua",
