@@ -21,6 +21,7 @@ constexpr std::array<EscModeWord, 5> kWords = {
 
 EscModeWord read_esc_mode(const lua::Table& t, std::string_view key) {
   std::vector<std::string> words;
+  words.reserve(kWords.size());
   for (const EscModeWord& mode : kWords) words.emplace_back(mode.word);
   const std::string word = t.choice(key, words);
   const auto found = std::find_if(kWords.begin(), kWords.end(),

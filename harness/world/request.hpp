@@ -87,5 +87,7 @@ template <typename... Cases>
 struct Match : Cases... {
   using Cases::operator()...;
 };
+template <typename... Cases>  // clang 14 does not deduce aggregates by itself
+Match(Cases...)->Match<Cases...>;
 
 }  // namespace whirl
