@@ -40,7 +40,7 @@ harness/world            base/ harness/world/ io_bridges/messages/
 harness/board            base/ harness/board/ harness/lua/ io_bridges/board_description/ io_bridges/rack/
 harness/target           base/ harness/target/ io_bridges/
 harness/lockstep         base/ harness/lockstep/ harness/target/target.hpp harness/world/ io_bridges/messages/
-harness/plan             base/ harness/board/ harness/lua/ harness/metrics/ harness/plan/ harness/world/ results/
+harness/plan             base/ harness/board/ harness/lua/ harness/metrics/ harness/plan/ harness/target/offers.hpp harness/world/ results/
 harness/executive        base/ harness/board/ harness/executive/ harness/lockstep/ harness/metrics/ harness/plan/ harness/target/ harness/world/ io_bridges/devices/faults.hpp io_bridges/messages/ results/
 harness/catalogue        base/ harness/calibrate/setup.hpp harness/catalogue/ harness/flight/ harness/lua/ harness/stand/ io_bridges/protocols/ plant/ firmware/esc/core/
 harness/flight           base/ harness/flight/ harness/world/ io_bridges/messages/ io_bridges/protocols/ plant/ firmware/esc/core/

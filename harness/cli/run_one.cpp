@@ -9,6 +9,7 @@
 #include "base/places.hpp"
 #include "harness/cli/find_file.hpp"
 #include "harness/cli/versions.hpp"
+#include "harness/plan/needs.hpp"
 #include "harness/target/node_set.hpp"
 #include "io_bridges/board_description/board_text.hpp"
 #include "results/folder.hpp"
@@ -102,6 +103,7 @@ Result<Prepared> prepare(const plan::Plan& plan, const RunOptions& options,
   auto target = make_target(plan, all.setups, composition);
   if (!target) return target.error();
   all.target = std::move(target.value());
+  if (const auto met = plan::check_offers(plan, all.target->offers()); !met) return met.error();
   return all;
 }
 

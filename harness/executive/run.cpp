@@ -79,6 +79,7 @@ class Run {
       : parts_(parts),
         record_{{}, truth_log_for(parts.world), logs_for(parts.nodes)},
         stage_{parts.world,
+               parts.target.offers(),
                SignalTable(parts.world.signals()),
                parts.nodes,
                record_.truth,

@@ -113,6 +113,10 @@ int fault(lua_State* L) {
   const Result<bool> taken = at.node == 0 ? self.stage().world.take_fault(fault) : false;
   if (!taken) raise(L, taken.error());
   if (!taken.value()) {
+    if (!self.stage().offers.has(Offer::wire_faults)) {
+      raise(L, "a fault of kind " + fault.kind + " asks for " + name(Offer::wire_faults) +
+                   ", which this target does not offer");
+    }
     if (auto sent = self.stage().inject(fault); !sent) raise(L, sent.error());
   }
   return 0;

@@ -5,6 +5,7 @@
 
 #include "harness/metrics/timing.hpp"
 #include "harness/plan/bus_name.hpp"
+#include "harness/plan/needs.hpp"
 #include "harness/plan/raise.hpp"
 #include "harness/plan/values.hpp"
 
@@ -106,6 +107,14 @@ std::string on_node(lua_State* L, Script& self, std::size_t node, const std::str
   return at.rest;
 }
 
+// Also for calls that stand where no text shows them: in a function of another file.
+void must_offer(lua_State* L, Script& self, const std::string& call) {
+  for (const Offer offer : needs_of_call(call)) {
+    if (self.stage().offers.has(offer)) continue;
+    raise(L, "t:" + call + " asks for " + name(offer) + ", which this target does not offer");
+  }
+}
+
 void judge_calls(Script& self, const Budget& b, std::int64_t from, std::int64_t to) {
   std::vector<std::int64_t> entries;
   std::vector<double> execution, response, latency;
@@ -154,6 +163,7 @@ void judge_busy(Script& self, const Budget& b, std::int64_t from, std::int64_t t
 // The { ... } of t:budget("name") { ... }
 int take_budget(lua_State* L) {
   Script& self = Script::of(L);
+  must_offer(L, self, "budget");
   const lua::Table wish = check_table(L, 1);
   Budget b{lua_tostring(L, lua_upvalueindex(1)), place_of(L), {}, {}, {}, {}, {}, {}, 0.0};
   b.period = optional_limit(wish, "period", Dimension::time);
@@ -232,6 +242,7 @@ int numbered_bus(lua_State* L, const BoardDevice& device) {
 // bytes = n judges the transactions of that length only: a driver may check a register in between.
 int bus(lua_State* L) {
   Script& self = Script::of(L);
+  must_offer(L, self, "bus");
   const lua::Table wish = check_table(L, 2);
   const std::string name = wish.text("device");
   const NodePlace at = node_at(L, self, name);
@@ -321,6 +332,7 @@ void judge_latency(Script& self, const LatencyWish& w, std::int64_t from, std::i
 // t:latency { from = "imu", through = { "fw::imu_task", ... }, to = "esc", at_most = "7 ms" }
 int latency(lua_State* L) {
   Script& self = Script::of(L);
+  must_offer(L, self, "latency");
   const lua::Table wish = check_table(L, 2);
   const NodePlace at = node_at(L, self, wish.text("from"));
   const Board& board = self.stage().nodes[at.node].board;

@@ -1,9 +1,11 @@
 #include "harness/plan/plan_file.hpp"
 
 #include <algorithm>
+#include <filesystem>
 #include <lua.hpp>
 
 #include "base/text.hpp"
+#include "base/whole_file.hpp"
 #include "harness/lua/node.hpp"
 #include "harness/plan/bus_name.hpp"
 #include "harness/plan/raise.hpp"
@@ -131,6 +133,15 @@ int PlanFile::declare(lua_State* L) {
   return 1;
 }
 
+namespace {
+
+// A chunk is called by its file's name.
+bool is_of_file(const lua_Debug& function, const std::string& path) {
+  return std::filesystem::path(path).filename().string() == std::string(function.source).substr(1);
+}
+
+}  // namespace
+
 int PlanFile::take(lua_State* L) {
   auto* self = static_cast<PlanFile*>(lua::Sandbox::owner(L));
   std::size_t size = 0;
@@ -142,6 +153,9 @@ int PlanFile::take(lua_State* L) {
   if (lua_getfield(L, 1, "run") != LUA_TFUNCTION) {
     return luaL_error(L, "plan \"%s\": run = function(t) ... end is missing", name.c_str());
   }
+  lua_pushvalue(L, -1);
+  lua_Debug run{};
+  lua_getinfo(L, ">S", &run);
   const int run_ref = luaL_ref(L, LUA_REGISTRYINDEX);
   lua_pushnil(L);
   lua_setfield(L, 1, "run");
@@ -156,6 +170,10 @@ int PlanFile::take(lua_State* L) {
     if (other.name == name) return luaL_error(L, "two plans are called \"%s\"", name.c_str());
   }
   plan.value().run_ref = run_ref;
+  // A function of another file has no calls here; they are checked when they are made.
+  if (const auto source = read_whole_file(self->path_); source && is_of_file(run, self->path_)) {
+    plan.value().calls = source_calls(source.value(), run.linedefined, run.lastlinedefined);
+  }
   self->plans_.push_back(std::move(plan.value()));
   return 0;
 }

@@ -20,6 +20,7 @@
 #include "base/setting.hpp"
 #include "harness/lua/sandbox.hpp"
 #include "harness/lua/table.hpp"
+#include "harness/plan/source_calls.hpp"
 
 namespace whirl::plan {
 
@@ -43,6 +44,7 @@ struct Plan {
   std::vector<PlanNode> nodes;  // one at least
   std::vector<PlanWire> wires;
   std::vector<std::string> tags;
+  std::vector<SourceCall> calls;  // of t's, in the text of its function
   std::uint64_t seed = 1;
   std::int64_t timeout_ns = 0;
   bool may_reset = false;  // by a watchdog, without failing the plan

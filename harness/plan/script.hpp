@@ -17,6 +17,7 @@
 
 #include "harness/board/node.hpp"
 #include "harness/plan/plan_file.hpp"
+#include "harness/target/offers.hpp"
 #include "harness/world/world.hpp"
 #include "results/event_log.hpp"
 #include "results/report.hpp"
@@ -29,6 +30,7 @@ inline constexpr std::int64_t kForever = INT64_MAX;
 // What a script sees and moves.
 struct Stage {
   World& world;
+  Offers offers;        // the targets'
   SignalTable signals;  // the world's
   const std::vector<Node>& nodes;
   const results::TruthLog& truth;

@@ -78,6 +78,12 @@ void NodeSet::stop(io::Batch& happened) {
   }
 }
 
+Offers NodeSet::offers() const {
+  Offers all = kAll_offers;
+  for (const Entry& node : nodes_) all = all & node.target->offers();
+  return all;
+}
+
 std::vector<std::pair<std::string, std::string>> NodeSet::versions() const {
   std::vector<std::pair<std::string, std::string>> all;
   for (const Entry& node : nodes_) {

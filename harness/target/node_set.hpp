@@ -37,6 +37,7 @@ class NodeSet final : public Target {
   Result<TargetState> arrive(io::Batch& happened) override;
   void stop(io::Batch& happened) override;
   std::vector<std::pair<std::string, std::string>> versions() const override;
+  Offers offers() const override;  // what all of them can
 
  private:
   void carry(std::size_t from, const io::Batch& happened);

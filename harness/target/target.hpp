@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "base/result.hpp"
+#include "harness/target/offers.hpp"
 #include "io_bridges/messages/messages.hpp"
 
 namespace whirl {
@@ -36,6 +37,7 @@ class Target {
   virtual void stop(io::Batch& happened) = 0;
   // Names and versions of all that takes part, for run.json: {"qemu", "7.2.22"}, {"image sha256", ..}
   virtual std::vector<std::pair<std::string, std::string>> versions() const = 0;
+  virtual Offers offers() const = 0;  // the same at any time
 };
 
 }  // namespace whirl

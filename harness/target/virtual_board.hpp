@@ -36,6 +36,7 @@ class VirtualBoard final : public Target {
   Result<TargetState> arrive(io::Batch& happened) override;
   void stop(io::Batch& happened) override;
   std::vector<std::pair<std::string, std::string>> versions() const override;
+  Offers offers() const override { return kAll_offers; }
 
   int pid() const;             // 0: not running
   std::string output() const;  // what QEMU wrote so far, the last few KiB

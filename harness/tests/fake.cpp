@@ -50,6 +50,9 @@ class FakeTarget final : public Target {
     return TargetState::running;
   }
   void stop(io::Batch&) override {}
+  Offers offers() const override {
+    return image_ == "modest" ? Offers{Offer::virtual_time} : kAll_offers;
+  }
   std::vector<std::pair<std::string, std::string>> versions() const override {
     return {{"target", "fake"}};
   }
@@ -174,7 +177,7 @@ constexpr const char* kBoard = R"(return {
 
 FakeRoot::FakeRoot() {
   for (const char* image : {"flight", "crash", "asleep", "lost", "late", "drifting", "throws",
-                            "interrupted", "bitten"}) {
+                            "interrupted", "bitten", "modest"}) {
     write(std::string("build/firmware/") + image + ".elf", "");
   }
   write("test_plans/boards/px4fmu_v1.lua", kBoard);

@@ -3,7 +3,8 @@
 //   Target   behaves as its image is called: "flight" flies by the clock of its tasks; "crash" faults
 //            at 50 ms; "asleep" does nothing; "lost" stops answering; "late" blames the host;
 //            "drifting" differs from run to run; "throws" breaks, "interrupted" is sent a
-//            TERM and "bitten" is reset by its window watchdog at 50 ms
+//            TERM and "bitten" is reset by its window watchdog at 50 ms;
+//            "modest" offers virtual time and nothing else
 //   World    height answers a take-off as a first-order lag (tau 200 ms), thrust a command as one of
 //            50 ms; a gust moves `east` and it comes back with tau 500 ms
 #pragma once

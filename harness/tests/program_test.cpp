@@ -316,6 +316,34 @@ TEST(Program, ASettingTakesThePlaceOfWhatThePlanSays) {
   }
 }
 
+// Before it starts, and at the line; what only the run shows is refused when it comes.
+TEST(Program, AnAskThatTheTargetDoesNotOfferIsRefused) {
+  FakeRoot root;
+  root.write("build/firmware/modest.elf", "x");
+  root.write("test_plans/p.lua", plan_text("-- no t:budget('x') { }\nt:wait '10 ms'\n"
+                                           "t:budget('cpu') { busy = '60 %' }",
+                                           "modest"));
+  Outcome outcome = whirl(root, {"run"});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_NE(outcome.out.find("p.lua:5: t:budget asks for watches"), std::string::npos)
+      << outcome.out;
+  EXPECT_EQ(root.read("results/runs/latest/truth.csv"), "");  // it never started
+  root.write("test_plans/p.lua", plan_text("t:wait '10 ms' local b = t.budget\n"
+                                           "b(t, 'cpu') { busy = '60 %' }",
+                                           "modest"));
+  outcome = whirl(root, {"run"});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_NE(outcome.out.find("p.lua:4: t:budget asks for watches"), std::string::npos)
+      << outcome.out;
+  EXPECT_NE(root.read("results/runs/latest/truth.csv"), "");
+  root.write("test_plans/p.lua",
+             plan_text("t:fault { kind = 'i2c_nack', bus = 'i2c3' }", "modest"));
+  outcome = whirl(root, {"run"});
+  EXPECT_NE(outcome.out.find("p.lua:3: a fault of kind i2c_nack asks for faults"),
+            std::string::npos)
+      << outcome.out;
+}
+
 TEST(Program, TagsChooseAndListShows) {
   FakeRoot root;
   root.write("test_plans/a.lua",

@@ -47,6 +47,7 @@ class Clockwork final : public Target {
   void stop(io::Batch& happened) override {
     happened.add(io::Kind::data_ready, 0, until_ns_, nullptr, 0);
   }
+  Offers offers() const override { return kAll_offers; }
   std::vector<std::pair<std::string, std::string>> versions() const override { return {}; }
 
   std::vector<std::int64_t> given;

@@ -28,6 +28,7 @@ class PlayedTarget : public Target {
     return log_.state;
   }
   void stop(io::Batch&) override { ++log_.stopped; }
+  Offers offers() const override { return kAll_offers; }
   std::vector<std::pair<std::string, std::string>> versions() const override {
     return {{"qemu", "7.2"}};
   }

@@ -114,6 +114,7 @@ class PlayedTarget final : public Target {
   void stop(io::Batch& rest) override {
     if (scenario_.last_words) scenario_.last_words(rest);
   }
+  Offers offers() const override { return kAll_offers; }
   std::vector<std::pair<std::string, std::string>> versions() const override {
     return {{"target", "played"}};
   }

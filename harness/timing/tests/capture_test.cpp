@@ -23,6 +23,7 @@ class Sender final : public Target {
     return sent_ >= locks_ ? TargetState::cpu_locked : TargetState::running;
   }
   void stop(io::Batch&) override { stopped = true; }
+  Offers offers() const override { return kAll_offers; }
   std::vector<std::pair<std::string, std::string>> versions() const override { return {}; }
 
   std::int64_t now_ns() const { return now_ns_; }

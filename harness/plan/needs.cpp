@@ -1,0 +1,36 @@
+#include "harness/plan/needs.hpp"
+
+namespace whirl::plan {
+
+std::vector<Offer> needs_of_call(const std::string& call) {
+  if (call == "budget") return {Offer::watches};
+  if (call == "bus") return {Offer::bus_log};
+  if (call == "latency") return {Offer::watches, Offer::bus_log};
+  return {};
+}
+
+std::vector<Need> needs_of(const Plan& plan) {
+  std::vector<Need> needs;
+  if (plan.nodes.size() > 1) needs.push_back({Offer::virtual_time, "nodes", plan.place});
+  for (const PlanNode& node : plan.nodes) {
+    if (!node.watch.empty()) needs.push_back({Offer::watches, "watch", plan.place});
+  }
+  for (const SourceCall& call : plan.calls) {
+    for (const Offer offer : needs_of_call(call.name)) {
+      needs.push_back({offer, "t:" + call.name, plan.file + ":" + std::to_string(call.line)});
+    }
+  }
+  return needs;
+}
+
+Result<Done> check_offers(const Plan& plan, const Offers& offers) {
+  for (const Need& need : needs_of(plan)) {
+    if (offers.has(need.offer)) continue;
+    return Error{ErrorKind::bad_input, need.place,
+                 need.what + " asks for " + name(need.offer) + ", which this target does not offer",
+                 ""};
+  }
+  return Done{};
+}
+
+}  // namespace whirl::plan

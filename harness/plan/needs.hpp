@@ -1,0 +1,27 @@
+// What a plan asks of its targets, and whether they offer it.
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/result.hpp"
+#include "harness/plan/plan_file.hpp"
+#include "harness/target/offers.hpp"
+
+namespace whirl::plan {
+
+struct Need {
+  Offer offer = Offer::virtual_time;
+  std::string what, place;  // "t:budget", "hover.lua:31"
+};
+
+// What a call of this name asks: budget, bus, latency, fault. Of a fault only the plan's run shows whether
+// it is on a wire, or the world's own.
+std::vector<Offer> needs_of_call(const std::string& call);
+// By its keys and by the calls in its function's text.
+std::vector<Need> needs_of(const Plan& plan);
+
+// Errors  bad_input, with the plan's line: the first need that is not met
+Result<Done> check_offers(const Plan& plan, const Offers& offers);
+
+}  // namespace whirl::plan
