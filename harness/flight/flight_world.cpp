@@ -94,6 +94,11 @@ void FlightWorld::tell(std::int64_t t_ns, io::Batch& sensed) {
   motion.static_pressure_Pa = s.static_pressure_Pa;
   motion.air_temperature_K = s.air_temperature_K;
   motion.bus_voltage_V = s.bus_voltage_V;
+  copy(s.p_WB_W_m, motion.p_WB_W_m);
+  copy(s.v_WB_W_mps, motion.v_WB_W_mps);
+  copy(s.q_WB.conjugate() * (s.v_WB_W_mps - s.wind_W_mps), motion.v_AB_B_mps);
+  const double q_WB[4] = {s.q_WB.w(), s.q_WB.x(), s.q_WB.y(), s.q_WB.z()};
+  std::copy(std::begin(q_WB), std::end(q_WB), std::begin(motion.q_WB));
   sensed.add(io::Kind::body_motion, 0, t_ns, motion);
 
   for (std::size_t i = 0; i < escs_.size(); ++i) {

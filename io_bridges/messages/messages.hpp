@@ -2,7 +2,8 @@
 // base.
 //
 //   Units    SI; times are virtual nanoseconds since power-up of the run
-//   Frames   B: body, forward-right-down, as in plant/base/frames.hpp
+//   Frames   B: body, forward-right-down; W: world, north-east-down; A: the air; as in
+//            plant/base/frames.hpp
 //   Layout   plain structs, fixed-size, native byte order: both ends run on one host
 //   Digest   of a run is taken over all messages, both ways, in order
 #pragma once
@@ -67,6 +68,10 @@ struct BodyMotion {  // of the body's reference point (centre of mass), at t_ns
   double static_pressure_Pa = 101325.0;
   double air_temperature_K = 288.15;
   double bus_voltage_V = 16.4;
+  double p_WB_W_m[3] = {0, 0, 0};    // W's origin is on the ground
+  double v_WB_W_mps[3] = {0, 0, 0};  // over ground
+  double q_WB[4] = {1, 0, 0, 0};     // w x y z, Hamilton
+  double v_AB_B_mps[3] = {0, 0, 0};  // through the air around it
 };
 
 struct EscState {

@@ -152,6 +152,40 @@ TEST(FlightWorld, TellsTheBoardWhatItFeels) {
   EXPECT_EQ(states, 4);
 }
 
+io::BodyMotion motion_of(const io::Batch& sensed) {
+  for (io::Reader r(sensed.bytes()); r.next();) {
+    if (r.header().kind == io::Kind::body_motion) return r.as<io::BodyMotion>();
+  }
+  ADD_FAILURE() << "no body_motion";
+  return {};
+}
+
+TEST(FlightWorld, TellsTheBoardWhereItIsAndHowFast) {
+  Flight flight;
+  flight.run(1.0);  // the zeros that arm
+  flight.height_m = 1.0;
+  flight.run(1.0);
+  const io::BodyMotion motion = motion_of(flight.sensed);
+  EXPECT_LT(motion.p_WB_W_m[2], -0.05);    // up is against z
+  EXPECT_LT(motion.v_WB_W_mps[2], -0.05);  // on its way
+  EXPECT_EQ(-motion.p_WB_W_m[2], flight.value("height"));
+  EXPECT_EQ(-motion.v_WB_W_mps[2], flight.value("climb"));
+  EXPECT_EQ(motion.p_WB_W_m[0], flight.value("north"));
+  EXPECT_EQ(motion.p_WB_W_m[1], flight.value("east"));
+  EXPECT_GT(motion.q_WB[0], 0.99);  // near upright, nose north
+}
+
+// Standing nose north in a wind that blows to the east, it moves through the air to the left.
+TEST(FlightWorld, TellsTheBoardHowItMovesThroughTheAir) {
+  Flight flight;
+  ASSERT_TRUE(flight.world.gust(wish("{ east = '2 m/s', duration = '5 s' }"), 0).ok());
+  flight.run(2.0);
+  const io::BodyMotion motion = motion_of(flight.sensed);
+  EXPECT_TRUE(near(motion.v_AB_B_mps[1], -2.0, stated(0.05, "stands on its gear")));
+  EXPECT_TRUE(near(motion.v_AB_B_mps[0], 0.0, stated(0.05, "stands on its gear")));
+  EXPECT_TRUE(near(motion.v_WB_W_mps[1], 0.0, stated(0.05, "stands on its gear")));
+}
+
 TEST(FlightWorld, SendsPosesAndCommandsOverTheRadio) {
   Flight flight;
   ASSERT_TRUE(plan::command(flight.world, table("{ arm = true }"), 0).ok());
