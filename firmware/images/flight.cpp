@@ -6,6 +6,7 @@
 //   Watch   the watchdog is fed when each task has run since the last time
 #include <tuple>
 
+#include "firmware/config/vehicle.hpp"
 #include "firmware/drivers/esc_bus.hpp"
 #include "firmware/drivers/mpu6000.hpp"
 #include "firmware/flight/flight.hpp"
@@ -73,7 +74,12 @@ void i2c_job_done(const hal::I2cJob& job, Status status) {
   escs.job_done(job, status);
 }
 
-// Sensor axes are x forward, y left, z up: half a turn about x from the body's.
+// From the sensor's axes to the body's.
+static Vector3 mounted(const float (&of_sensor)[3]) {
+  const auto& sign = config::kImuSign;
+  return {sign[0] * of_sensor[0], sign[1] * of_sensor[1], sign[2] * of_sensor[2]};
+}
+
 __attribute__((noinline)) void imu_task() {
   constexpr std::uint32_t kFrozen_samples = 50;
   static constinit ImuBurst last;
@@ -91,9 +97,7 @@ __attribute__((noinline)) void imu_task() {
     return flight().on_imu_missing();
   }
   const ImuReading r = burst.decode();
-  const float* a = r.acceleration_mps2;
-  const float* w = r.rate_radps;
-  flight().on_imu({{a[0], -a[1], -a[2]}, {w[0], -w[1], -w[2]}, r.temperature_degC});
+  flight().on_imu({mounted(r.acceleration_mps2), mounted(r.rate_radps), r.temperature_degC});
   faults.imu_reconfigured = imu.reconfigured();
 }
 
