@@ -178,7 +178,7 @@ TEST(FlightWorld, TellsTheBoardWhereItIsAndHowFast) {
 // Standing nose north in a wind that blows to the east, it moves through the air to the left.
 TEST(FlightWorld, TellsTheBoardHowItMovesThroughTheAir) {
   Flight flight;
-  ASSERT_TRUE(flight.world.gust(wish("{ east = '2 m/s', duration = '5 s' }"), 0).ok());
+  ASSERT_TRUE(plan::disturb(flight.world, table("{ east = '2 m/s', duration = '5 s' }"), 0).ok());
   flight.run(2.0);
   const io::BodyMotion motion = motion_of(flight.sensed);
   EXPECT_TRUE(near(motion.v_AB_B_mps[1], -2.0, stated(0.05, "stands on its gear")));
