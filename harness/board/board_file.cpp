@@ -52,7 +52,8 @@ Result<Board> read_board(const std::string& path, const rack::DeviceTypes& types
   board.file = path;
   board.name = t.text("board");
   board.mcu = t.text("mcu");
-  board.hse_Hz = t.quantity("hse", Dimension::frequency, lua::above(0.0));
+  board.hse_Hz =
+      t.quantity("hse", Dimension::frequency, {.low = 0.0, .high = 50e6, .low_open = true});
   board.lse_Hz = t.quantity_or("lse", Dimension::frequency, 0.0, lua::at_least(0.0));
   board.hse_start_ns = std::llround(
       t.quantity_or("hse_start", Dimension::time, 2e-3, lua::between(1e-6, 1.0)) * 1e9);

@@ -355,6 +355,14 @@ TEST(Program, TagsChooseAndListShows) {
   EXPECT_NE(whirl(root, {"list"}).out.find("[quick]"), std::string::npos);
 }
 
+TEST(Program, DevicesPrintsEveryTypeWithItsKeys) {
+  const FakeRoot root;
+  const auto printed = whirl(root, {"devices"});
+  EXPECT_EQ(printed.code, 0);
+  EXPECT_NE(printed.out.find("| **mpu6000** "), std::string::npos) << printed.out;
+  EXPECT_NE(printed.out.find("| `params.shunt.gain_error` "), std::string::npos);
+}
+
 TEST(Program, JsonOnStandardOutputIsTheRunsOwnFile) {
   FakeRoot root;
   root.write("test_plans/p.lua",

@@ -70,6 +70,7 @@ std::optional<BoardComplaint> check_device(const BoardDevice& device, int number
     return BoardComplaint{number, "type", "unknown type '" + device.type + "'",
                           "use one of " + type_list(types)};
   }
+  if (device.name.empty()) return BoardComplaint{number, "name", "is empty", "give it one"};
   for (const std::string& path : device.paths()) {
     const DeviceKey* key = type->find(path);
     if (key == nullptr) return BoardComplaint{number, path, no_key(*type), keys_cure(*type)};

@@ -115,6 +115,11 @@ TEST(BoardFile, EachLimitBelongsToItsRange) {
   struct Edge {
     std::string key, inside, outside;
   };
+  for (const auto& [hse, wrong] : {std::pair{"50 MHz", false}, {"50.1 MHz", true}}) {
+    // The key is in the table already: the later one counts.
+    EXPECT_EQ(complaint(std::string("hse = '") + hse + "'").find("hse") != std::string::npos,
+              wrong);
+  }
   const Edge kEdges[] = {{"lse", "'0 Hz'", "'-0.5 Hz'"},
                          {"hse_start", "'1 us'", "'0.995 us'"},
                          {"hse_start", "'1 s'", "'1.005 s'"},

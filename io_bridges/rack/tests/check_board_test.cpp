@@ -27,6 +27,7 @@ std::string of(std::vector<BoardDevice> devices) {
 
 TEST(CheckBoard, WhatIsWrongWithADeviceIsSaidWithWhatThereIs) {
   EXPECT_EQ(of({serial("t", "usart1")}), "");
+  EXPECT_EQ(of({serial("", "usart1")}), "name: is empty (give it one)");
   EXPECT_EQ(of({{.name = "x", .type = "toaster"}}),
             "type: unknown type 'toaster' (use one of mpu6000, esc_i2c, mavlink_link, serial, "
             "i2c_master, power_stage, pulse_source, volts, jumper)");
