@@ -1,5 +1,6 @@
 // whirl: the virtual board and its world, a flight or a thrust stand, put together.
 #include <cstdlib>
+#include <set>
 
 #include "base/interruption.hpp"
 #include "base/places.hpp"
@@ -18,6 +19,29 @@ Result<stand::StandParams> stand_of(const cli::Setup& setup) {
   return catalogue::read_stand(*setup.plan.stand, setup.root + "/test_plans/propellers");
 }
 
+// Each motor has its ESC on the board, and each ESC its motor.
+Result<Done> check_escs(const cli::Setup& setup, const flight::FlightParams& params) {
+  const int motors = static_cast<int>(params.vehicle.airframe.rotors.size());
+  std::set<int> driven;
+  for (const BoardDevice& device : setup.board.devices) {
+    if (device.type == "esc_i2c") driven.insert(device.motor);
+  }
+  const auto wrong = [&](const std::string& what) {
+    return Error{ErrorKind::bad_input, setup.vehicle_file, what,
+                 "the vehicle has " + std::to_string(motors) + " motors, " + setup.board.name +
+                     " " + std::to_string(driven.size()) + " ESCs"};
+  };
+  for (const int motor : driven) {
+    if (motor > motors) {
+      return wrong("the board's ESC of motor " + std::to_string(motor) + " has no motor");
+    }
+  }
+  for (int motor = 1; motor <= motors; ++motor) {
+    if (driven.count(motor) == 0) return wrong("motor " + std::to_string(motor) + " has no ESC");
+  }
+  return Done{};
+}
+
 Result<std::unique_ptr<World>> make_world(const cli::Setup& setup) {
   if (setup.plan.stand) {
     const auto params = stand_of(setup);
@@ -26,6 +50,7 @@ Result<std::unique_ptr<World>> make_world(const cli::Setup& setup) {
   }
   const auto params = catalogue::read_vehicle(setup.vehicle_file, setup.settings);
   if (!params) return params.error();
+  if (const auto joined = check_escs(setup, params.value()); !joined) return joined.error();
   return std::unique_ptr<World>(std::make_unique<flight::FlightWorld>(params.value(), setup.seed));
 }
 

@@ -7,10 +7,12 @@ Result<NodePlace> node_place(const std::vector<Node>& nodes, const std::string& 
   std::string names;
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     if (slash != std::string::npos && nodes[i].name == text.substr(0, slash) && slash > 0) {
+      if (slash + 1 == text.size()) break;
       return NodePlace{i, text.substr(slash + 1)};
     }
-    names += (names.empty() ? "" : ", ") + nodes[i].name;
   }
+  for (const Node& node : nodes) names += (names.empty() ? "" : ", ") + node.name;
+  if (text.empty()) return Error{ErrorKind::bad_input, "", "an empty name names nothing", ""};
   if (nodes.size() == 1 && slash == std::string::npos) return NodePlace{0, text};
   if (nodes.size() == 1 && nodes[0].name.empty()) return NodePlace{0, text};
   return Error{ErrorKind::bad_input, "", "'" + text + "' names no board of this plan",

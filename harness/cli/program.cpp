@@ -69,32 +69,59 @@ std::string setting_complaint(const std::string& text) {
   return known ? "" : "'" + text + "' is no plan.KEY=VALUE, stand.KEY=VALUE or vehicle.KEY=VALUE";
 }
 
+// `whirl run` and its options; list shares some of them.
+struct RunCommand {
+  explicit RunCommand(CLI::App& app) {
+    auto* run = app.add_subcommand("run", "run plans; exit code 0 only if all pass");
+    add_plan_options(*run, options);
+    run->add_option("--seed", seed, "instead of the plans' own seeds")->check(seed_complaint);
+    run->add_option("--jobs,-j", options.jobs, "so many plans at once")->check(CLI::Range(1, 256));
+    run->add_flag("--gdb", options.gdb,
+                  "open a gdb port and hold the world's time while gdb holds");
+    run->add_option("--gdb-port", options.gdb_port, "instead of 1234")
+        ->check(CLI::Range(1024, 65535));
+    run->add_flag("--keep", options.keep, "keep what went into the board's process as well");
+    run->add_flag("--twice", options.twice, "run twice and expect the same digest");
+    run->add_flag("--json", options.json, "run.json on standard output");
+    run->add_option("--set", settings,
+                    "KEY=VALUE in place of what a file says: "
+                    "vehicle.motor.resistance=\"90 mohm\", stand.supply=\"15 V\", "
+                    "plan.timeout=\"9 s\"")
+        ->check(setting_complaint)
+        ->allow_extra_args(false);
+    run->add_option("--out", options.out, "where runs and the history go (default: results)");
+  }
+
+  // What was parsed as text. Nothing is said twice.
+  Result<Done> take_in() {
+    if (!seed.empty()) options.seed = std::stoull(seed);
+    for (const std::string& text : settings) {
+      const Setting setting{text.substr(0, text.find('=')), text.substr(text.find('=') + 1)};
+      for (const Setting& other : options.settings) {
+        if (other.key == setting.key) return twice(setting.key, "--set " + setting.key);
+      }
+      if (setting.key == "plan.seed" && options.seed) return twice(setting.key, "--seed");
+      options.settings.push_back(setting);
+    }
+    return Done{};
+  }
+  static Error twice(const std::string& key, const std::string& other) {
+    return {ErrorKind::bad_input, "", "--set " + key + ": is set by " + other + " already", ""};
+  }
+
+  RunOptions options;
+  std::string seed;
+  std::vector<std::string> settings;
+};
+
 int run_chosen(int argc, char** argv, Composition composition) {
   CLI::App app{"Whirlstand: a test stand for rotorcraft firmware", "whirl"};
   app.footer(kExamples);
   app.set_version_flag("--version", std::string("whirl ") + WHIRL_VERSION);
   app.require_subcommand(1);
 
-  RunOptions options;
-  std::string seed;
-  auto* run = app.add_subcommand("run", "run plans; exit code 0 only if all pass");
-  add_plan_options(*run, options);
-  auto* seed_option =
-      run->add_option("--seed", seed, "instead of the plans' own seeds")->check(seed_complaint);
-  run->add_option("--jobs,-j", options.jobs, "so many plans at once")->check(CLI::Range(1, 256));
-  run->add_flag("--gdb", options.gdb, "open a gdb port and hold the world's time while gdb holds");
-  run->add_option("--gdb-port", options.gdb_port, "instead of 1234")
-      ->check(CLI::Range(1024, 65535));
-  run->add_flag("--keep", options.keep, "keep what went into the board's process as well");
-  run->add_flag("--twice", options.twice, "run twice and expect the same digest");
-  run->add_flag("--json", options.json, "run.json on standard output");
-  std::vector<std::string> settings;
-  run->add_option("--set", settings,
-                  "KEY=VALUE in place of what a file says: vehicle.motor.resistance=\"90 mohm\", "
-                  "stand.supply=\"15 V\", plan.timeout=\"9 s\"")
-      ->check(setting_complaint)
-      ->allow_extra_args(false);
-  run->add_option("--out", options.out, "where runs and the history go (default: results)");
+  RunCommand run(app);
+  RunOptions& options = run.options;
 
   auto* list = app.add_subcommand("list", "list plans");
   add_plan_options(*list, options);
@@ -148,11 +175,7 @@ int run_chosen(int argc, char** argv, Composition composition) {
   } catch (const CLI::ParseError& e) {
     return app.exit(e) == 0 ? 0 : 2;
   }
-  if (seed_option->count() > 0) options.seed = std::stoull(seed);
-  for (const std::string& text : settings) {
-    const auto cut = text.find('=');
-    options.settings.push_back({text.substr(0, cut), text.substr(cut + 1)});
-  }
+  if (const auto good = run.take_in(); !good) return complain(good.error());
   if (!options.out.empty()) composition.results = options.out;
   if (*list) return list_command(options, composition);
   if (*past) return history_command(history, composition.results);

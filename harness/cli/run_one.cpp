@@ -3,6 +3,8 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <optional>
+#include <set>
 
 #include "base/interruption.hpp"
 #include "base/mishap.hpp"
@@ -52,6 +54,46 @@ struct Prepared {
   }
 };
 
+// The part of a board that speaks on that UART to the world outside; null: none does.
+const BoardDevice* serial_on(const Board& board, std::uint16_t uart) {
+  for (const BoardDevice& device : board.devices) {
+    const std::string number = std::to_string(uart);
+    const bool on_it = device.bus == "usart" + number || device.bus == "uart" + number;
+    if (device.type == "serial" && on_it) return &device;
+  }
+  return nullptr;
+}
+
+// Each end is a serial line of its own, of one rate.
+Result<Done> check_wires(const plan::Plan& plan, const std::vector<Node>& nodes) {
+  const auto wrong = [&plan](const std::string& what, const std::string& cure) {
+    return Error{ErrorKind::bad_input, plan.place, "wires: " + what, cure};
+  };
+  std::set<std::pair<std::size_t, std::uint16_t>> used;
+  for (const plan::PlanWire& wire : plan.wires) {
+    std::optional<KeyValue> bauds[2];
+    for (const auto& [end, baud] : {std::pair{wire.a, &bauds[0]}, std::pair{wire.b, &bauds[1]}}) {
+      const Node& node = nodes[end.node];
+      const std::string name = node.name + ".usart" + std::to_string(end.uart);
+      const BoardDevice* serial = serial_on(node.board, end.uart);
+      if (serial == nullptr) {
+        return wrong(name + " has no serial device on " + node.board.name,
+                     "a wire is joined where the board file has one");
+      }
+      if (!used.insert({end.node, end.uart}).second) {
+        return wrong(name + " is wired twice", "a UART has one other end");
+      }
+      *baud = serial->value("baud");
+    }
+    if (bauds[0] != bauds[1]) {
+      return wrong(nodes[wire.a.node].name + " and " + nodes[wire.b.node].name +
+                       " speak at different rates: on copper that is garbage",
+                   "");
+    }
+  }
+  return Done{};
+}
+
 // One board's target stands for itself.
 Result<std::unique_ptr<Target>> make_target(const plan::Plan& plan,
                                             const std::vector<Setup>& setups,
@@ -85,6 +127,11 @@ Result<Prepared> prepare(const plan::Plan& plan, const RunOptions& options,
     if (!vehicle) return vehicle.error();
     vehicle_file = shown_path(vehicle.value());
   }
+  if (options.gdb && plan.nodes.size() > 1) {
+    return Error{ErrorKind::bad_input, plan.place,
+                 "--gdb holds one board, and this plan has several",
+                 "run the board alone, in a plan of its own"};
+  }
   Prepared all;
   all.nodes.reserve(plan.nodes.size());  // the setups point at them
   for (std::size_t i = 0; i < plan.nodes.size(); ++i) {
@@ -93,10 +140,11 @@ Result<Prepared> prepare(const plan::Plan& plan, const RunOptions& options,
     const auto image = find_file(plan.nodes[i].image, who, image_folders(root), ".elf");
     if (!image) return image.error();
     all.nodes.push_back(std::move(node.value()));
-    const int port = options.gdb ? options.gdb_port + static_cast<int>(i) : 0;
+    const int port = options.gdb ? options.gdb_port : 0;
     all.setups.push_back({plan, i, all.nodes.back().board, root, image.value(), vehicle_file,
                           options.seed.value_or(plan.seed), port, options.settings});
   }
+  if (const auto joined = check_wires(plan, all.nodes); !joined) return joined.error();
   auto world = composition.world(all.setups.front());
   if (!world) return world.error();
   all.world = std::move(world.value());

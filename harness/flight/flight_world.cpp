@@ -194,9 +194,12 @@ Result<bool> FlightWorld::take_fault(const FaultSpec& fault) {
                    "motor = 1 to " + std::to_string(motors) + ", or the device that is its ESC"};
     }
   } else if (fault.kind == kSupply_dip) {
+    if (auto good = must_be_of_all(fault); !good) return good.error();
     const double start_s = static_cast<double>(fault.start_ns) * 1e-9;
     vehicle_.dip_supply(fault.value, start_s, static_cast<double>(fault.end_ns) * 1e-9 - start_s);
-  } else if (fault.kind != kCapture_lost) {
+  } else if (fault.kind == kCapture_lost) {
+    if (auto good = must_be_of_all(fault); !good) return good.error();
+  } else {
     return false;
   }
   faults_.add(fault);

@@ -7,9 +7,21 @@
 namespace whirl::lua {
 namespace {
 
+bool read_hexadecimal(const std::string& value, std::int64_t& into) {
+  if (!value.starts_with("0x") || value.size() < 3) return false;
+  const char* last = value.data() + value.size();
+  const auto [end, status] = std::from_chars(value.data() + 2, last, into, 16);
+  return status == std::errc() && end == last;
+}
+
 void assign(Node& node, const std::string& value) {
   node.fields.clear();
   node.list.clear();
+  if (read_hexadecimal(value, node.integer)) {
+    node.type = Node::Type::integer;
+    node.real = static_cast<double>(node.integer);
+    return;
+  }
   const auto [end, status] = std::from_chars(value.data(), value.data() + value.size(), node.real);
   if (value == "true" || value == "false") {
     node.type = Node::Type::boolean;
@@ -43,17 +55,18 @@ Node* child(Node& node, std::string_view name) {
 
 Result<Done> Table::put(std::string_view path, const std::string& value) {
   // The document is the caller's own: a table is a view of it that may be written through.
-  Node* node = &doc_->root;
-  for (std::string_view rest = path; !rest.empty();) {
+  Node* node = path.ends_with('.') ? nullptr : &doc_->root;
+  for (std::string_view rest = path; !rest.empty() && node != nullptr;) {
     const auto dot = rest.find('.');
     const std::string_view name = rest.substr(0, dot);
     rest = dot == std::string_view::npos ? std::string_view{} : rest.substr(dot + 1);
     const bool is_table = node->type == Node::Type::table;
     node = is_table && !name.empty() ? child(*node, name) : nullptr;
-    if (node == nullptr) {
-      return Error{ErrorKind::bad_input, file(),
-                   "--set: '" + std::string(path) + "' leads to nothing that can be set", ""};
-    }
+  }
+  if (node == nullptr) {
+    return Error{ErrorKind::bad_input, "",
+                 "--set: '" + std::string(path) + "' leads to nothing that can be set in " + file(),
+                 "a part of it is no table there, or a list has no such element"};
   }
   assign(*node, legal_text(value));
   return Done{};

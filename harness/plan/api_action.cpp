@@ -113,6 +113,11 @@ int fault(lua_State* L) {
   const Result<bool> taken = at.node == 0 ? self.stage().world.take_fault(fault) : false;
   if (!taken) raise(L, taken.error());
   if (!taken.value()) {
+    const bool named = asked.has("device") || asked.has("bus") || asked.has("function");
+    if (nodes.size() > 1 && !named) {
+      raise(L, "a fault of kind " + fault.kind + " is on one board of several",
+            "name it by its device, bus or function: bus = \"" + nodes[0].name + "/i2c1\"");
+    }
     if (!self.stage().offers.has(Offer::wire_faults)) {
       raise(L, "a fault of kind " + fault.kind + " asks for " + name(Offer::wire_faults) +
                    ", which this target does not offer");

@@ -182,6 +182,9 @@ int take_budget(lua_State* L) {
   const NodePlace at = node_at(L, self, b.function);
   b.node = at.node;
   b.number = self.stage().nodes[at.node].board.watch_number(at.rest);
+  if (b.busy && at.rest != "cpu") {
+    raise(L, "busy is of the core, not of '" + at.rest + "'", "t:budget(\"cpu\") { busy = ... }");
+  }
   if (calls && b.number < 0) {
     raise(L, "'" + b.function + "' is not watched",
           "add it to the watch list of the plan or board");
@@ -258,6 +261,7 @@ int bus(lua_State* L) {
     raise(L, name + " is on " + device->bus + ", not I2C or SPI");
   w.bus = numbered_bus(L, *device);
   w.address = w.spi ? board.number(at.rest) : device->address;
+  if (!w.spi && w.address < 0) raise(L, name + " has no address on its bus: nobody calls it");
   if (wish.has("direction")) {
     w.any_direction = false;
     w.read = wish.choice("direction", {"read", "write"}) == "read";

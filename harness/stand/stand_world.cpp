@@ -195,6 +195,7 @@ Result<Done> StandWorld::disturb(const Disturbance& disturbance, std::int64_t no
 
 Result<bool> StandWorld::take_fault(const FaultSpec& fault) {
   if (fault.kind != kSupply_dip) return false;
+  if (auto good = must_be_of_all(fault); !good) return good.error();
   faults_.add(fault);
   return true;
 }

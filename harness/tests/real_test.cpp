@@ -175,6 +175,61 @@ TEST_F(Real, JobsComeBackWhole) {
   EXPECT_EQ(std::distance(fs::directory_iterator(out + "/runs"), fs::directory_iterator()), 4);
 }
 
+// Two boards: what joins them wrongly, and what no board of them is meant by.
+TEST_F(Real, NodesThatAreWrongAreRefused) {
+  const std::string esc = "image = 'esc', board = 'esc32v2' }";
+  const std::string nodes = "nodes = { { name = 'a', " + esc + ", { name = 'b', " + esc + " }";
+  const auto refuse = [&](const std::string& wires, const std::string& body,
+                          const std::string& words) {
+    write("n.lua", "plan 'n' { " + nodes + ", " + wires +
+                       " stand = { prop = 'hk_10x4.5', supply = '16 V' }," +
+                       " timeout = '2 s', run = function(t) t:wait '10 ms' " + body + " end }");
+    expect_told(whirl("run " + folder_.file("n.lua")), 2, words);
+  };
+  const std::string good = "{ from = 'a.usart1', to = 'b.usart1' }";
+  refuse("wires = { { from = 'a.usart2', to = 'b.usart1' } },", "",
+         "a.usart2 has no serial device");
+  refuse("wires = { " + good + ", " + good + " },", "", "a.usart1 is wired twice");
+  refuse("wires = { { from = 'a.usart1', to = 'a.usart1' } },", "", "a wire joins two boards");
+  refuse("wires = { { from = 'c.usart1', to = 'a.usart1' } },", "",
+         "'c.usart1' is no UART of a node");
+  refuse("", "t:budget('fw::esc::control_task') { response = '1 s' }",
+         "names no board of this plan");
+  refuse("", "t:fault { kind = 'uart_loss' }", "is on one board of several");
+  refuse("", "t:fault { kind = 'supply_dip', motor = 1, value = '1 V' }", "has no place");
+  refuse("", "t:budget('b/') { busy = '9 %' }", "names no board of this plan");
+  write("n.lua",
+        "plan 'n' { nodes = { { name = 'a', " + esc +
+            ", { name = 'b', image = 'timing_f405', board = 'timing_f405' } }, wires = { { from = "
+            "'a.usart1', to = 'b.usart2' } }, stand = { prop = 'hk_10x4.5', supply = '16 V' }, "
+            "run = function(t) end }");
+  expect_told(whirl("run " + folder_.file("n.lua")), 2, "speak at different rates");
+  expect_told(whirl("run --gdb " + folder_.file("n.lua")), 2, "--gdb holds one board");
+}
+
+// Neither an ESC without a motor, nor a motor that nothing can ever turn.
+TEST_F(Real, MotorsAndEscsMustFit) {
+  std::ifstream in(std::string(WHIRL_ROOT) + "/test_plans/vehicles/hp_quad.lua");
+  std::string quad((std::istreambuf_iterator<char>(in)), {});
+  const auto way_up = quad.find("../propellers");
+  ASSERT_NE(way_up, std::string::npos);
+  quad.replace(way_up, 2, std::string(WHIRL_ROOT) + "/test_plans");
+  const auto arm = quad.find("arm =");
+  ASSERT_NE(arm, std::string::npos);
+  const auto with = [&](const std::string& motors) {
+    std::string text = quad;
+    text.replace(arm, text.find('\n', arm) - arm, "motors = { " + motors + " },");
+    write("few.lua", text);
+    return run("flight", kSecond, folder_.file("few.lua"));
+  };
+  const auto motor = [](int i) {
+    return "{ place = { forward = '" + std::to_string(20 * i) +
+           " cm', right = '0 m' }, spin = 'ccw' }, ";
+  };
+  expect_told(with(motor(0)), 2, "ESC of motor 2 has no motor");
+  expect_told(with(motor(0) + motor(1) + motor(2) + motor(3) + motor(4)), 2, "motor 5 has no ESC");
+}
+
 TEST_F(Real, AMissingImageIsNamed) {
   expect_told(run("nowhere", kSecond), 2, "'nowhere' is not there");
 }

@@ -12,6 +12,13 @@ std::string target_of(const FaultSpec& fault) {
   return "";
 }
 
+Result<Done> must_be_of_all(const FaultSpec& fault) {
+  if (std::holds_alternative<fault_at::Anywhere>(fault.place)) return Done{};
+  return Error{ErrorKind::bad_input, "",
+               "a fault of kind " + fault.kind + " has no place: it meets all",
+               "leave device, bus, motor and function out"};
+}
+
 int motor_of(const FaultSpec& fault) {
   if (const auto* motor = std::get_if<fault_at::Motor>(&fault.place)) return motor->number;
   if (const auto* device = std::get_if<fault_at::Device>(&fault.place)) return device->motor;

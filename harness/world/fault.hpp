@@ -7,6 +7,8 @@
 #include <variant>
 #include <vector>
 
+#include "base/result.hpp"
+
 namespace whirl {
 
 namespace fault_at {
@@ -50,6 +52,9 @@ struct FaultSpec {
 
 std::string target_of(const FaultSpec& fault);  // for people: "esc2", "motor 3"; empty: anywhere
 int motor_of(const FaultSpec& fault);           // the motor, or that of the device; 0: none
+
+// Errors  bad_input: a place is named, and what fails is one for all (the supply, the cameras)
+Result<Done> must_be_of_all(const FaultSpec& fault);
 
 // The faults that a world applies, from when to when, and which of them have acted.
 class TimedFaults {

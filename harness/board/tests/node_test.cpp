@@ -13,6 +13,8 @@ TEST(NodePlace, TheOnlyBoardNeedsNoName) {
   EXPECT_EQ(node_place(named, "imu").value().rest, "imu");
   EXPECT_EQ(node_place(named, "esc/imu").value().rest, "imu");
   EXPECT_FALSE(node_place(named, "fc/imu").ok());
+  EXPECT_FALSE(node_place(named, "").ok());
+  EXPECT_FALSE(node_place(one, "").ok());
 }
 
 TEST(NodePlace, OfSeveralOneIsNamed) {
@@ -21,7 +23,7 @@ TEST(NodePlace, OfSeveralOneIsNamed) {
   ASSERT_TRUE(at.ok());
   EXPECT_EQ(at.value().node, 1u);
   EXPECT_EQ(at.value().rest, "fw::esc::control_task");
-  for (const char* wrong : {"imu", "gps/imu", "/imu", ""}) {
+  for (const char* wrong : {"imu", "gps/imu", "/imu", "esc/"}) {
     const auto none = node_place(two, wrong);
     ASSERT_FALSE(none.ok()) << wrong;
     EXPECT_NE(none.error().cure.find("fc, esc"), std::string::npos) << none.error().cure;

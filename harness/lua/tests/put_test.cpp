@@ -19,6 +19,8 @@ TEST(Put, AValueTakesThePlaceOfTheFiles) {
   EXPECT_NEAR(t.table("motor").quantity("resistance", Dimension::resistance), 0.09, 1e-12);
   EXPECT_EQ(t.table("motor").tables("list")[1].integer("a"), 7);
   EXPECT_TRUE(t.flag_or("swap", false));
+  ASSERT_TRUE(t.put("address", "0x2A").ok());
+  EXPECT_EQ(t.integer("address"), 42);
   std::ignore = t.table("motor").tables("list")[0].integer("a");
   EXPECT_TRUE(t.finish().ok());
 }
@@ -33,7 +35,8 @@ TEST(Put, AKeyThatNobodyReadsIsRefusedAsInTheFile) {
 
 TEST(Put, APathToNothingIsRefused) {
   Table t = motor();
-  for (const char* path : {"motor.list.3.a", "motor.list.0.a", "motor.kv.unit", "motor..kv", "."}) {
+  for (const char* path :
+       {"motor.list.3.a", "motor.list.0.a", "motor.kv.unit", "motor..kv", ".", "motor.kv."}) {
     EXPECT_FALSE(t.put(path, "1").ok()) << path;
   }
 }
