@@ -72,6 +72,7 @@ endfunction()
 # gate). All other tests are built and run under the sanitizers only.
 add_custom_target(whirl_program)
 add_custom_target(whirl_host_tests)
+add_custom_target(whirl_unit_tests)
 
 function(whirl_test name)
   cmake_parse_arguments(ARG "HEAVY" "TIMEOUT;COST" "SOURCES;LINK;LABELS" ${ARGN})
@@ -94,5 +95,8 @@ function(whirl_test name)
   endif()
   if("host" IN_LIST ARG_LABELS)
     add_dependencies(whirl_host_tests ${name})
+    target_compile_options(${name} PRIVATE -O0)  # they wait for what they start
+  else()
+    add_dependencies(whirl_unit_tests ${name})
   endif()
 endfunction()
