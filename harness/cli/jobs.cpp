@@ -63,14 +63,14 @@ Job job_of(const PlanChoice& plan, const RunOptions& options, const std::string&
   if (core >= 0) keep_to(core);
   setpgid(0, 0);  // a terminal's interrupt reaches it through the parent, once
   lseek(job, 0, SEEK_SET);
-  dup2(job, STDIN_FILENO);
-  dup2(output, STDOUT_FILENO);
-  dup2(output, STDERR_FILENO);
-  // The last one: what has its number by chance is not needed any more.
-  if (report == kReport_fd) {
-    fcntl(report, F_SETFD, 0);
-  } else {
-    dup2(report, kReport_fd);
+  // The report last: what has its number by chance is not needed any more.
+  const bool report_stays = report == kReport_fd;
+  const bool placed = dup2(job, STDIN_FILENO) >= 0 && dup2(output, STDOUT_FILENO) >= 0 &&
+                      dup2(output, STDERR_FILENO) >= 0 &&
+                      (report_stays ? fcntl(report, F_SETFD, 0) : dup2(report, kReport_fd)) >= 0;
+  if (!placed) {
+    dprintf(output, "whirl: a process cannot be given its files: %s\n", std::strerror(errno));
+    _exit(3);
   }
   std::vector<std::string> words{"whirl", "job"};
   std::vector<char*> argv = argv_of(words);
