@@ -10,11 +10,15 @@ namespace whirl::catalogue {
 namespace {
 
 // Only what the plan has written goes to the board: the rest is the board's own.
-void read_stage_motor(const lua::Table& t, stand::StageParams& stage) {
-  const plant::MotorParams m = read_motor(t, MissingKeys::as_in_plant);
-  const auto pass = [&](const char* key, const char* name, double value) {
+auto passing(const lua::Table& t, stand::StageParams& stage) {
+  return [&](const char* key, const char* name, double value) {
     if (t.has(key)) stage[name] = value;
   };
+}
+
+void read_stage_motor(const lua::Table& t, stand::StageParams& stage) {
+  const plant::MotorParams m = read_motor(t, MissingKeys::as_in_plant);
+  const auto pass = passing(t, stage);
   pass("kv_rpm_per_V", "torque_constant", m.torque_constant_NmpA);
   pass("resistance", "resistance", m.resistance_ohm);
   pass("resistance_fitted_at", "resistance", m.resistance_ohm);
@@ -29,9 +33,7 @@ void read_stage_motor(const lua::Table& t, stand::StageParams& stage) {
 
 void read_stage_shunt(const lua::Table& t, stand::StageParams& stage) {
   const plant::CurrentShuntParams s = read_shunt(t);
-  const auto pass = [&](const char* key, const char* name, double value) {
-    if (t.has(key)) stage[name] = value;
-  };
+  const auto pass = passing(t, stage);
   pass("gain", "shunt.gain_error", s.gain_error);
   pass("gain_tolerance", "shunt.gain", s.gain_tolerance);
   pass("offset", "shunt.offset", s.offset_low_A);

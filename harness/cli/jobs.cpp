@@ -90,19 +90,6 @@ pid_t start(const Job& job, const Child& child, int core) {
   return pid < 0 ? 0 : pid;
 }
 
-const char* verdict_word(int code) {
-  switch (code) {
-    case 0:
-      return "PASS";
-    case 1:
-      return "FAIL";
-    case 3:
-      return "INCONCLUSIVE";
-    default:
-      return "ERROR";
-  }
-}
-
 int code_of(int status) {
   if (WIFEXITED(status)) return WEXITSTATUS(status);
   return is_from_outside(WTERMSIG(status)) ? 3 : 4;
@@ -159,9 +146,8 @@ class Jobs {
     }
     const int why = errno;
     if (!running_.empty()) return false;
-    const std::string what = std::string("cannot start a process for it: ") + std::strerror(why);
-    std::printf("INCONCLUSIVE %s\n       %s\n", plan.name.c_str(), what.c_str());
-    outcomes_.add_lost(plan.name, plan.file, 3, what);
+    outcomes_.add_lost(plan.name, plan.file, 3,
+                       std::string("cannot start a process for it: ") + std::strerror(why));
     ++next_;
     return true;
   }
@@ -212,8 +198,6 @@ class Jobs {
       what = "its report " + (unread.empty() ? "was not written" : "cannot be read: " + unread);
     }
     if (code == 0) code = 3;  // its line in the history is lost
-    std::printf("%s %s\n       %s\n", verdict_word(code), plan.name.c_str(), what.c_str());
-    std::fflush(stdout);
     outcomes_.add_lost(plan.name, plan.file, code, what);
   }
 

@@ -62,7 +62,9 @@ void Outcomes::add_refused(const Error& error) {
 
 void Outcomes::add_lost(const std::string& plan, const std::string& file_name, int code,
                         const std::string& what) {
-  file(without_run(plan, file_name, {blame_for(code), what}), code);
+  const results::Report report = without_run(plan, file_name, {blame_for(code), what});
+  print(outcome({report, ""}));
+  file(report, code);
 }
 
 // What only the merged file shows must not fill the memory of a night of runs.

@@ -19,7 +19,7 @@ class Outcomes {
   // A plan file that cannot be read: a testcase, and the error on standard error.
   void add_refused(const Error& error);
   void add_not_run(std::size_t plans) { tally_.add_not_run(plans); }
-  // Of a process without a report: its plan is a testcase all the same.
+  // Of a process without a report: told, and a testcase, all the same.
   void add_lost(const std::string& plan, const std::string& file, int code,
                 const std::string& what);
 

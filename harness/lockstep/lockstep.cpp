@@ -35,17 +35,16 @@ Result<TargetState> Lockstep::step(const std::function<void(const io::Batch&)>& 
   return *arrived;
 }
 
+// Of one board, as most runs are, nothing is copied.
 const io::Batch& Lockstep::of_first_board() {
-  of_first_.clear();
   bool others = false;
+  for (io::Reader r(happened_.bytes()); !others && r.next();) others = r.header().board != 0;
+  if (!others) return happened_;
+  of_first_.clear();
   for (io::Reader r(happened_.bytes()); r.next();) {
-    if (r.header().board == 0) {
-      of_first_.add(r.header(), r.payload());
-    } else {
-      others = true;
-    }
+    if (r.header().board == 0) of_first_.add(r.header(), r.payload());
   }
-  return others ? of_first_ : happened_;
+  return of_first_;
 }
 
 void Lockstep::stop() {

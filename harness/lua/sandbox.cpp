@@ -36,7 +36,8 @@ struct Sandbox::Inner {
   std::size_t longest_text_B = 0;
   void* owner = nullptr;
   Error thrown{ErrorKind::internal, "", "an exception passed through a plan", ""};
-  fs::path root;  // include stays below it
+  fs::path root;       // include stays below it
+  std::string source;  // of the file
 
   static void* allocate(void* ud, void* block, std::size_t old_size, std::size_t size) {
     auto* self = static_cast<Inner*>(ud);
@@ -200,9 +201,14 @@ void* Sandbox::owner(lua_State* L) {
 Result<Done> Sandbox::run_file(const std::string& path) {
   std::error_code status;
   inner_->root = fs::absolute(path, status).parent_path();
-  const auto text = read_whole_file(path);
+  auto text = read_whole_file(path);
   if (!text) return text.error();
-  return run_text(text.value(), path);
+  inner_->source = std::move(text.value());
+  return run_text(inner_->source, path);
+}
+
+const std::string& Sandbox::source() const {
+  return inner_->source;
 }
 
 Result<Done> Sandbox::run_text(const std::string& text, const std::string& name) {

@@ -47,6 +47,7 @@ class Sandbox {
 
   // Loads and runs a chunk; what it returns (one value) is left on the stack.
   Result<Done> run_file(const std::string& path);
+  const std::string& source() const;  // of that file; its own while it runs, too
   Result<Done> run_text(const std::string& text, const std::string& name);
 
   // Runs this with so many values of the main stack's top as its own. Whatever it raises is an Error.

@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "harness/plan/bus_name.hpp"
+#include "harness/plan/needs.hpp"
 #include "harness/plan/raise.hpp"
 #include "harness/plan/requests.hpp"
 #include "harness/plan/values.hpp"
@@ -119,8 +120,7 @@ int fault(lua_State* L) {
             "name it by its device, bus or function: bus = \"" + nodes[0].name + "/i2c1\"");
     }
     if (!self.stage().offers.has(Offer::wire_faults)) {
-      raise(L, "a fault of kind " + fault.kind + " asks for " + name(Offer::wire_faults) +
-                   ", which this target does not offer");
+      raise(L, not_offered("a fault of kind " + fault.kind, Offer::wire_faults));
     }
     if (auto sent = self.stage().inject(fault); !sent) raise(L, sent.error());
   }

@@ -111,7 +111,7 @@ std::string on_node(lua_State* L, Script& self, std::size_t node, const std::str
 void must_offer(lua_State* L, Script& self, const std::string& call) {
   for (const Offer offer : needs_of_call(call)) {
     if (self.stage().offers.has(offer)) continue;
-    raise(L, "t:" + call + " asks for " + name(offer) + ", which this target does not offer");
+    raise(L, not_offered("t:" + call, offer));
   }
 }
 

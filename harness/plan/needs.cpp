@@ -23,12 +23,14 @@ std::vector<Need> needs_of(const Plan& plan) {
   return needs;
 }
 
+std::string not_offered(const std::string& what, Offer offer) {
+  return what + " asks for " + name(offer) + ", which this target does not offer";
+}
+
 Result<Done> check_offers(const Plan& plan, const Offers& offers) {
   for (const Need& need : needs_of(plan)) {
     if (offers.has(need.offer)) continue;
-    return Error{ErrorKind::bad_input, need.place,
-                 need.what + " asks for " + name(need.offer) + ", which this target does not offer",
-                 ""};
+    return Error{ErrorKind::bad_input, need.place, not_offered(need.what, need.offer), ""};
   }
   return Done{};
 }

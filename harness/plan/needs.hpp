@@ -21,6 +21,9 @@ std::vector<Offer> needs_of_call(const std::string& call);
 // By its keys and by the calls in its function's text.
 std::vector<Need> needs_of(const Plan& plan);
 
+// In one sentence, for who asks: "t:budget".
+std::string not_offered(const std::string& what, Offer offer);
+
 // Errors  bad_input, with the plan's line: the first need that is not met
 Result<Done> check_offers(const Plan& plan, const Offers& offers);
 

@@ -5,7 +5,6 @@
 #include <lua.hpp>
 
 #include "base/text.hpp"
-#include "base/whole_file.hpp"
 #include "harness/lua/node.hpp"
 #include "harness/plan/bus_name.hpp"
 #include "harness/plan/raise.hpp"
@@ -172,7 +171,8 @@ int PlanFile::take(lua_State* L) {
   plan.value().run_ref = run_ref;
   // A function of another file has no calls here; they are checked when they are made.
   if (is_of_file(run, self->path_)) {
-    plan.value().calls = source_calls(self->source_, run.linedefined, run.lastlinedefined);
+    plan.value().calls =
+        source_calls(self->sandbox_.source(), run.linedefined, run.lastlinedefined);
   }
   self->plans_.push_back(std::move(plan.value()));
   return 0;
@@ -181,9 +181,6 @@ int PlanFile::take(lua_State* L) {
 Result<std::unique_ptr<PlanFile>> PlanFile::load(const std::string& path, lua::Limits limits,
                                                  const Settings& settings) {
   std::unique_ptr<PlanFile> file(new PlanFile(path, limits, settings));
-  auto source = read_whole_file(path);
-  if (!source) return source.error();
-  file->source_ = std::move(source.value());
   file->sandbox_.set_owner(file.get());
   const auto registered =
       file->sandbox_.protect(0, [](lua_State* L) { lua_register(L, "plan", declare); });

@@ -69,7 +69,7 @@ class PlanFile {
   static int declare(lua_State* L);
   static int take(lua_State* L);
 
-  std::string path_, source_;
+  std::string path_;
   Settings settings_;
   lua::Sandbox sandbox_;
   std::vector<Plan> plans_;

@@ -6,6 +6,8 @@
 #include <set>
 #include <utility>
 
+#include "base/json_text.hpp"
+
 namespace whirl {
 namespace {
 
@@ -34,7 +36,7 @@ bool read_whole(const json& value, T& into) {
 
 // A text of the user's may be long, and no UTF-8.
 std::string shown(const json& value) {
-  return value.dump(-1, ' ', false, json::error_handler_t::replace).substr(0, 40);
+  return text_of(value, -1, NoUtf8::replace).substr(0, 40);
 }
 
 // One object: which keys were asked for, and the first thing in the text that is wrong.
@@ -195,11 +197,11 @@ std::string board_text(const BoardStart& start) {
     out["pins"].push_back(
         {{"name", pin.name}, {"pin", pin.pin}, {"pull", pin.pull}, {"bus", pin.bus}});
   }
-  return out.dump(1, ' ', false, json::error_handler_t::replace);
+  return text_of(out, 1, NoUtf8::replace);
 }
 
 Result<BoardStart> read_board_text(std::string_view text) {
-  const json top = json::parse(text, nullptr, false);
+  const json top = parse_json(text);
   if (!top.is_object()) return Error{ErrorKind::bad_input, "board", "is not a JSON object", ""};
   Error first;
   Keys keys(top, "", first);
