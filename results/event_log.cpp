@@ -1,9 +1,6 @@
 #include "results/event_log.hpp"
 
-#include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <fstream>
 
 namespace whirl::results {
 namespace {
@@ -20,18 +17,10 @@ TextRecord finding_of(std::int64_t t_ns, const std::string& text) {
 
 }  // namespace
 
-std::size_t EventLog::keep(std::span<const std::uint8_t> data) {
-  const std::size_t first = bytes.size();
-  bytes.insert(bytes.end(), data.begin(), data.end());
-  return first;
-}
-
 void EventLog::add_bus(const io::Reader& reader, bool spi) {
   const auto head = reader.as<io::BusTransaction>();
-  const auto tail = reader.tail_after(sizeof head);
   bus.push_back({spi, reader.header().port, head.address, head.read != 0, head.acked != 0,
-                 head.length, head.start_ns, reader.header().t_ns, keep(tail),
-                 static_cast<std::uint32_t>(tail.size())});
+                 head.length, head.start_ns, reader.header().t_ns});
 }
 
 bool EventLog::add(const io::Batch& batch) {
@@ -48,11 +37,6 @@ void EventLog::add(const io::Reader& reader) {
       break;
     case io::Kind::spi_transaction:
       add_bus(reader, true);
-      break;
-    case io::Kind::uart_frame:
-    case io::Kind::uart_received:
-      uart.push_back({header.port, header.kind == io::Kind::uart_frame, header.t_ns,
-                      keep(reader.payload()), header.size});
       break;
     case io::Kind::data_ready:
       data_ready_ns[header.port].push_back(header.t_ns);
@@ -103,7 +87,11 @@ void EventLog::add(const io::Reader& reader) {
     case io::Kind::i2c_reply:
     case io::Kind::shoot_through:
     case io::Kind::uart_delivered:
-      break;  // truth.csv, the bus log and the findings have them
+    case io::Kind::uart_frame:
+    case io::Kind::uart_received:
+    case io::Kind::pin_edge:
+    case io::Kind::signals:
+      break;  // no window asks for them
     case io::Kind::interrupt_latency: {
       const double took_ns = static_cast<double>(header.t_ns) -
                              static_cast<double>(reader.as<io::InterruptLatency>().raised_ns);
@@ -126,61 +114,6 @@ double EventLog::busy_share(std::int64_t from_ns, std::int64_t to_ns) const {
     used += static_cast<double>(piece.busy_ns);
   }
   return all > 0.0 ? used / all : std::nan("");
-}
-
-Result<Done> EventLog::write_bus_csv(const std::string& path) const {
-  std::ofstream out(path, std::ios::binary);
-  out << "start_s,stop_s,bus,address,direction,acknowledged,length,bytes\n";
-  std::string line;
-  char text[96];
-  for (const BusRecord& r : bus) {
-    std::snprintf(text, sizeof text, "%.9f,%.9f,%s%d,0x%02X,%s,%d,%u,",
-                  static_cast<double>(r.start_ns) * 1e-9, static_cast<double>(r.stop_ns) * 1e-9,
-                  r.spi ? "spi" : "i2c", r.bus, r.address,
-                  r.spi ? "both" : (r.read ? "read" : "write"), r.acked ? 1 : 0, r.length);
-    line = text;
-    for (std::uint32_t i = 0; i < r.kept; ++i) {
-      static constexpr char kHex[] = "0123456789ABCDEF";
-      const std::uint8_t byte = bytes[r.first_byte + i];
-      line += kHex[byte >> 4];
-      line += kHex[byte & 15];
-    }
-    line += '\n';
-    out << line;
-  }
-  if (!out.flush()) return Error{ErrorKind::host, path, "cannot be written", "is the disk full?"};
-  return Done{};
-}
-
-// A radio hands over whole frames, and a frame begins with the mark of MAVLink 1 or 2.
-bool EventLog::speaks_mavlink() const {
-  return std::all_of(uart.begin(), uart.end(), [this](const UartRecord& r) {
-    return r.sent || r.length == 0 || bytes[r.first_byte] == 0xFD || bytes[r.first_byte] == 0xFE;
-  });
-}
-
-std::string EventLog::bus_name() const {
-  return "bus" + (node.empty() ? "" : "_" + node) + ".csv";
-}
-
-std::string EventLog::telemetry_name() const {
-  const std::string whose = node.empty() ? "" : "_" + node;
-  return speaks_mavlink() ? "telemetry" + whose + ".tlog" : "serial" + whose + ".txt";
-}
-
-Result<Done> EventLog::write_telemetry(const std::string& path) const {
-  const bool mavlink = speaks_mavlink();
-  std::ofstream out(path, std::ios::binary);
-  for (const UartRecord& r : uart) {
-    if (r.sent) continue;
-    const std::uint64_t t_us = static_cast<std::uint64_t>(r.t_ns) / 1000;
-    for (int shift = 56; mavlink && shift >= 0; shift -= 8) {
-      out.put(static_cast<char>(t_us >> shift));
-    }
-    out.write(reinterpret_cast<const char*>(bytes.data() + r.first_byte), r.length);
-  }
-  if (!out.flush()) return Error{ErrorKind::host, path, "cannot be written", "is the disk full?"};
-  return Done{};
 }
 
 }  // namespace whirl::results

@@ -1,11 +1,11 @@
-// Everything that crossed the boundary in a run, decoded once: bus traffic, calls, interrupts, faults.
+// What a run's windows and tables are judged by, decoded as it crosses: when transfers, calls and
+// interrupts came, and what the board said of itself. Bytes are in the run's file of messages only.
 #pragma once
 #include <cstdint>
 #include <map>
 #include <string>
 #include <vector>
 
-#include "base/result.hpp"
 #include "io_bridges/messages/messages.hpp"
 
 namespace whirl::results {
@@ -19,8 +19,6 @@ struct BusRecord {
   std::uint32_t length = 0;
   std::int64_t start_ns = 0;
   std::int64_t stop_ns = 0;
-  std::size_t first_byte = 0;  // into EventLog::bytes
-  std::uint32_t kept = 0;
 };
 
 struct CallRecord {
@@ -40,14 +38,6 @@ struct LatencyRecord {
 
 struct BusyRecord {
   std::int64_t from_ns = 0, to_ns = 0, busy_ns = 0;
-};
-
-struct UartRecord {
-  std::uint16_t port = 0;
-  bool sent = false;  // to the board
-  std::int64_t t_ns = 0;
-  std::size_t first_byte = 0;
-  std::uint32_t length = 0;
 };
 
 struct TextRecord {
@@ -74,14 +64,11 @@ struct ClockRecord {
 
 class EventLog {
  public:
-  std::string node;  // whose board it was, for the names of files; empty: the only one's
-
   // Takes a batch of either direction; false: it was cut short, which no target may do.
   bool add(const io::Batch& batch);
   void add(const io::Reader& message);  // where the reader stands
 
   std::vector<BusRecord> bus;
-  std::vector<UartRecord> uart;
   std::map<std::uint16_t, std::vector<CallRecord>> calls;            // by watch number
   std::map<std::uint16_t, LatencyRecord> latencies;                  // by exception number
   std::map<std::uint16_t, std::vector<std::int64_t>> open_calls_ns;  // entries: never returned
@@ -92,23 +79,12 @@ class EventLog {
   std::vector<ResetRecord> resets;
   std::vector<BusyRecord> busy;
   std::vector<ClockRecord> clocks;  // each change
-  std::vector<std::uint8_t> bytes;
   std::string statistics;
 
   // Share of [from, to] outside of sleep, from the pieces that lie wholly inside; NaN without any.
   double busy_share(std::int64_t from_ns, std::int64_t to_ns) const;
 
-  Result<Done> write_bus_csv(const std::string& path) const;
-  // What the board sent on a UART. MAVLink is telemetry.tlog, framed as it came: time in us
-  // (big-endian u64) before each chunk of one message, as ground stations keep their logs. Anything
-  // else is serial.txt, byte for byte.
-  std::string bus_name() const;
-  std::string telemetry_name() const;
-  Result<Done> write_telemetry(const std::string& path) const;
-
  private:
-  bool speaks_mavlink() const;
-  std::size_t keep(std::span<const std::uint8_t> data);
   void add_bus(const io::Reader& reader, bool spi);
 };
 

@@ -10,8 +10,11 @@
 #include <cstring>
 #include <ctime>
 #include <filesystem>
-#include <fstream>
 #include <utility>
+
+#include "base/output_file.hpp"
+#include "results/sinks/replay.hpp"
+#include "results/sinks/sink_types.hpp"
 
 namespace whirl::results {
 namespace {
@@ -95,17 +98,6 @@ Result<std::string> RunFolder::publish(const std::string& mark) {
                "they are in " + path_};
 }
 
-Result<Done> write_text(const std::string& path, const std::string& text) {
-  std::ofstream out(path, std::ios::binary);
-  out << text;
-  out.close();
-  if (out) return Done{};
-  const std::string why = std::strerror(errno);
-  std::error_code ignored;
-  fs::remove(path, ignored);
-  return Error{ErrorKind::host, path, "cannot be written: " + why, "is the disk full?"};
-}
-
 namespace {
 
 // Writes files one after the other; one that cannot be written whole is a reason of the report.
@@ -113,17 +105,12 @@ class Filing {
  public:
   Filing(const RunFolder& folder, Report& report) : folder_(folder), report_(report) {}
 
-  template <typename Write>
-  void keep(const std::string& name, Write write) {
-    const Result<Done> written = write(folder_.file(name));
-    if (written) return;
-    whole_ = false;
-    std::error_code ignored;
-    fs::remove(folder_.file(name), ignored);  // half of it would only take room
-    report_.reasons.push_back({Blame::host, "results lost: " + written.error().message()});
+  void keep(const std::string& name, const std::string& text) {
+    if (const auto written = write_text(folder_.file(name), text); !written) lose(written.error());
   }
-  void keep_text(const std::string& name, const std::string& text) {
-    keep(name, [&](const std::string& path) { return write_text(path, text); });
+  void lose(const Error& error) {
+    whole_ = false;
+    report_.reasons.push_back({Blame::host, "results lost: " + error.message()});
   }
   bool whole() const { return whole_; }
 
@@ -133,26 +120,45 @@ class Filing {
   bool whole_ = true;
 };
 
+// The files that each run has of its messages, and the curves of its page.
+Curves keep_messages(const RunFolder& folder, MessageWriter& messages, Filing& filing) {
+  Curves curves(messages.head().columns, messages.head().step_ns, messages.rows());
+  if (const auto written = messages.finish(); !written) {
+    filing.lose(written.error());
+    return curves;
+  }
+  std::vector<SinkType> types;
+  for (const SinkType& type : sink_types()) {
+    if (type.in_each_run) types.push_back(type);
+  }
+  const auto made = replay(folder.messages(), folder.path(), types, {&curves});
+  if (!made) {
+    filing.lose(made.error());
+    return curves;
+  }
+  for (const Error& lost : made.value().lost) filing.lose(lost);
+  if (made.value().damage) filing.lose(*made.value().damage);
+  return curves;
+}
+
+void keep_page(const Report& report, const Curves& curves, Filing& filing) {
+  filing.keep("junit.xml", junit_xml({&report}));
+  filing.keep("index.html", page_html(report, curves));
+}
+
 }  // namespace
 
-bool write_run(const RunFolder& folder, Report& report, const TruthLog& truth,
-               const std::vector<EventLog>& logs) {
+bool write_run(const RunFolder& folder, Report& report, MessageWriter& messages) {
   const auto begin = std::chrono::steady_clock::now();
   Filing filing(folder, report);
-  filing.keep("truth.csv", [&](const std::string& path) { return truth.write_csv(path); });
-  for (const EventLog& log : logs) {
-    filing.keep(log.bus_name(), [&](const std::string& path) { return log.write_bus_csv(path); });
-    filing.keep(log.telemetry_name(),
-                [&](const std::string& path) { return log.write_telemetry(path); });
-  }
+  const Curves curves = keep_messages(folder, messages, filing);
   conclude(report);  // what was lost is in what follows
-  filing.keep_text("junit.xml", junit_xml({&report}));
-  filing.keep_text("index.html", page_html(report, truth));
+  keep_page(report, curves, filing);
   report.host.results_s =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   report.host.total_s += report.host.results_s;  // a run is not over before it is filed
   conclude(report);
-  filing.keep_text("run.json", run_json(report));
+  filing.keep("run.json", run_json(report));
   conclude(report);
   return filing.whole();
 }
@@ -160,9 +166,8 @@ bool write_run(const RunFolder& folder, Report& report, const TruthLog& truth,
 bool write_refusal(const RunFolder& folder, Report& report) {
   conclude(report);
   Filing filing(folder, report);
-  filing.keep_text("junit.xml", junit_xml({&report}));
-  filing.keep_text("index.html", page_html(report, TruthLog({}, 1'000'000)));
-  filing.keep_text("run.json", run_json(report));
+  keep_page(report, Curves(), filing);
+  filing.keep("run.json", run_json(report));
   conclude(report);
   return filing.whole();
 }

@@ -1,8 +1,8 @@
 // The folder of one run: RESULTS/runs/<time>-<plan>/ and the link `latest` beside it.
 //
-//   Files     run.json, junit.xml, index.html, truth.csv, bus.csv,
-//             telemetry.tlog (serial.txt where it is no MAVLink); of nodes with names bus_NODE.csv and
-//             telemetry_NODE.tlog
+//   Files     messages.whirl (results/messages/message_file.hpp) and what is made of it: index.html,
+//             truth.csv, bus.csv, telemetry.tlog (serial.txt where it is no MAVLink); of nodes with
+//             names bus_NODE.csv and telemetry_NODE.tlog. run.json, junit.xml
 //   Name      from the host's clock; a second run within one second gets a number
 //   Whole     it is written as .unfinished-..., and gets its name by one rename when all is in it. A
 //             run that was interrupted ends in "-interrupted", one that lost a file in "-incomplete".
@@ -13,9 +13,9 @@
 #include <vector>
 
 #include "base/result.hpp"
-#include "results/event_log.hpp"
+#include "results/messages/message_file.hpp"
 #include "results/report.hpp"
-#include "results/truth_log.hpp"
+#include "results/sinks/curves.hpp"
 
 namespace whirl::results {
 
@@ -28,6 +28,8 @@ class RunFolder {
   RunFolder& operator=(const RunFolder&) = delete;
 
   std::string file(const std::string& name) const { return path_ + "/" + name; }
+  std::string messages() const { return file("messages.whirl"); }
+  const std::string& path() const { return path_; }
   // Gives it its name and points `latest` at it. Returns the path.
   Result<std::string> publish(const std::string& mark);
 
@@ -39,8 +41,7 @@ class RunFolder {
 
 // All files but those that need the whole history. What is lost becomes a reason of the report, which
 // is concluded anew; false then. Fills Report::host.results_s before run.json.
-bool write_run(const RunFolder& folder, Report& report, const TruthLog& truth,
-               const std::vector<EventLog>& logs);
+bool write_run(const RunFolder& folder, Report& report, MessageWriter& messages);
 
 // Of a run that was refused before it began: run.json, junit.xml and the page with the reason.
 bool write_refusal(const RunFolder& folder, Report& report);
@@ -48,9 +49,6 @@ bool write_refusal(const RunFolder& folder, Report& report);
 // The parts, for tests and for --json.
 std::string run_json(const Report& report);
 std::string junit_xml(const std::vector<const Report*>& reports);
-std::string page_html(const Report& report, const TruthLog& truth);
-
-// Nothing is left of a file that could not be written whole.
-Result<Done> write_text(const std::string& path, const std::string& text);
+std::string page_html(const Report& report, const Curves& curves);
 
 }  // namespace whirl::results

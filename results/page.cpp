@@ -1,8 +1,4 @@
 // index.html of a run: one file, no network, plots drawn by a small script of our own (page.html).
-//
-//   Curves   at most kPoints per signal: the lowest and the highest value of each stretch, so that no
-//            spike is lost
-#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
@@ -16,8 +12,6 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr std::size_t kPoints = 900;
-
 // Four digits are finer than a pixel.
 ordered_json rounded(double x) {
   if (!std::isfinite(x)) return nullptr;
@@ -26,27 +20,19 @@ ordered_json rounded(double x) {
   return std::strtod(text, nullptr);
 }
 
-ordered_json curve(const TruthLog& truth, std::size_t column) {
-  const auto values = truth.values(column);
+ordered_json curve(const Curves& curves, std::size_t column) {
+  const Curves::Curve& c = curves.curve(column);
   ordered_json out;
-  out["name"] = truth.columns()[column].name;
-  out["unit"] = truth.columns()[column].unit;
-  const auto [low, high] = std::minmax_element(values.begin(), values.end());
-  const bool any_nan =
-      std::any_of(values.begin(), values.end(), [](double v) { return std::isnan(v); });
-  if (values.empty() || (!any_nan && *low == *high)) {
-    out["constant"] = values.empty() ? ordered_json(nullptr) : rounded(values[0]);
+  out["name"] = curves.columns()[column].name;
+  out["unit"] = curves.columns()[column].unit;
+  if (c.constant) {
+    out["constant"] = c.low.empty() ? ordered_json(nullptr) : rounded(c.low[0]);
     return out;
   }
-  const std::size_t stride = (values.size() + kPoints - 1) / kPoints;
-  out["stride"] = stride;
+  out["stride"] = curves.stride();
   out["low"] = out["high"] = ordered_json::array();
-  for (std::size_t i = 0; i < values.size(); i += stride) {
-    const auto piece = values.subspan(i, std::min(stride, values.size() - i));
-    const auto [a, b] = std::minmax_element(piece.begin(), piece.end());
-    out["low"].push_back(rounded(*a));
-    out["high"].push_back(rounded(*b));
-  }
+  for (const double x : c.low) out["low"].push_back(rounded(x));
+  for (const double x : c.high) out["high"].push_back(rounded(x));
   return out;
 }
 
@@ -68,7 +54,7 @@ double dma_wait_s(const ordered_json& board) {
 
 }  // namespace
 
-std::string page_html(const Report& report, const TruthLog& truth) {
+std::string page_html(const Report& report, const Curves& curves) {
   auto data = parse_ordered_json(run_json(report));
   data["stacks"] = stacks_of(data["board"]);
   data["watched"] = data["board"].is_object()
@@ -76,10 +62,11 @@ std::string page_html(const Report& report, const TruthLog& truth) {
                         : ordered_json::array();
   data["dma_wait_at_most_s"] = dma_wait_s(data["board"]);
   data.erase("board");
-  data["step_s"] = static_cast<double>(truth.step_ns()) * 1e-9;
+  data["step_s"] = static_cast<double>(curves.step_ns()) * 1e-9;
   data["signals"] = ordered_json::array();
-  for (std::size_t i = 0; i < truth.columns().size(); ++i)
-    data["signals"].push_back(curve(truth, i));
+  for (std::size_t i = 0; i < curves.columns().size(); ++i) {
+    data["signals"].push_back(curve(curves, i));
+  }
   return fill_page(kRunPage, text_of(data));
 }
 

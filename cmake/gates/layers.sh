@@ -31,7 +31,9 @@ io_bridges/qemu/cycles   io_bridges/qemu/cycles/
 io_bridges/qemu/stm32    base/ io_bridges/protocols/ io_bridges/devices/ io_bridges/qemu/stm32/ io_bridges/qemu/cycles/flash_timing.hpp
 io_bridges/qemu/plugin   base/ io_bridges/
 io_bridges/qemu/board    base/ io_bridges/ plant/
-results                  base/ io_bridges/messages/ io_bridges/protocols/ results/
+results                  base/ io_bridges/messages/ results/
+results/messages         base/ io_bridges/messages/ results/messages/
+results/sinks            base/ io_bridges/messages/ results/messages/ results/sinks/
 harness                  base/ harness/catalogue/ harness/cli/ harness/flight/ harness/stand/ harness/target/
 harness/job              base/ harness/job/
 harness/lua              base/ harness/lua/

@@ -1,4 +1,5 @@
 #include "harness/cli/calibrate_command.hpp"
+#include "base/output_file.hpp"
 
 #include <cstdio>
 #include <filesystem>
@@ -71,7 +72,7 @@ Result<Calibration> on_the_stand(const catalogue::CalibrationFile& file,
   };
   auto data = measure_all(bench, setup, tell);
   if (!data) return data.error();
-  const auto kept = results::write_text(data_path, data_text(data.value()));
+  const auto kept = write_text(data_path, data_text(data.value()));
   if (!kept) return kept.error();
   auto result = concluded(std::move(data.value()), setup);
   if (!result || !physical(result.value())) return result;
@@ -110,7 +111,7 @@ int calibrate_esc_command(const CalibrateOptions& options, const Composition& co
   const auto believed = physical(c);
   if (believed.ok() && !options.write.empty()) files.emplace_back(options.write, constants);
   for (const auto& [path, text] : files) {
-    if (const auto written = results::write_text(path, text); !written) {
+    if (const auto written = write_text(path, text); !written) {
       return complain(written.error());
     }
   }

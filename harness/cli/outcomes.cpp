@@ -1,4 +1,5 @@
 #include "harness/cli/outcomes.hpp"
+#include "base/output_file.hpp"
 
 #include <cstdio>
 #include <filesystem>
@@ -81,7 +82,7 @@ int Outcomes::finish() {
   for (const results::Report& report : reports_) all.push_back(&report);
   std::error_code ignored;
   std::filesystem::create_directories(results_, ignored);
-  const auto written = results::write_text(results_ + "/junit.xml", results::junit_xml(all));
+  const auto written = write_text(results_ + "/junit.xml", results::junit_xml(all));
   if (!written) tally_.worsen(complain(written.error()));
   if (!json_ && tally_.plans() > 1) print(tally_.summary());
   return tally_.code();

@@ -10,6 +10,7 @@
 #include "harness/cli/console.hpp"
 #include "harness/cli/devices_command.hpp"
 #include "harness/cli/doctor.hpp"
+#include "harness/cli/export_command.hpp"
 #include "harness/cli/fuzz_command.hpp"
 #include "harness/cli/history_command.hpp"
 #include "harness/cli/job_command.hpp"
@@ -36,6 +37,7 @@ constexpr const char* kExamples = R"(Examples:
   whirl calibrate esc test_plans/calibrations/hk_10x4.5.lua
                                                constants of an ESC, its motor and its propeller
   whirl history hover                          how the margins went, run by run
+  whirl export results/runs/latest --csv       every message that crossed, with its fields, as text
   whirl fuzz --smoke                           random registers, images and files, for bugs of whirl
   whirl devices                                what a board file's devices may be, key by key
   whirl doctor                                 what is missing on this machine
@@ -43,8 +45,8 @@ constexpr const char* kExamples = R"(Examples:
 Exit codes: 0 pass, 1 a plan failed, 2 bad input or usage, 3 inconclusive (the host was at fault, the
 run was interrupted, or what the plan asks was not shown), 4 internal error; of several plans the
 worst counts: 4, then 2, 1, 3, 0.
-Results: results/runs/latest/index.html, run.json, junit.xml, truth.csv, bus.csv, telemetry.tlog
-(serial.txt on a stand))";
+Results: results/runs/latest/index.html, run.json, junit.xml, messages.whirl (all that crossed), and
+of it truth.csv, bus.csv, telemetry.tlog (serial.txt on a stand), bus_NODE.csv of boards with names)";
 
 void add_plan_options(CLI::App& command, RunOptions& options) {
   command.add_option("plans", options.paths, "plan files or folders (default: test_plans)");
@@ -132,6 +134,15 @@ int run_chosen(int argc, char** argv, Composition composition) {
   past->add_option("--expectation", history.expectation, "only names that contain this");
   past->add_option("--last", history.last, "so many runs")->check(CLI::Range(1, 1000));
 
+  ExportOptions exported;
+  auto* exports = app.add_subcommand("export", "a run's messages in other formats");
+  exports->add_option("run", exported.run, "a run's folder, or its messages.whirl")->required();
+  for (const std::string& format : export_formats()) {
+    exports->add_flag_callback("--" + format,
+                               [&exported, format] { exported.formats.push_back(format); });
+  }
+  exports->add_option("--out", exported.out, "where the files go (default: the run's folder)");
+
   SweepOptions sweep;
   auto* sweeps = app.add_subcommand(
       "sweep", "thrust, torque, power and current of a propeller or vehicle file");
@@ -179,6 +190,7 @@ int run_chosen(int argc, char** argv, Composition composition) {
   if (!options.out.empty()) composition.results = options.out;
   if (*list) return list_command(options, composition);
   if (*past) return history_command(history, composition.results);
+  if (*exports) return export_command(exported);
   if (*sweeps) return sweep_command(sweep, composition);
   if (*validate) {
     return timing.wanted ? timing_command(timing, composition) : validate_command(composition);

@@ -8,6 +8,7 @@
 
 #include "base/interruption.hpp"
 #include "base/mishap.hpp"
+#include "base/output_file.hpp"
 #include "base/places.hpp"
 #include "harness/cli/find_file.hpp"
 #include "harness/cli/versions.hpp"
@@ -172,8 +173,10 @@ void add_versions(const Prepared& prepared, const plan::Plan& plan, const std::s
   add_host(record.report.versions, root);
 }
 
+// `folder`: where its messages are written; null: nowhere.
 Result<RunRecord> run_record(const PlanChoice& choice, const RunOptions& options,
-                             const Composition& composition, const ProgressSink& progress) {
+                             const Composition& composition, const ProgressSink& progress,
+                             const RunFolder* folder) {
   // Loaded anew: no run sees what another left in its Lua.
   auto file = plan::PlanFile::load(choice.file, {}, options.settings);
   if (!file) return file.error();
@@ -188,9 +191,15 @@ Result<RunRecord> run_record(const PlanChoice& choice, const RunOptions& options
   for (const Setup& setup : parts.setups) {
     if (options.gdb) announce_gdb(setup);
   }
-  RunRecord record = execute(
-      {*file.value(), *plan, parts.nodes, *parts.world, *parts.target, parts.setups.front().seed},
-      progress);
+  const std::uint64_t seed = parts.setups.front().seed;
+  std::optional<results::MessageWriter> messages;
+  if (folder != nullptr) {
+    messages.emplace(folder->messages(), run_head(*plan, parts.nodes, *parts.world, seed));
+  }
+  RunRecord record = execute({*file.value(), *plan, parts.nodes, *parts.world, *parts.target, seed,
+                              messages ? &*messages : nullptr},
+                             progress);
+  record.messages = std::move(messages);
   add_versions(parts, *plan, composition.root, record);
   return record;
 }
@@ -229,7 +238,7 @@ results::Report refused(const PlanChoice& choice, const RunOptions& options, con
 
 void run_again(const PlanChoice& choice, const RunOptions& options, const Composition& composition,
                const ProgressSink& progress, results::Report& report) {
-  const auto again = run_record(choice, options, composition, progress);
+  const auto again = run_record(choice, options, composition, progress, nullptr);
   if (again) return add_second_run(again.value().report, report);
   report.reasons.push_back(results::reason_of(again.error(), "in the second run: "));
 }
@@ -254,11 +263,11 @@ Finished file(RunFolder& folder, results::Report report, Write write) {
 
 Finished file_run(RunFolder& folder, RunRecord record, const RunOptions& options) {
   return file(folder, std::move(record.report), [&](results::Report& report) {
-    bool whole = results::write_run(folder, report, record.truth, record.logs);
+    bool whole = results::write_run(folder, report, *record.messages);
     if (options.keep) {
       for (const auto& [node, text] : record.board_texts) {
         const std::string name = "board" + (node.empty() ? "" : "_" + node) + ".json";
-        const auto kept = results::write_text(folder.file(name), text);
+        const auto kept = write_text(folder.file(name), text);
         whole = whole && kept.ok();
         if (!kept) report.reasons.push_back(results::reason_of(kept.error()));
       }
@@ -279,7 +288,7 @@ Finished run_one(const PlanChoice& choice, const RunOptions& options,
   try {
     auto folder = RunFolder::create(composition.results, choice.name);
     if (!folder) return {refused(choice, options, folder.error()), ""};
-    auto record = run_record(choice, options, composition, progress);
+    auto record = run_record(choice, options, composition, progress, &folder.value());
     if (!record) return file_refusal(folder.value(), refused(choice, options, record.error()));
     results::Report& report = record.value().report;
     if (options.twice && interrupted_by() == 0) {

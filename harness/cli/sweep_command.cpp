@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "base/output_file.hpp"
 #include "base/text.hpp"
 #include "harness/catalogue/kind.hpp"
 #include "harness/catalogue/propeller_file.hpp"
@@ -134,8 +135,8 @@ int sweep_command(const SweepOptions& given, const Composition& composition) {
   const std::string about =
       "Steady behaviour by the plant's own models, standard air at sea level.";
   for (const auto& written :
-       {results::write_text((folder / "index.html").string(),
-                            results::charts_html(swept.value().name, about, swept.value().charts)),
+       {write_text((folder / "index.html").string(),
+                   results::charts_html(swept.value().name, about, swept.value().charts)),
         write_csv((folder / "curves.csv").string(), swept.value().charts)}) {
     if (!written) return complain(written.error());
   }

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "base/output_file.hpp"
 #include "base/places.hpp"
 #include "base/text.hpp"
 #include "base/whole_file.hpp"
@@ -66,7 +67,7 @@ Result<std::vector<timing::Report>> measure(const Composition& composition) {
     if (!text) return text.error();
     const fs::path kept =
         validation_folder(composition.results) / (std::string(subject.image) + ".txt");
-    if (auto good = results::write_text(kept.string(), text.value()); !good) return good.error();
+    if (auto good = write_text(kept.string(), text.value()); !good) return good.error();
     auto read = timing::read_reports(text.value(), subject.image);
     if (!read) return read.error();
     for (timing::Report& report : read.value()) reports.push_back(std::move(report));
@@ -168,7 +169,7 @@ Result<std::string> write_page(const std::vector<Judged>& parts,
     for (results::Chart& chart : charts_of(part)) charts.push_back(std::move(chart));
   }
   const std::string path = (validation_folder(results_folder) / "timing.html").string();
-  const auto written = results::write_text(
+  const auto written = write_text(
       path,
       results::charts_html(
           "Cycles of instructions",

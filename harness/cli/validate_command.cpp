@@ -1,6 +1,7 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "base/output_file.hpp"
 #include "base/whole_file.hpp"
 #include "harness/catalogue/propeller_file.hpp"
 #include "harness/cli/console.hpp"
@@ -57,13 +58,13 @@ int validate_command(const Composition& composition) {
   const fs::path folder = fs::path(composition.results) / "validation";
   std::error_code status;
   fs::create_directories(folder, status);
-  const auto written = results::write_text(
-      (folder / "index.html").string(),
-      results::charts_html(
-          "Validation of the plant",
-          "Each curve over the points of a reference that nobody here made up; the "
-          "keys are resolved in plant/REFERENCES.md.",
-          charts));
+  const auto written =
+      write_text((folder / "index.html").string(),
+                 results::charts_html(
+                     "Validation of the plant",
+                     "Each curve over the points of a reference that nobody here made up; the "
+                     "keys are resolved in plant/REFERENCES.md.",
+                     charts));
   if (!written) return complain(written.error());
   std::fputs(results::figures_text(charts).c_str(), stdout);
   int judged = 0, good = 0;

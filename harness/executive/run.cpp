@@ -20,12 +20,12 @@ namespace {
 
 constexpr std::int64_t kProgress_ns = 10 * kLockstep_ns;
 
-results::TruthLog truth_log_for(const World& world) {
-  std::vector<results::TruthLog::Column> columns;
+std::vector<results::Column> columns_of(const World& world) {
+  std::vector<results::Column> columns;
   for (const Signal& signal : world.signals()) {
     columns.push_back({signal.name, si_suffix(signal.dimension), si_symbol(signal.dimension)});
   }
-  return {std::move(columns), kLockstep_ns};
+  return columns;
 }
 
 // The watchdog that has reset the board, or null.
@@ -67,23 +67,18 @@ std::string timing_profile(const std::vector<Node>& nodes) {
   return all;
 }
 
-std::vector<results::EventLog> logs_for(const std::vector<Node>& nodes) {
-  std::vector<results::EventLog> logs(nodes.size());
-  for (std::size_t i = 0; i < nodes.size(); ++i) logs[i].node = nodes[i].name;
-  return logs;
-}
-
 class Run {
  public:
   explicit Run(const RunParts& parts)
       : parts_(parts),
-        record_{{}, truth_log_for(parts.world), logs_for(parts.nodes)},
+        rows_(columns_of(parts.world), kLockstep_ns),
+        logs_(parts.nodes.size()),
         stage_{parts.world,
                parts.target.offers(),
                SignalTable(parts.world.signals()),
                parts.nodes,
-               record_.truth,
-               record_.logs,
+               rows_,
+               logs_,
                record_.report,
                [this](const FaultSpec& f) { return inject(f); }},
         script_(parts.file, parts.plan, stage_),
@@ -128,7 +123,7 @@ class Run {
     Stopwatch watch(record_.report.host.start_s);
     if (auto started = lockstep_.start(); !started) return ended_by(started.error());
     record_.report.versions = parts_.target.versions();
-    record_.truth.append(lockstep_.row());
+    file_row();
     return true;
   }
 
@@ -157,7 +152,7 @@ class Run {
     Stopwatch watch(record_.report.host.logging_s);
     if (!arrived) return ended_by(arrived.error());
     stage_.now_ns = lockstep_.now_ns();
-    record_.truth.append(lockstep_.row());
+    file_row();
     if (!file_batch(lockstep_.happened()) || !firmware_is_well()) return false;
     if (interrupted_by() != 0) return interrupted();
     if (arrived.value() == TargetState::running) return true;
@@ -179,7 +174,7 @@ class Run {
   // Says what is wrong with it.
   bool firmware_is_well() {
     for (std::size_t i = 0; i < parts_.nodes.size(); ++i) {
-      const results::EventLog& log = record_.logs[i];
+      const results::EventLog& log = logs_[i];
       if (!log.cpu_faults.empty()) return core_fault(parts_.nodes[i], log.cpu_faults.front());
       const char* watchdog = parts_.plan.may_reset ? nullptr : bitten(log.resets);
       if (watchdog != nullptr) return watchdog_reset(parts_.nodes[i], watchdog);
@@ -192,14 +187,13 @@ class Run {
     file_batch(lockstep_.happened());
     if (!firmware_failed()) firmware_is_well();  // its last words may be a fault
     results::Report& report = record_.report;
-    for (std::size_t i = 0; i < parts_.nodes.size(); ++i)
-      report_node(parts_.nodes[i], record_.logs[i]);
+    for (std::size_t i = 0; i < parts_.nodes.size(); ++i) report_node(parts_.nodes[i], logs_[i]);
     // Guards and windows are judged also when the run has failed: their figures help to see why.
     for (const Error& error : script_.finish(completed_)) end_for(error);
     if (completed_) judge_faults();
     if (completed_) judge_evidence();
     for (std::size_t i = 0; i < parts_.nodes.size(); ++i) {
-      for (const results::TextRecord& f : record_.logs[i].findings) {
+      for (const results::TextRecord& f : logs_[i].findings) {
         report.findings.push_back(
             {static_cast<double>(f.t_ns) * 1e-9, parts_.nodes[i].qualified(f.where), f.what});
       }
@@ -311,16 +305,22 @@ class Run {
     return end_with(results::Blame::firmware, what);
   }
 
+  void file_row() {
+    rows_.append(lockstep_.row());
+    if (parts_.messages != nullptr) parts_.messages->add_row(stage_.now_ns, lockstep_.row());
+  }
+
   bool file_batch(const io::Batch& batch) {
+    if (parts_.messages != nullptr) parts_.messages->add(batch);
     digest_.add_bytes(batch.bytes().data(), batch.bytes().size());
     io::Reader r(batch.bytes());
     while (r.next()) {
       const std::size_t board = r.header().board;
-      if (board >= record_.logs.size()) {
+      if (board >= logs_.size()) {
         return end_for({ErrorKind::internal, "", "a message of a board that is not there", ""});
       }
       acted_[board] = acted_[board] || is_act_of_firmware(r.header().kind);
-      record_.logs[board].add(r);
+      logs_[board].add(r);
     }
     if (r.complete()) return true;
     return end_for({ErrorKind::internal, "", "a batch of messages was cut short", ""});
@@ -347,6 +347,8 @@ class Run {
 
   const RunParts& parts_;
   RunRecord record_;
+  plan::SignalRows rows_;
+  std::vector<results::EventLog> logs_;  // of the nodes
   plan::Stage stage_;
   plan::Script script_;
   Lockstep lockstep_;
@@ -356,6 +358,19 @@ class Run {
 };
 
 }  // namespace
+
+results::RunHead run_head(const plan::Plan& plan, const std::vector<Node>& nodes,
+                          const World& world, std::uint64_t seed) {
+  results::RunHead head{plan.name, seed, kLockstep_ns, columns_of(world), {}};
+  for (const Node& node : nodes) {
+    results::NodeHead& named = head.nodes.emplace_back();
+    named.name = node.name;
+    for (const BoardDevice& device : node.board.devices) named.devices.push_back(device.name);
+    for (const BoardPin& pin : node.board.pins) named.pins.push_back(pin.name);
+    named.watch = node.board.watch;
+  }
+  return head;
+}
 
 RunRecord execute(const RunParts& parts, const ProgressSink& progress) {
   return Run(parts).go(progress);

@@ -8,14 +8,14 @@
 #pragma once
 #include <functional>
 #include <memory>
+#include <optional>
 
 #include "harness/board/node.hpp"
 #include "harness/plan/plan_file.hpp"
 #include "harness/target/target.hpp"
 #include "harness/world/world.hpp"
-#include "results/event_log.hpp"
+#include "results/messages/message_file.hpp"
 #include "results/report.hpp"
-#include "results/truth_log.hpp"
 
 namespace whirl {
 
@@ -26,14 +26,14 @@ struct RunParts {
   World& world;
   Target& target;
   std::uint64_t seed = 1;
+  results::MessageWriter* messages = nullptr;  // what crosses is written there; null: nowhere
 };
 
 struct RunRecord {
   results::Report report;
-  results::TruthLog truth;
-  std::vector<results::EventLog> logs;  // of the nodes
   // What the boards' processes were told, by the names of their nodes.
   std::vector<std::pair<std::string, std::string>> board_texts = {};
+  std::optional<results::MessageWriter> messages = std::nullopt;  // where they were written
 };
 
 struct Progress {
@@ -41,6 +41,10 @@ struct Progress {
   const std::string& step;
   const World& world;
 };
+// What the file of messages says of a run before it begins.
+results::RunHead run_head(const plan::Plan& plan, const std::vector<Node>& nodes,
+                          const World& world, std::uint64_t seed);
+
 using ProgressSink = std::function<void(const Progress&)>;  // every 10 ms of virtual time
 
 RunRecord execute(const RunParts& parts, const ProgressSink& progress = nullptr);

@@ -10,32 +10,17 @@ namespace whirl::plan {
 namespace {
 
 constexpr const char* kRecord = "record";
-constexpr std::int64_t kBefore_ns = 200'000'000;  // the reference of a change
-constexpr double kRows_per_instruction = 4.0;     // what a metric's walk over its rows costs a plan
-
-// Where in the truth a record lies, with its reference before it.
-struct Rows {
-  std::size_t first, command, last;  // last: one beyond
-};
-
-Rows rows_of(const Stage& stage, const RecordInfo& info) {
-  const auto& truth = stage.truth;
-  const std::size_t command = truth.row_at(info.from_ns);
-  const auto before = static_cast<std::size_t>(kBefore_ns / truth.step_ns());
-  return {command - std::min(command, before), command, truth.row_at(info.to_ns) + 1};
-}
+constexpr double kRows_per_instruction = 4.0;  // what a metric's walk over its rows costs a plan
 
 metrics::Record view(const Stage& stage, const RecordInfo& info, std::size_t column) {
-  const Rows rows = rows_of(stage, info);
-  return {stage.truth.values(column).subspan(rows.first, rows.last - rows.first),
-          stage.truth.step_ns(), rows.command - rows.first};
+  return stage.rows.record(info.number, column);
 }
 
 // The record that a method is called on. Each call walks over its rows, and pays for it.
 const RecordInfo& record_of(lua_State* L) {
   Script& self = Script::of(L);
   const RecordInfo& info = self.records[check_handle(L, 1, kRecord)];
-  const std::int64_t rows = (info.to_ns - info.from_ns) / self.stage().truth.step_ns();
+  const std::int64_t rows = (info.to_ns - info.from_ns) / self.stage().rows.step_ns();
   lua::Sandbox::spend(L, static_cast<double>(rows) / kRows_per_instruction);
   return info;
 }
@@ -51,7 +36,7 @@ struct Chosen {
 Chosen choose(lua_State* L) {
   Script& self = Script::of(L);
   const RecordInfo& info = record_of(L);
-  const auto& columns = self.stage().truth.columns();
+  const auto& columns = self.stage().rows.columns();
   if (info.columns.size() == 1) return {&info, info.columns[0], 2, columns[info.columns[0]].name};
   const std::string wanted = check_text(L, 2, "a record of several signals: the signal's name");
   for (std::size_t column : info.columns) {
@@ -250,6 +235,7 @@ int recorded(lua_State* L, int, lua_KContext number) {
   self.look();
   RecordInfo& info = self.records[static_cast<std::size_t>(number)];
   info.to_ns = self.stage().now_ns;
+  self.stage().rows.close_record(info.number);
   const std::int64_t wire_ns = self.stage().world.command_on_wire_ns();
   info.wire_ns = wire_ns <= info.to_ns ? std::max(wire_ns, info.from_ns) : info.from_ns;
   push_handle(L, kRecord, static_cast<std::size_t>(number));
@@ -267,6 +253,7 @@ int record(lua_State* L) {
     lua_pushvalue(L, 4);
     lua_call(L, 0, 0);  // a t:wait in there is refused by Lua: the record begins at the command
   }
+  info.number = self.stage().rows.open_record(info.columns);
   const std::size_t number = self.records.size();
   self.records.push_back(std::move(info));
   self.wait_until(self.stage().now_ns + duration_ns);

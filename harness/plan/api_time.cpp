@@ -90,7 +90,7 @@ int value(lua_State* L) {
   self.look();
   const std::string signal = check_text(L, 2, "a signal's name");
   const std::size_t column = self.column(L, signal);
-  const double x = self.stage().truth.last(column);
+  const double x = self.stage().rows.last(column);
   if (lua_isnoneornil(L, 3)) {
     const std::int64_t now_ns = self.stage().now_ns;
     push_measurement(L, {x, self.dimension(column), signal, {signal}, now_ns, now_ns, true});

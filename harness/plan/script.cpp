@@ -19,7 +19,7 @@ int read_signal(lua_State* L) {
   Stage& stage = Script::of(L).stage();
   const std::string wanted = check_text(L, 2, "a signal's name");
   if (const auto column = stage.signals.find_with_unit(wanted)) {
-    lua_pushnumber(L, stage.truth.last(*column));
+    lua_pushnumber(L, stage.rows.last(*column));
     return 1;
   }
   if (const auto column = stage.signals.find(wanted)) {
@@ -72,6 +72,16 @@ double margin_of(double x, const std::optional<Limit>& low, const std::optional<
   return std::isnan(x) ? x : margin;
 }
 
+// The value with the least margin, and the first of these; no number at all is worse than any.
+Extremes::Value worst_of(const Guard& guard) {
+  const Extremes& seen = guard.seen;
+  if (seen.not_finite) return *seen.not_finite;
+  const double low = margin_of(seen.low.x, guard.low, guard.high);
+  const double high = margin_of(seen.high.x, guard.low, guard.high);
+  if (low == high) return seen.low.t_ns < seen.high.t_ns ? seen.low : seen.high;
+  return low < high ? seen.low : seen.high;
+}
+
 const char* words(How how) {
   switch (how) {
     case How::at_most:
@@ -103,6 +113,15 @@ std::string unfilled(std::int64_t from_ns, std::int64_t to_ns, std::int64_t now_
 }
 
 }  // namespace
+
+void Extremes::look(double x, std::int64_t t_ns) {
+  if (seen_ns == t_ns) return;
+  const bool first = seen_ns < 0;
+  seen_ns = t_ns;
+  if (!std::isfinite(x) && !not_finite) not_finite = {x, t_ns};
+  if (first || x < low.x) low = {x, t_ns};
+  if (first || x > high.x) high = {x, t_ns};
+}
 
 Script& Script::of(lua_State* L) {
   lua_getfield(L, LUA_REGISTRYINDEX, kOwnerKey);
@@ -151,8 +170,16 @@ void Script::wait_until(std::int64_t t_ns, int condition_ref) {
   condition_met_ = false;
 }
 
+void Script::look_at_guarded() {
+  for (Guard& guard : guards) {
+    if (!guard.column || stage_.now_ns > guard.to_ns) continue;
+    guard.seen.look(stage_.rows.last(*guard.column), stage_.now_ns);
+  }
+}
+
 Result<Script::State> Script::advance() {
   if (broken_) return *broken_;
+  look_at_guarded();
   lua_State* L = file_.sandbox().state();
   // Conditions run outside the coroutine, under one protected call per step.
   file_.sandbox().refill();
@@ -163,6 +190,7 @@ Result<Script::State> Script::advance() {
   int results = 0;
   const int status = lua_resume(thread_, L, started_ ? 0 : 1, &results);
   started_ = true;
+  look_at_guarded();                               // also those that begin now
   if (status == LUA_YIELD) return State::waiting;  // no call of ours yields a value
   if (status == LUA_OK) return State::done;
   return lua::Sandbox::raised(thread_, status);
@@ -176,7 +204,7 @@ void Script::check_conditions(lua_State* L) {
     ++guard.evaluated;
     if (condition(L, guard.condition_ref)) continue;
     if (!guard.first_ns) guard.first_ns = now;
-    guard.violated_ns += stage_.truth.step_ns();
+    guard.violated_ns += stage_.rows.step_ns();
   }
 }
 
@@ -250,23 +278,10 @@ void Script::judge_guard(const Guard& guard, bool completed) {
     return;
   }
   look();
-  const auto& truth = stage_.truth;
-  double worst = std::numeric_limits<double>::quiet_NaN();
-  double worst_margin = std::numeric_limits<double>::infinity();
-  std::size_t at = truth.row_at(guard.from_ns);
-  for (std::size_t row = at; row <= truth.row_at(end); ++row) {
-    const double x = truth.values(*guard.column)[row];
-    const double margin = margin_of(x, guard.low, guard.high);
-    if (margin >= worst_margin) continue;  // a NaN is taken, and ends the search
-    worst = x;
-    worst_margin = margin;
-    at = row;
-    if (std::isnan(x)) break;
-  }
-  const std::string signal = truth.columns()[*guard.column].name;
-  judge({worst, dimension(*guard.column), guard.name, {signal}, guard.from_ns, end, true},
-        *guard.how, guard.low, guard.high, guard.place,
-        seconds(static_cast<std::int64_t>(at) * truth.step_ns()), "", not_whole);
+  const Extremes::Value worst = worst_of(guard);
+  const std::string signal = stage_.rows.columns()[*guard.column].name;
+  judge({worst.x, dimension(*guard.column), guard.name, {signal}, guard.from_ns, end, true},
+        *guard.how, guard.low, guard.high, guard.place, seconds(worst.t_ns), "", not_whole);
 }
 
 void Script::judge_windows(bool completed) {
@@ -296,6 +311,7 @@ void Script::list_faults() {
 
 std::vector<Error> Script::finish(bool completed) {
   std::vector<Error> errors;
+  look_at_guarded();  // of the last step
   for (const Guard& guard : guards) {
     if (guard.condition_ref != -1 || guard.how) {
       judge_guard(guard, completed);

@@ -17,11 +17,11 @@
 
 #include "harness/board/node.hpp"
 #include "harness/plan/plan_file.hpp"
+#include "harness/plan/signal_rows.hpp"
 #include "harness/target/offers.hpp"
 #include "harness/world/world.hpp"
 #include "results/event_log.hpp"
 #include "results/report.hpp"
-#include "results/truth_log.hpp"
 
 namespace whirl::plan {
 
@@ -33,7 +33,7 @@ struct Stage {
   Offers offers;        // the targets'
   SignalTable signals;  // the world's
   const std::vector<Node>& nodes;
-  const results::TruthLog& truth;
+  SignalRows& rows;
   const std::vector<results::EventLog>& logs;  // of the nodes
   results::Report& report;
   std::function<Result<Done>(const FaultSpec&)> inject;  // into the board
@@ -59,9 +59,24 @@ enum class How { at_most, at_least, within, equal };
 
 struct RecordInfo {
   std::vector<std::size_t> columns;
+  std::size_t number = 0;    // in SignalRows
   std::int64_t from_ns = 0;  // the command
   std::int64_t to_ns = 0;
   std::int64_t wire_ns = 0;  // when the command's last bit had passed
+};
+
+// A signal over the time of a guard: the first of its lowest and of its highest values, and the first
+// that is no finite number.
+struct Extremes {
+  struct Value {
+    double x = std::numeric_limits<double>::quiet_NaN();
+    std::int64_t t_ns = 0;
+  };
+  Value low, high;
+  std::optional<Value> not_finite;
+  std::int64_t seen_ns = -1;  // the latest that was looked at
+
+  void look(double x, std::int64_t t_ns);
 };
 
 struct Guard {  // t:always
@@ -71,6 +86,7 @@ struct Guard {  // t:always
   std::int64_t from_ns = 0, to_ns = kForever;
   std::optional<How> how;
   std::optional<Limit> low, high;
+  Extremes seen;                 // of a signal
   std::int64_t evaluated = 0;    // of a condition: how often,
   std::int64_t violated_ns = 0;  // how long it did not hold, and since when
   std::optional<std::int64_t> first_ns;
@@ -135,6 +151,7 @@ class Script {
   };
   void start(lua_State* L, const Plan& plan);
   void check_conditions(lua_State* L);
+  void look_at_guarded();
   void judge_guard(const Guard& guard, bool completed);
   void judge_windows(bool completed);
   void list_faults();

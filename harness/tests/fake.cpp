@@ -61,7 +61,7 @@ class FakeTarget final : public Target {
   void tasks(io::Batch& out, std::int64_t t) {
     out.add(io::Kind::data_ready, 0, t + 100 * kUs, nullptr, 0);
     const io::BusTransaction spi{t + 150 * kUs, 0, 1, 1, 15};
-    out.add(io::Kind::spi_transaction, 1, t + 170 * kUs, spi, &salt_, 1);
+    io::add_transaction(io::Kind::spi_transaction, 1, t + 170 * kUs, spi, {&salt_, 1}, {}, out);
     out.add(io::Kind::function_call, 0, t + 200 * kUs,
             io::FunctionCall{t + 140 * kUs, 40 * kUs, 6 * kUs});
     if (t % (5 * kMs) == 0) {
@@ -80,7 +80,7 @@ class FakeTarget final : public Target {
       const io::BusTransaction head{start, address, static_cast<std::uint8_t>(read),
                                     static_cast<std::uint8_t>(acked), 3};
       const std::uint8_t bytes[] = {0x10, 0x02, salt_};
-      out.add(io::Kind::i2c_transaction, 3, start + 80 * kUs, head, bytes, sizeof bytes);
+      io::add_transaction(io::Kind::i2c_transaction, 3, start + 80 * kUs, head, bytes, {}, out);
     }
   }
   bool refused(io::Batch& out, int address, std::int64_t t) const {

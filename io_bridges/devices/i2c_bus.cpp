@@ -15,6 +15,10 @@ void I2cBus::finish(bool repeated, Nanoseconds now) {
   if (log_) log_(current_);
 }
 
+void I2cBus::byte_passed(Nanoseconds now) {
+  current_.passed_ns.push_back(static_cast<std::uint32_t>(now - current_.start_ns));
+}
+
 void I2cBus::start(Nanoseconds now) {
   if (busy_) finish(true, now);
   busy_ = true;
@@ -51,6 +55,7 @@ bool I2cBus::write(std::uint8_t byte, Nanoseconds now) {
   if (ack && faults_ != nullptr) ack = faults_->ack(current_.address, index(), now);
   ack = ack || !sda_.level();
   current_.bytes.push_back(byte);
+  byte_passed(now);
   current_.all_acked = current_.all_acked && ack;
   return ack;
 }
@@ -67,6 +72,7 @@ std::uint8_t I2cBus::fetch(Nanoseconds now) {
 }
 
 void I2cBus::answer(bool ack, Nanoseconds now) {
+  byte_passed(now);
   for (I2cTarget* target : addressed_) target->acked(ack, now);
 }
 

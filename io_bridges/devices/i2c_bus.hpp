@@ -29,6 +29,7 @@ struct I2cTransaction {
   bool repeated_start = false;  // ended by a repeated START instead of STOP
   bool all_acked = true;        // every written byte was acknowledged
   std::vector<std::uint8_t> bytes;
+  std::vector<std::uint32_t> passed_ns;  // since start_ns: the ninth clock of each
 };
 
 // Faults that act on bytes and acknowledge bits on their way. Asked only where a target answers;
@@ -75,6 +76,7 @@ class I2cBus {
 
  private:
   void finish(bool repeated, Nanoseconds now);
+  void byte_passed(Nanoseconds now);
   int index() const { return static_cast<int>(current_.bytes.size()); }
 
   std::string name_;

@@ -7,6 +7,7 @@
 //   Layout   plain structs, fixed-size, native byte order: both ends run on one host
 //   Digest   of a run is taken over all messages, both ways, in order
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <cstring>
@@ -27,15 +28,16 @@ enum class Kind : std::uint8_t {
   i2c_order = 7,    // I2cOrder + bytes to write, port = bus number: not before t_ns
   pulse_train = 8,  // PulseTrain, port = motor number: on its throttle pin, from here on
   // Target to harness.
-  esc_setpoint = 32,       // EscSetpoint, port = motor number
-  uart_received = 33,      // bytes the board has sent on UART `port`; t_ns: the last stop bit
-  i2c_transaction = 34,    // BusTransaction + bytes, port = bus number
-  spi_transaction = 35,    // BusTransaction + bytes (at most 32 kept), port = bus number
-  data_ready = 36,         // port = device number: an interrupt line of a sensor rose
-  finding = 37,            // text "where\0what"
-  cpu_fault = 38,          // CpuFault + text (symbolised backtrace, one frame per line)
-  fault_applied = 39,      // port = fault number
-  function_call = 40,      // FunctionCall, port = watch number
+  esc_setpoint = 32,     // EscSetpoint, port = motor number
+  uart_received = 33,    // bytes the board has sent on UART `port`; t_ns: the last stop bit
+  i2c_transaction = 34,  // BusTransaction + bytes + their times, port = bus number
+  spi_transaction = 35,  // BusTransaction + bytes (at most 32 kept: MOSI and MISO in turn) + times
+                         // of the pairs, port = bus number
+  data_ready = 36,       // port = device number: an interrupt line of a sensor rose
+  finding = 37,          // text "where\0what"
+  cpu_fault = 38,        // CpuFault + text (symbolised backtrace, one frame per line)
+  fault_applied = 39,    // port = fault number
+  function_call = 40,    // FunctionCall, port = watch number
   interrupt_latency = 41,  // InterruptLatency, port = exception number
   statistics = 42,     // text, JSON: watchers' summaries, unanswered registers; at the end of a run
   board_reset = 43,    // ResetCause in port
@@ -45,6 +47,9 @@ enum class Kind : std::uint8_t {
   i2c_reply = 47,      // I2cReplyHead + bytes read, port = bus number; t_ns: the STOP
   shoot_through = 48,  // ShootThrough, port = leg 0..2: both switches were on until t_ns
   uart_delivered = 49,  // a uart_frame has passed the line to the board; t_ns: the last stop bit
+  pin_edge = 50,        // PinEdge, port = number of the pin among those that the board file names
+  // Only in a run's file of messages (results/messages).
+  signals = 64,  // a row of the world's signals
 };
 
 // Ports of board_reset: stm32::ResetCause by number.
@@ -94,6 +99,9 @@ struct BusTransaction {
   std::uint8_t read = 0;
   std::uint8_t acked = 1;  // every byte that wanted an acknowledge got one
   std::uint32_t length = 0;
+  std::uint32_t kept = 0;  // bytes behind this struct; then, as u32 in ns since start_ns, when each
+                           // one's last clock (I2C: its ninth) had passed
+  std::uint32_t pad = 0;
 };
 
 struct FaultCommand {  // the name follows as text, for messages to people
@@ -176,6 +184,11 @@ struct I2cReplyHead {
   std::int64_t stretched_ns = 0;  // the longest that SCL was held
 };
 
+struct PinEdge {
+  std::uint8_t level = 0;  // from t_ns on
+  std::uint8_t pad[7] = {};
+};
+
 struct ShootThrough {
   std::int64_t start_ns = 0;
 };
@@ -226,6 +239,18 @@ class Batch {
   std::vector<std::uint8_t> bytes_;
 };
 
+// A transaction with its bytes and when each had passed; `times_ns` counts from its start.
+inline void add_transaction(Kind kind, std::uint16_t bus, std::int64_t stop_ns, BusTransaction head,
+                            std::span<const std::uint8_t> bytes,
+                            std::span<const std::uint32_t> times_ns, Batch& batch) {
+  head.kept = static_cast<std::uint32_t>(bytes.size());
+  std::vector<std::uint8_t> tail(bytes.begin(), bytes.end());
+  tail.resize(bytes.size() + times_ns.size_bytes());
+  std::copy_n(reinterpret_cast<const std::uint8_t*>(times_ns.data()), times_ns.size_bytes(),
+              tail.begin() + static_cast<std::ptrdiff_t>(bytes.size()));
+  batch.add(kind, bus, stop_ns, head, tail.data(), static_cast<std::uint32_t>(tail.size()));
+}
+
 // Walks a batch: for (Reader r(bytes); r.next();) switch (r.header().kind) ...
 class Reader {
  public:
@@ -253,6 +278,11 @@ class Reader {
   }
   std::span<const std::uint8_t> tail_after(std::size_t head) const {
     return payload_.size() > head ? payload_.subspan(head) : std::span<const std::uint8_t>{};
+  }
+  // Of a BusTransaction: its bytes, without their times.
+  std::span<const std::uint8_t> transferred() const {
+    const auto tail = tail_after(sizeof(BusTransaction));
+    return tail.first(std::min<std::size_t>(as<BusTransaction>().kept, tail.size()));
   }
 
  private:

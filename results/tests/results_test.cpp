@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "base/json_text.hpp"
+#include "base/output_file.hpp"
 #include "base/scratch_folder.hpp"
 #include "base/text.hpp"
 #include "results/charts.hpp"
@@ -26,13 +27,23 @@ std::string contents(const std::string& path) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-TruthLog truth() {
-  TruthLog log({{"height", "m", "m"}, {"climb", "mps", "m/s"}, {"armed", "", ""}}, 1'000'000);
+const std::vector<Column> kColumns = {
+    {"height", "m", "m"}, {"climb", "mps", "m/s"}, {"armed", "", ""}};
+
+Curves curves() {
+  Curves drawn(kColumns, 1'000'000, 5000);
   for (int i = 0; i < 5000; ++i) {
     const double row[] = {i == 2500 ? 9.0 : 1.0, std::nan(""), 1.0};
-    log.append(row);
+    drawn.on_row(i * 1'000'000LL, row);
   }
-  return log;
+  return drawn;
+}
+
+MessageWriter messages_of(const RunFolder& folder) {
+  MessageWriter out(folder.messages(), {"p", 1, 1'000'000, kColumns, {{"", {}, {}, {}}}});
+  const double row[] = {1.0, 2.0, 3.0};
+  out.add_row(0, row);
+  return out;
 }
 
 TEST(Junit, HasOneCasePerExpectationAndCountsThatAgree) {
@@ -110,7 +121,7 @@ TEST(Results, AnyBytesGiveWellFormedFiles) {
   EXPECT_EQ(xml, legal_text(xml));
   const auto json = parse_json(run_json(r));
   EXPECT_EQ(json["plan"], legal_text(bytes));
-  EXPECT_EQ(legal_text(page_html(r, truth())), page_html(r, truth()));
+  EXPECT_EQ(legal_text(page_html(r, curves())), page_html(r, curves()));
   const std::string charts = charts_html(bytes, bytes,
                                          {{bytes,
                                            bytes,
@@ -123,35 +134,13 @@ TEST(Results, AnyBytesGiveWellFormedFiles) {
   EXPECT_EQ(legal_text(charts), charts);
 }
 
-TEST(Truth, ColumnsCarryTheirUnits) {
-  const ScratchFolder folder;
-  ASSERT_TRUE(truth().write_csv(folder.file("truth.csv")).ok());
-  const std::string csv = contents(folder.file("truth.csv"));
-  EXPECT_EQ(csv.substr(0, csv.find('\n')), "t_s,height_m,climb_mps,armed");
-  EXPECT_NE(csv.find("\n2.5,9,nan,1\n"), std::string::npos);
-  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 5001);
-}
-
-TEST(Truth, ALongRunKeepsEveryThirdRowInItsFile) {
-  const ScratchFolder folder;
-  TruthLog log({{"height", "m", "m"}}, 1'000'000);
-  for (int i = 0; i < 450'001; ++i) {
-    const double row[] = {i == 449'997 ? 9.0 : 1.0};  // a multiple of three
-    log.append(row);
-  }
-  ASSERT_TRUE(log.write_csv(folder.file("truth.csv")).ok());
-  const std::string csv = contents(folder.file("truth.csv"));
-  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 150'001);
-  EXPECT_NE(csv.find("\n449.997,9\n"), std::string::npos);
-}
-
 nlohmann::json data_of(const std::string& page) {
   const auto begin = page.find("application/json\">") + 18;
   return parse_json(page.substr(begin, page.find("</script>", begin) - begin));
 }
 
 TEST(Page, IsOneFileWithoutNetworkAndKeepsEverySpike) {
-  const std::string page = page_html(sample(), truth());
+  const std::string page = page_html(sample(), curves());
   for (const char* outside : {"http://", "https://", "src=", "<link"}) {
     EXPECT_EQ(page.find(outside), std::string::npos) << outside;
   }
@@ -166,7 +155,7 @@ TEST(Page, ShowsTheStackOfEachTask) {
   Report r = sample();
   r.statistics_json =
       R"({"stack_used_bytes":300,"task_stacks":[{"stack":"idle_stack","top":"0x1","used_bytes":64}]})";
-  const auto stacks = data_of(page_html(r, truth()))["stacks"];
+  const auto stacks = data_of(page_html(r, curves()))["stacks"];
   ASSERT_EQ(stacks.size(), 2u);
   EXPECT_EQ(stacks[0]["used_bytes"], 300);
   EXPECT_EQ(stacks[1]["stack"], "idle_stack");
@@ -177,21 +166,21 @@ TEST(Page, SaysWhichCallsWereTheLongestAndWhatTheModelLeavesOut) {
   Report r = sample();
   r.statistics_json =
       R"({"core_waits_for_dma_at_most_ns": 250000, "watched": [{"name": "f", "worst_execution": {}}]})";
-  const auto said = data_of(page_html(r, truth()));
+  const auto said = data_of(page_html(r, curves()));
   EXPECT_EQ(said["watched"].size(), 1u);
   EXPECT_EQ(said["watched"][0]["name"], "f");
   EXPECT_EQ(said["dma_wait_at_most_s"], 250e-6);
   for (const char* text : {"", "{}", "[]", R"({"core_waits_for_dma_at_most_ns": "much"})"}) {
     r.statistics_json = text;
-    EXPECT_EQ(data_of(page_html(r, truth()))["dma_wait_at_most_s"], 0.0) << text;
-    EXPECT_TRUE(data_of(page_html(r, truth()))["watched"].empty()) << text;
+    EXPECT_EQ(data_of(page_html(r, curves()))["dma_wait_at_most_s"], 0.0) << text;
+    EXPECT_TRUE(data_of(page_html(r, curves()))["watched"].empty()) << text;
   }
 }
 
 TEST(Page, NoTextOfAPlanEndsTheScript) {
   Report r = sample();
   r.reason = "</script><b>";
-  const std::string page = page_html(r, truth());
+  const std::string page = page_html(r, curves());
   EXPECT_EQ(page.find("</script><b>"), std::string::npos);
 }
 
@@ -199,7 +188,7 @@ TEST(Page, NoTextOfAPlanEndsTheScript) {
 TEST(Page, NoTextOfAPlanBeginsAComment) {
   Report r = sample();
   r.plan = "<!--<script>";
-  const std::string page = page_html(r, truth());
+  const std::string page = page_html(r, curves());
   EXPECT_EQ(page.find("<!--"), std::string::npos);
   EXPECT_NE(page.find("\\u003c!--\\u003cscript>"), std::string::npos);
 }
@@ -216,12 +205,12 @@ std::vector<std::string> names_in(const std::string& folder) {
 TEST(RunFolder, LatestPointsAtTheNewestAndNoRunOverwritesAnother) {
   const ScratchFolder folder;
   Report r = sample();
-  const std::vector<EventLog> events(1);
   std::string paths[2];
   for (std::string& path : paths) {
     auto made = RunFolder::create(folder.path(), r.plan);
     ASSERT_TRUE(made.ok());
-    ASSERT_TRUE(write_run(made.value(), r, truth(), events));
+    MessageWriter messages = messages_of(made.value());
+    ASSERT_TRUE(write_run(made.value(), r, messages));
     const auto published = made.value().publish("");
     ASSERT_TRUE(published.ok());
     path = published.value();
@@ -263,7 +252,8 @@ TEST(RunFolder, WhatCannotBeWrittenIsAReasonAndTheRestIsThere) {
   passed.expectations.pop_back();
   conclude(passed);
   ASSERT_EQ(exit_code(passed), 0);
-  EXPECT_FALSE(write_run(made.value(), passed, truth(), std::vector<EventLog>(1)));
+  MessageWriter messages = messages_of(made.value());
+  EXPECT_FALSE(write_run(made.value(), passed, messages));
   EXPECT_EQ(exit_code(passed), 3);
   const auto json = parse_json(contents(made.value().file("run.json")));
   EXPECT_EQ(json["verdict"], "inconclusive");
@@ -272,7 +262,8 @@ TEST(RunFolder, WhatCannotBeWrittenIsAReasonAndTheRestIsThere) {
   fs::create_directory(made.value().file("bus.csv.x"));
   Report failed = sample();
   fs::create_directories(made.value().file("truth.csv") + "/x");
-  EXPECT_FALSE(write_run(made.value(), failed, truth(), std::vector<EventLog>(1)));
+  MessageWriter again = messages_of(made.value());
+  EXPECT_FALSE(write_run(made.value(), failed, again));
   EXPECT_EQ(exit_code(failed), 1);  // what was seen of the firmware stays
 }
 

@@ -10,12 +10,17 @@
 
 #include "base/result.hpp"
 #include "io_bridges/board_description/board_description.hpp"
+#include "io_bridges/messages/messages.hpp"
 #include "io_bridges/qemu/stm32/chip_model.hpp"
 
 namespace whirl::board {
 
 Result<std::set<int>> join_pins(const std::vector<BoardPin>& pins, stm32::ChipModel& chip,
                                 const std::string& board);
+
+// The level of a named pin at the start, and each change of it, becomes a pin_edge; those of a bus's
+// lines do not, they are in its transactions.
+void log_edges(const std::vector<BoardPin>& pins, stm32::ChipModel& chip, io::Batch& happened);
 
 // The first address that firmware asks for on an I2C bus with no device at all is a finding: its bytes
 // are NACKed one and all, and leave no other trace.

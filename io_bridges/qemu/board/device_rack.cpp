@@ -73,6 +73,7 @@ Result<Done> DeviceRack::Wiring::build(const BoardDescription& board) {
   for (const BoardPin& pin : board.pins) {
     if (pin.pull.empty() && pin.bus.empty()) named_pins_.push_back(pin);
   }
+  log_edges(board.pins, site_.chip, site_.happened);
   for (std::size_t i = 0; i < board.devices.size(); ++i) {
     if (auto added = add(board, static_cast<int>(i)); !added) return added.error();
   }
@@ -153,8 +154,8 @@ io::I2cBus* DeviceRack::Wiring::i2c(int number) {
     head.read = t.read ? 1 : 0;
     head.acked = t.address_acked && t.all_acked ? 1 : 0;
     head.length = static_cast<std::uint32_t>(t.bytes.size());
-    site_.happened.add(Kind::i2c_transaction, static_cast<std::uint16_t>(number), t.stop_ns, head,
-                       t.bytes.data(), head.length);
+    io::add_transaction(Kind::i2c_transaction, static_cast<std::uint16_t>(number), t.stop_ns, head,
+                        t.bytes, t.passed_ns, site_.happened);
   });
   return bus;
 }
@@ -167,11 +168,11 @@ io::SpiBus* DeviceRack::Wiring::spi(int number) {
     find_once(now, "spi" + std::to_string(number),
               names_[&first] + " and " + names_[&second] + " are selected at once");
   });
-  bus->on_byte(
-      [this](const io::Wire* chip_select, std::uint8_t mosi, std::uint8_t miso, io::Nanoseconds) {
-        const auto log = spi_logs_.find(chip_select);
-        if (log != spi_logs_.end()) log->second->byte(mosi, miso);
-      });
+  bus->on_byte([this](const io::Wire* chip_select, std::uint8_t mosi, std::uint8_t miso,
+                      io::Nanoseconds now) {
+    const auto log = spi_logs_.find(chip_select);
+    if (log != spi_logs_.end()) log->second->byte(mosi, miso, now);
+  });
   return bus;
 }
 

@@ -16,8 +16,9 @@ class SpiLog {
       : happened_(happened), bus_(bus), device_(device), selected_(!chip_select.level()) {
     chip_select.watch([this](bool level, io::Nanoseconds now) { level ? end(now) : begin(now); });
   }
-  void byte(std::uint8_t mosi, std::uint8_t miso) {
+  void byte(std::uint8_t mosi, std::uint8_t miso, io::Nanoseconds now) {
     if (length_++ >= kPairs) return;
+    passed_ns_.push_back(static_cast<std::uint32_t>(now - start_ns_));
     pairs_.push_back(mosi);
     pairs_.push_back(miso);
   }
@@ -28,6 +29,7 @@ class SpiLog {
     start_ns_ = now;
     length_ = 0;
     pairs_.clear();
+    passed_ns_.clear();
   }
   void end(io::Nanoseconds now) {
     if (!selected_ || length_ == 0) return;
@@ -36,8 +38,8 @@ class SpiLog {
     head.start_ns = start_ns_;
     head.address = static_cast<std::uint16_t>(device_);
     head.length = static_cast<std::uint32_t>(length_);
-    happened_.add(io::Kind::spi_transaction, static_cast<std::uint16_t>(bus_), now, head,
-                  pairs_.data(), static_cast<std::uint32_t>(pairs_.size()));
+    io::add_transaction(io::Kind::spi_transaction, static_cast<std::uint16_t>(bus_), now, head,
+                        pairs_, passed_ns_, happened_);
   }
 
   io::Batch& happened_;
@@ -46,6 +48,7 @@ class SpiLog {
   io::Nanoseconds start_ns_ = 0;
   std::size_t length_ = 0;
   std::vector<std::uint8_t> pairs_;
+  std::vector<std::uint32_t> passed_ns_;  // since start_ns_
 };
 
 }  // namespace whirl::board

@@ -52,6 +52,33 @@ TEST(BoardPins, APullIsAResistorOnItsPin) {
   EXPECT_NE(refusal(R"("pins":[{"name":"a","pin":"PC1","pull":"sideways"}])"), "");
 }
 
+// (pin's number, level, time) of each.
+std::vector<std::tuple<int, int, std::int64_t>> edges(const io::Batch& batch) {
+  std::vector<std::tuple<int, int, std::int64_t>> all;
+  for (io::Reader r(batch.bytes()); r.next();) {
+    EXPECT_EQ(r.header().kind, io::Kind::pin_edge);
+    all.emplace_back(r.header().port, r.as<io::PinEdge>().level, r.header().t_ns);
+  }
+  return all;
+}
+
+TEST(BoardPins, TheEdgesOfANamedPinAreLoggedAndNotThoseOfABus) {
+  RackBench b;
+  ASSERT_EQ(b.refusal(R"("pins":[{"name":"c","pin":"PB8","bus":"i2c1.scl"},
+                                  {"name":"d","pin":"PB9","bus":"i2c1.sda"},
+                                  {"name":"led","pin":"PC1","pull":"down"}])"),
+            "");
+  io::Wire& led = *b.bench.chip().pin("PC1");
+  const int driver = led.add_driver();
+  led.drive(driver, io::Drive::high, 1000);
+  led.drive(driver, io::Drive::high, 2000);  // no edge
+  led.drive(driver, io::Drive::low, 3000);
+  io::Wire& scl = *b.bench.chip().pin("PB8");
+  scl.drive(scl.add_driver(), io::Drive::low, 4000);
+  using Edge = std::tuple<int, int, std::int64_t>;
+  EXPECT_EQ(edges(b.happened), (std::vector<Edge>{{2, 0, 0}, {2, 1, 1000}, {2, 0, 3000}}));
+}
+
 TEST(BoardPins, ABusIsSolderedToThePinsThatTheBoardNames) {
   RackBench b;
   EXPECT_EQ(b.refusal(R"("pins":[{"name":"c","pin":"PB8","bus":"i2c1.scl"},

@@ -74,6 +74,35 @@ TEST(RackFindings, TwoSelectedDevicesOnOneBusAreNamedOnce) {
   EXPECT_EQ(b.found[0].what, "imu and spare are selected at once");
 }
 
+TEST(RackLog, ASpiTransactionSaysWhenEachPairHadPassed) {
+  Bench b;
+  b.build({imu("imu", "PC4")});
+  b.output(4, true);
+  b.chip.run(20'000'000);  // the part's own start-up
+  b.happened.clear();
+  b.output(4, false);
+  const io::Nanoseconds start = b.chip.now();
+  b.chip.chip().spi(1)->transfer(0xF5, 1'000'000, 3, start + 8'000);
+  b.chip.chip().spi(1)->transfer(0x00, 1'000'000, 3, start + 17'000);
+  b.chip.run(20'000);
+  b.output(4, true);
+  io::Reader r(b.happened.bytes());
+  while (r.next() && r.header().kind != io::Kind::spi_transaction) continue;
+  ASSERT_EQ(r.header().kind, io::Kind::spi_transaction);
+  const auto head = r.as<io::BusTransaction>();
+  EXPECT_EQ(head.start_ns, start);
+  EXPECT_EQ(head.length, 2u);
+  ASSERT_EQ(r.transferred().size(), 4u);
+  EXPECT_EQ(r.transferred()[0], 0xF5);
+  EXPECT_EQ(r.transferred()[3], 0x68);  // WHO_AM_I
+  const auto times = r.tail_after(sizeof head + 4);
+  std::uint32_t passed_ns[2];
+  ASSERT_EQ(times.size(), sizeof passed_ns);
+  std::memcpy(passed_ns, times.data(), sizeof passed_ns);
+  EXPECT_EQ(passed_ns[0], 8'000u);
+  EXPECT_EQ(passed_ns[1], 17'000u);
+}
+
 TEST(RackFindings, APinThatTheBoardNamesAndNothingDrivesIsSaidAtTheEnd) {
   Bench b;
   b.build({}, {{.name = "led", .pin = "PC7"},

@@ -129,6 +129,27 @@ TEST(I2cSlave, WriteThenRepeatedStartReadIsARegisterRead) {
   EXPECT_EQ(bench.reply.bytes, (Bytes{0x70, 0x71}));
 }
 
+// 400 kHz: nine clocks are 22.5 us. A slave that reads late holds SCL, and the byte behind comes late.
+TEST(I2cSlave, TheLogSaysWhenEachByteHadPassed) {
+  SlaveBench bench;
+  io::I2cTransaction logged;
+  bench.bus().on_transaction([&logged](const io::I2cTransaction& t) { logged = t; });
+  bench.send(0x29, {0x12, 0x03, 0xAB});
+  bench.clear_addr();
+  EXPECT_EQ(bench.take(), 0x12);
+  EXPECT_EQ(bench.take(), 0x03);
+  EXPECT_EQ(bench.take(), 0xAB);
+  bench.finish();
+  ASSERT_EQ(logged.bytes, (Bytes{0x12, 0x03, 0xAB}));
+  ASSERT_EQ(logged.passed_ns.size(), 3u);
+  EXPECT_GE(logged.passed_ns[0], 45'000u);  // the address before it
+  for (int i = 1; i < 3; ++i) {
+    EXPECT_GE(logged.passed_ns[i] - logged.passed_ns[i - 1], 22'500u) << i;
+    EXPECT_LT(logged.passed_ns[i] - logged.passed_ns[i - 1], 24'000u) << i;
+  }
+  EXPECT_LE(logged.passed_ns[2], logged.stop_ns - logged.start_ns);
+}
+
 TEST(I2cSlave, AnswersOnlyItsAddressesAndOnlyWithAck) {
   SlaveBench bench;
   bench.send(0x2A, {1});

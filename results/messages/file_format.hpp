@@ -1,0 +1,17 @@
+// The first bytes of a file of messages: see message_file.hpp.
+#pragma once
+#include <cstdint>
+
+namespace whirl::results {
+
+inline constexpr std::uint64_t kRowsUnknown = UINT64_MAX;
+
+struct FileStart {
+  char mark[8] = {'W', 'H', 'I', 'R', 'L', 'M', 'S', 'G'};
+  std::uint32_t version = 1;
+  std::uint32_t head_size = 0;
+  std::uint64_t rows = kRowsUnknown;
+};
+static_assert(sizeof(FileStart) == 24);
+
+}  // namespace whirl::results

@@ -1,0 +1,59 @@
+// bus.csv of each board: every transfer on I2C and SPI with its bytes and times.
+#include <cstdio>
+
+#include "base/output_file.hpp"
+#include "results/sinks/sink_types.hpp"
+
+namespace whirl::results {
+namespace {
+
+class BusCsv : public Sink {
+ public:
+  explicit BusCsv(const SinkSetup& setup) {
+    for (std::size_t node = 0; node < setup.head.nodes.size(); ++node) {
+      files_.emplace_back(file_of_node(setup, node, "bus", ".csv"));
+      files_.back().write("start_s,stop_s,bus,address,direction,acknowledged,length,bytes\n");
+    }
+  }
+
+  void on_message(const io::Reader& message) override {
+    const io::Header& header = message.header();
+    const bool spi = header.kind == io::Kind::spi_transaction;
+    if (!spi && header.kind != io::Kind::i2c_transaction) return;
+    const auto t = message.as<io::BusTransaction>();
+    char text[96];
+    std::snprintf(text, sizeof text, "%.9f,%.9f,%s%d,0x%02X,%s,%d,%u,",
+                  static_cast<double>(t.start_ns) * 1e-9, static_cast<double>(header.t_ns) * 1e-9,
+                  spi ? "spi" : "i2c", header.port, t.address,
+                  spi ? "both" : (t.read != 0 ? "read" : "write"), t.acked != 0 ? 1 : 0, t.length);
+    line_ = text;
+    for (const std::uint8_t byte : message.transferred()) {
+      static constexpr char kHex[] = "0123456789ABCDEF";
+      line_ += kHex[byte >> 4];
+      line_ += kHex[byte & 15];
+    }
+    line_ += '\n';
+    files_[header.board].write(line_);
+  }
+
+  std::vector<Error> finish() override {
+    std::vector<Error> lost;
+    for (OutputFile& file : files_) {
+      if (const auto closed = file.close(); !closed) lost.push_back(closed.error());
+    }
+    return lost;
+  }
+
+ private:
+  std::vector<OutputFile> files_;
+  std::string line_;
+};
+
+}  // namespace
+
+const SinkType kBus_csv{"csv", "bus.csv", true,
+                        [](const SinkSetup& setup) -> std::unique_ptr<Sink> {
+                          return std::make_unique<BusCsv>(setup);
+                        }};
+
+}  // namespace whirl::results

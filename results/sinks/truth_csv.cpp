@@ -1,0 +1,66 @@
+// truth.csv: every signal at every step.
+#include <charconv>
+
+#include "base/output_file.hpp"
+#include "results/sinks/sink_types.hpp"
+
+namespace whirl::results {
+namespace {
+
+// A row per millisecond of ten minutes is 150 MB of text: long runs keep every second, third, ... row.
+constexpr std::uint64_t kMostRows = 200'000;
+constexpr std::size_t kFlush_B = 60'000;
+
+class TruthCsv : public Sink {
+ public:
+  explicit TruthCsv(const SinkSetup& setup)
+      : out_(setup.folder + "/truth.csv"), stride_(1 + setup.rows / kMostRows) {
+    text_ = "t_s";
+    for (const Column& column : setup.head.columns) {
+      text_ += "," + column.name + (column.unit_suffix.empty() ? "" : "_" + column.unit_suffix);
+    }
+    text_ += '\n';
+  }
+
+  void on_row(std::int64_t t_ns, std::span<const double> values) override {
+    if (row_++ % stride_ != 0) return;
+    add(static_cast<double>(t_ns) * 1e-9);
+    for (const double value : values) {
+      text_ += ',';
+      add(value);
+    }
+    text_ += '\n';
+    if (text_.size() > kFlush_B) flush();
+  }
+
+  std::vector<Error> finish() override {
+    flush();
+    if (const auto closed = out_.close(); !closed) return {closed.error()};
+    return {};
+  }
+
+ private:
+  // Seven digits: below what any model here resolves, and the same on every machine.
+  void add(double x) {
+    char text[32];
+    const auto end = std::to_chars(text, text + sizeof text, x, std::chars_format::general, 7).ptr;
+    text_.append(text, end);
+  }
+  void flush() {
+    out_.write(text_);
+    text_.clear();
+  }
+
+  OutputFile out_;
+  std::string text_;
+  std::uint64_t stride_, row_ = 0;
+};
+
+}  // namespace
+
+const SinkType kTruth_csv{"csv", "truth.csv", true,
+                          [](const SinkSetup& setup) -> std::unique_ptr<Sink> {
+                            return std::make_unique<TruthCsv>(setup);
+                          }};
+
+}  // namespace whirl::results
