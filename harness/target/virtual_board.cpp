@@ -258,8 +258,7 @@ Result<Done> VirtualBoard::start() {
     process_->pid = 0;
     return Error{ErrorKind::host, options_.qemu, "cannot start a process", ""};
   }
-  io::Batch nothing;  // the board reports at t = 0 that it stands
-  auto arrived = arrive(nothing);
+  auto arrived = await(at_start_);  // it reports at t = 0 that it stands
   if (!arrived) return arrived.error();
   return Done{};
 }
@@ -271,6 +270,16 @@ void VirtualBoard::run(std::int64_t until_ns, const io::Batch& sensed) {
 }
 
 Result<TargetState> VirtualBoard::arrive(io::Batch& happened) {
+  auto arrived = await(happened);
+  if (!arrived || at_start_.empty()) return arrived;
+  io::Batch all;
+  std::swap(all, at_start_);
+  for (io::Reader r(happened.bytes()); r.next();) all.add(r.header(), r.payload());
+  happened = std::move(all);
+  return arrived;
+}
+
+Result<TargetState> VirtualBoard::await(io::Batch& happened) {
   happened.clear();
   if (!posted_) return posted_.error();
   if (process_->link.wait(kSlice_ms)) return delivered(happened);

@@ -43,11 +43,13 @@ class VirtualBoard final : public Target {
 
  private:
   struct Process;
+  Result<TargetState> await(io::Batch& happened);
   Result<TargetState> delivered(io::Batch& happened) const;
   Error give_up(double cpu_s_before);
   std::unique_ptr<Process> process_;
   VirtualBoardOptions options_;
   Result<Done> posted_ = Done{};
+  io::Batch at_start_;  // what the board told of itself before its first step
 };
 
 // For `whirl doctor`: QEMU's first line of --version, or what is wrong.

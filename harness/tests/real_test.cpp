@@ -296,6 +296,12 @@ TEST_F(Real, AnImageThatNeverFeedsTheBusFailsByItsDeadline) {
   expect_told(outcome, 1, "esc1 write period deviation");
 }
 
+TEST_F(Real, WhatTheBoardSaysBeforeItsFirstStepIsKept) {
+  const Outcome outcome = run("sleeper", "t:wait \"5 ms\"");
+  const std::string said = whirl::text_of(outcome.run["findings"]);
+  EXPECT_NE(said.find("the image has no function 'fw::imu_task'"), std::string::npos) << said;
+}
+
 TEST_F(Real, AnImageThatSleepsForEverFailsAtTheTimeoutInVirtualTime) {
   const Outcome outcome =
       run("sleeper", "t:wait_until(function(s) return s.told_armed == 1 end, \"1 min\")");
