@@ -2,7 +2,7 @@
 # mutant is compiled in; WHIRL_MUTANT=n chooses one when a test runs (cmake/mutate/run.py).
 include_guard()
 option(WHIRL_MUTATE "Compile mutants of the judging code in" OFF)
-set(WHIRL_MUTATED "^(harness/(metrics|board|plan|executive)|results/(report|verdict)|io_bridges/qemu/board/watch)[^/]*(/[^/]*)?[.]cpp$")
+set(WHIRL_MUTATED "^(harness/(metrics|board|lockstep|world|plan|executive)/[^/]*|harness/catalogue/(board_file|device_entry)|results/(report|verdict)[^/]*|io_bridges/(board_description/[^/]*|qemu/board/watch[^/]*))[.]cpp$")
 
 # Gives in `result` the sources of a library, those of the judging code by their mutated copies.
 function(whirl_mutated_sources library result)

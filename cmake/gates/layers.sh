@@ -39,19 +39,19 @@ harness/job              base/ harness/job/
 harness/lua              base/ harness/lua/
 harness/metrics          harness/metrics/
 harness/world            base/ harness/world/ io_bridges/messages/
-harness/board            base/ harness/board/ harness/lua/ io_bridges/board_description/ io_bridges/rack/
+harness/board            base/ harness/board/ io_bridges/board_description/
 harness/target           base/ harness/target/ io_bridges/
 harness/lockstep         base/ harness/lockstep/ harness/target/target.hpp harness/world/ io_bridges/messages/
-harness/plan             base/ harness/board/ harness/lua/ harness/metrics/ harness/plan/ harness/target/offers.hpp harness/world/ results/
+harness/plan             base/ harness/board/ harness/lua/ harness/metrics/ harness/plan/ harness/target/offers.hpp harness/world/ io_bridges/board_description/bus_name.hpp results/
 harness/executive        base/ harness/board/ harness/executive/ harness/lockstep/ harness/metrics/ harness/plan/ harness/target/ harness/world/ io_bridges/devices/faults.hpp io_bridges/messages/ results/
-harness/catalogue        base/ harness/calibrate/setup.hpp harness/catalogue/ harness/flight/ harness/lua/ harness/stand/ io_bridges/protocols/ plant/ firmware/esc/core/
+harness/catalogue        base/ harness/calibrate/setup.hpp harness/catalogue/ harness/flight/ harness/lua/ harness/stand/ io_bridges/board_description/ io_bridges/protocols/ io_bridges/rack/ plant/ firmware/esc/core/
 harness/flight           base/ harness/flight/ harness/world/ io_bridges/messages/ io_bridges/protocols/ plant/ firmware/esc/core/
 harness/stand            base/ harness/stand/ harness/world/ io_bridges/board_description/ io_bridges/messages/ io_bridges/protocols/ plant/
 harness/sweep            base/ harness/flight/flight_params.hpp harness/sweep/ plant/ results/
 harness/timing           base/ harness/target/ harness/timing/
 harness/calibrate        base/ harness/calibrate/ harness/lockstep/ harness/target/ harness/world/ io_bridges/protocols/ results/ firmware/esc/core/
 harness/cli              base/ harness/board/ harness/calibrate/ harness/catalogue/ harness/cli/ harness/executive/ harness/job/ harness/plan/ harness/sweep/ harness/target/ harness/timing/ harness/world/ io_bridges/board_description/ io_bridges/rack/ plant/validation/ results/
-harness/fuzz             base/ harness/board/ harness/calibrate/ harness/catalogue/ harness/fuzz/ harness/plan/ io_bridges/ plant/ results/
+harness/fuzz             base/ harness/calibrate/ harness/catalogue/ harness/fuzz/ harness/plan/ io_bridges/ plant/ results/
 cmake                    cmake/
 cmake/mutate             cmake/mutate/
 firmware                 firmware/

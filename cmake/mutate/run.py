@@ -23,9 +23,14 @@ WANTED = 0.9
 JUDGING = ("harness/", "results/")
 TESTS = [
     (("harness/metrics/",), ["harness/metrics/metrics_test"]),
-    (("io_bridges/",), ["io_bridges/qemu/board/watch_unit_test"]),
+    (("io_bridges/qemu/",), ["io_bridges/qemu/board/watch_unit_test"]),
+    (("io_bridges/board_description/",), ["io_bridges/board_description/board_text_test"]),
     (("results/",), ["results/results_test"]),
-    (("harness/board/",), ["harness/board/board_description_test"]),
+    (("harness/board/",), ["harness/board/node_test"]),
+    (("harness/catalogue/", "io_bridges/board_description/"), ["harness/catalogue/catalogue_test"]),
+    (("harness/lockstep/",), ["harness/lockstep/lockstep_test"]),
+    (("harness/world/",), ["harness/world/world_test"]),
+    (("harness/plan/",), ["harness/plan/signal_rows_test"]),
     (("harness/executive/",), ["harness/executive/executive_test"]),
     (JUDGING, ["harness/tests/oracle/judging_test"]),
     (JUDGING, ["harness/tests/oracle/plan_oracle", "--count", "400"]),

@@ -7,13 +7,13 @@
 #include <vector>
 
 #include "base/result.hpp"
-#include "harness/board/board_file.hpp"
+#include "io_bridges/board_description/board_description.hpp"
 
 namespace whirl {
 
 struct Node {
   std::string name;  // empty: the only one
-  Board board;
+  BoardDescription board;
 
   // As reports name it: with the node's name where it has one.
   std::string qualified(const std::string& what) const {

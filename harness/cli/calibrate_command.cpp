@@ -21,7 +21,7 @@ using calibrate::Calibration;
 
 struct Parts {
   plan::Plan plan;
-  Board board;
+  BoardDescription board;
   std::unique_ptr<World> world;
   std::unique_ptr<Target> target;
 };

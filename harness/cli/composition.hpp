@@ -9,7 +9,7 @@
 #include <string>
 
 #include "base/result.hpp"
-#include "harness/board/board_file.hpp"
+#include "harness/catalogue/board_file.hpp"
 #include "harness/plan/plan_file.hpp"
 #include "harness/target/target.hpp"
 #include "harness/world/world.hpp"
@@ -18,11 +18,11 @@ namespace whirl::cli {
 
 struct Setup {  // of a run; of one board of it, where a target is made
   const plan::Plan& plan;
-  std::size_t node;          // in the plan's list; the world surrounds the first
-  const Board& board;        // of that node
-  std::string root;          // of the project: test_plans, build, results
-  std::string image;         // path of the ELF
-  std::string vehicle_file;  // path; empty for a stand
+  std::size_t node;               // in the plan's list; the world surrounds the first
+  const BoardDescription& board;  // of that node
+  std::string root;               // of the project: test_plans, build, results
+  std::string image;              // path of the ELF
+  std::string vehicle_file;       // path; empty for a stand
   std::uint64_t seed = 1;
   int gdb_port = 0;  // 0: no gdb
   Settings settings = {};

@@ -56,7 +56,7 @@ struct Prepared {
 };
 
 // The part of a board that speaks on that UART to the world outside; null: none does.
-const BoardDevice* serial_on(const Board& board, std::uint16_t uart) {
+const BoardDevice* serial_on(const BoardDescription& board, std::uint16_t uart) {
   for (const BoardDevice& device : board.devices) {
     const std::string number = std::to_string(uart);
     const bool on_it = device.bus == "usart" + number || device.bus == "uart" + number;

@@ -1,5 +1,5 @@
 // Fuzzes board files, up to what the board's process reads of them.
-#include "harness/board/board_file.hpp"
+#include "harness/catalogue/board_file.hpp"
 #include "harness/fuzz/input_file.hpp"
 #include "io_bridges/board_description/board_text.hpp"
 

@@ -1,11 +1,11 @@
 // t:command, t:gust, t:fault: what a plan does to the world and to the board.
 #include <algorithm>
 
-#include "harness/plan/bus_name.hpp"
 #include "harness/plan/needs.hpp"
 #include "harness/plan/raise.hpp"
 #include "harness/plan/requests.hpp"
 #include "harness/plan/values.hpp"
+#include "io_bridges/board_description/bus_name.hpp"
 
 namespace whirl::plan {
 namespace {
@@ -35,7 +35,7 @@ int named_bus(lua_State* L, const std::string& bus) {
   return *number;
 }
 
-fault_at::Device device_at(lua_State* L, const std::string& name, const Board& board) {
+fault_at::Device device_at(lua_State* L, const std::string& name, const BoardDescription& board) {
   const BoardDevice* device = board.find(name);
   if (device == nullptr) raise(L, "unknown device '" + name + "' on " + board.name);
   return {name, named_bus(L, device->bus),
@@ -50,7 +50,8 @@ fault_at::Wire wire_at(lua_State* L, const lua::Table& asked, const std::string&
   return wire;
 }
 
-fault_at::Function function_at(lua_State* L, const std::string& name, const Board& board) {
+fault_at::Function function_at(lua_State* L, const std::string& name,
+                               const BoardDescription& board) {
   const int number = board.watch_number(name);
   if (number < 0) raise(L, "'" + name + "' is not watched", "add it to the watch list");
   return {name, number};
@@ -69,7 +70,7 @@ NodePlace node_of_fault(lua_State* L, const lua::Table& asked, const std::vector
 
 // device, bus and address, motor or function; without any it is everywhere. `at` is where.
 FaultPlace place_of_fault(lua_State* L, const lua::Table& asked, const std::string& at,
-                          const Board& board) {
+                          const BoardDescription& board) {
   const bool on_wire = asked.has("bus") || asked.has("address");
   const int places = static_cast<int>(asked.has("device")) + static_cast<int>(on_wire) +
                      static_cast<int>(asked.has("motor")) + static_cast<int>(asked.has("function"));

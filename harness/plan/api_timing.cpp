@@ -4,10 +4,10 @@
 #include <cstdio>
 
 #include "harness/metrics/timing.hpp"
-#include "harness/plan/bus_name.hpp"
 #include "harness/plan/needs.hpp"
 #include "harness/plan/raise.hpp"
 #include "harness/plan/values.hpp"
+#include "io_bridges/board_description/bus_name.hpp"
 
 namespace whirl::plan {
 namespace {
@@ -249,7 +249,7 @@ int bus(lua_State* L) {
   const lua::Table wish = check_table(L, 2);
   const std::string name = wish.text("device");
   const NodePlace at = node_at(L, self, name);
-  const Board& board = self.stage().nodes[at.node].board;
+  const BoardDescription& board = self.stage().nodes[at.node].board;
   const BoardDevice* device = board.find(at.rest);
   if (device == nullptr) raise(L, "unknown device '" + at.rest + "' on " + board.name);
   BusWish w;
@@ -339,7 +339,7 @@ int latency(lua_State* L) {
   must_offer(L, self, "latency");
   const lua::Table wish = check_table(L, 2);
   const NodePlace at = node_at(L, self, wish.text("from"));
-  const Board& board = self.stage().nodes[at.node].board;
+  const BoardDescription& board = self.stage().nodes[at.node].board;
   const std::string from = at.rest, to = on_node(L, self, at.node, wish.text("to"));
   LatencyWish w;
   w.name = self.stage().nodes[at.node].qualified(from) + " to " + to + " latency";

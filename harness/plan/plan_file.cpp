@@ -6,8 +6,8 @@
 
 #include "base/text.hpp"
 #include "harness/lua/node.hpp"
-#include "harness/plan/bus_name.hpp"
 #include "harness/plan/raise.hpp"
+#include "io_bridges/board_description/bus_name.hpp"
 
 namespace whirl::plan {
 namespace {

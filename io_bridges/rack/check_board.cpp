@@ -2,6 +2,8 @@
 
 #include <map>
 
+#include "io_bridges/board_description/bus_name.hpp"
+
 namespace whirl::rack {
 namespace {
 
@@ -36,7 +38,7 @@ std::optional<BoardComplaint> claim_key(Owners& owners, const BoardDevice& devic
   }
   // UART4 and USART4 are one thing; so are all spellings of a bus.
   const std::string what =
-      key.kind == KeyKind::bus ? key.unit + std::to_string(bus_number(text)) : text;
+      key.kind == KeyKind::bus ? key.unit + std::to_string(bus_number(text).value_or(0)) : text;
   const std::string whose = key.sharing == Sharing::own ? "" : device.type;
   return owners.claim(whose + " " + key.path + " " + what, "share one " + key.path + ", " + text,
                       device.name, number, key.path);

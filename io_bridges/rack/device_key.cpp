@@ -252,9 +252,4 @@ std::string default_text(const DeviceKey& key) {
   return list;
 }
 
-int bus_number(std::string_view bus) {
-  const std::size_t digit = bus.find_last_not_of("0123456789") + 1;  // "i2c3": the last one counts
-  return std::atoi(std::string(bus.substr(digit)).c_str());
-}
-
 }  // namespace whirl::rack

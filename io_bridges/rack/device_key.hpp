@@ -72,7 +72,4 @@ std::string unit_text(const DeviceKey& key);     // "kHz", "pin", "bus i2cN"
 std::string range_text(const DeviceKey& key);    // "1..400", may be empty
 std::string default_text(const DeviceKey& key);  // "needed", "400 kHz", "none"
 
-// "i2c3" is 3; 0 where there is no number.
-int bus_number(std::string_view bus);
-
 }  // namespace whirl::rack

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "base/result.hpp"
+#include "io_bridges/board_description/bus_name.hpp"
 #include "io_bridges/devices/bus.hpp"
 #include "io_bridges/devices/faults.hpp"
 #include "io_bridges/devices/i2c_bus.hpp"
@@ -69,7 +70,7 @@ class DeviceSlot {
   const std::string& name() const { return device_.name; }
   std::uint16_t number() const { return number_; }  // in the board's list
   std::uint16_t bus_number() const {
-    return static_cast<std::uint16_t>(rack::bus_number(device_.bus));
+    return static_cast<std::uint16_t>(whirl::bus_number(device_.bus).value_or(0));
   }
   const std::string& place() const { return place_; }
   Rack& rack() { return rack_; }

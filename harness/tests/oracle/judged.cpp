@@ -150,8 +150,8 @@ class PlayedTarget final : public Target {
   std::vector<io::FaultCommand> faults_;
 };
 
-Board board_of(const Scenario& scenario) {
-  Board board;
+BoardDescription board_of(const Scenario& scenario) {
+  BoardDescription board;
   board.name = "played";
   for (const std::string& name : scenario.spi_devices) {
     BoardDevice device;

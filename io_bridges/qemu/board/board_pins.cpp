@@ -1,7 +1,10 @@
 #include "io_bridges/qemu/board/board_pins.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <utility>
+
+#include "io_bridges/board_description/bus_name.hpp"
 
 namespace whirl::board {
 namespace {
@@ -18,10 +21,11 @@ const BoardPin* line_of(const std::vector<BoardPin>& pins, const std::string& li
 }
 
 // "i2c2.scl" is 2; 0: no line of an I2C bus.
-int bus_number(const std::string& line) {
-  int number = 0, end = 0;
-  const int read = std::sscanf(line.c_str(), "i2c%1d.s%*[cd]%*[la]%n", &number, &end);
-  return read == 1 && static_cast<std::size_t>(end) == line.size() ? number : 0;
+int bus_of_line(const std::string& line) {
+  const auto dot = std::min(line.find('.'), line.size());
+  const std::string name = line.substr(dot);
+  if (!line.starts_with("i2c") || (name != ".scl" && name != ".sda")) return 0;
+  return bus_number(line.substr(0, dot)).value_or(0);
 }
 
 }  // namespace
@@ -34,7 +38,7 @@ Result<std::set<int>> join_pins(const std::vector<BoardPin>& pins, stm32::ChipMo
       return wrong(board, pin, "the part has no pin '" + pin.pin + "'");
     }
     if (pin.bus.empty()) continue;
-    const int number = bus_number(pin.bus);
+    const int number = bus_of_line(pin.bus);
     const std::string bus = "i2c" + std::to_string(number);
     const BoardPin *scl = line_of(pins, bus + ".scl"), *sda = line_of(pins, bus + ".sda");
     if (number == 0 || scl == nullptr || sda == nullptr) {

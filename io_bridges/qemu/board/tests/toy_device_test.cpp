@@ -4,7 +4,7 @@
 #include <fstream>
 
 #include "base/scratch_folder.hpp"
-#include "harness/board/board_file.hpp"
+#include "harness/catalogue/board_file.hpp"
 #include "io_bridges/qemu/board/device_rack.hpp"
 #include "io_bridges/qemu/board/tests/toy_device.hpp"
 #include "io_bridges/qemu/stm32/tests/chip_bench.hpp"
@@ -19,7 +19,7 @@ rack::DeviceTypes with_toy() {
   return types;
 }
 
-Result<Board> read(const std::string& keys) {
+Result<BoardDescription> read(const std::string& keys) {
   const ScratchFolder folder;
   const std::string path = folder.file("b.lua");
   std::ofstream(path) << "return { board = 'b', mcu = 'stm32f405rg', hse = '8 MHz', devices = {\n"

@@ -12,9 +12,7 @@
 
 namespace whirl {
 
-using Board = BoardDescription;
-
-Result<Board> read_board(const std::string& path,
-                         const rack::DeviceTypes& types = rack::device_types());
+Result<BoardDescription> read_board(const std::string& path,
+                                    const rack::DeviceTypes& types = rack::device_types());
 
 }  // namespace whirl

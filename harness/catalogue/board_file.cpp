@@ -1,10 +1,10 @@
-#include "harness/board/board_file.hpp"
+#include "harness/catalogue/board_file.hpp"
 
 #include <bit>
 #include <cmath>
 
 #include "base/text.hpp"
-#include "harness/board/device_entry.hpp"
+#include "harness/catalogue/device_entry.hpp"
 #include "harness/lua/table.hpp"
 
 namespace whirl {
@@ -31,7 +31,7 @@ std::vector<BoardPin> read_pins(const lua::Table& file) {
   return pins;
 }
 
-void read_devices(const lua::Table& file, const rack::DeviceTypes& types, Board& board) {
+void read_devices(const lua::Table& file, const rack::DeviceTypes& types, BoardDescription& board) {
   const std::vector<lua::Table> entries = file.tables("devices");
   for (const lua::Table& entry : entries) {
     board.devices.push_back(read_device(entry, types));
@@ -44,11 +44,11 @@ void read_devices(const lua::Table& file, const rack::DeviceTypes& types, Board&
 
 }  // namespace
 
-Result<Board> read_board(const std::string& path, const rack::DeviceTypes& types) {
+Result<BoardDescription> read_board(const std::string& path, const rack::DeviceTypes& types) {
   const auto file = lua::read_file(path);
   if (!file) return file.error();
   const lua::Table& t = file.value();
-  Board board;
+  BoardDescription board;
   board.file = path;
   board.name = t.text("board");
   board.mcu = t.text("mcu");

@@ -1,4 +1,4 @@
-#include "harness/board/device_entry.hpp"
+#include "harness/catalogue/device_entry.hpp"
 
 namespace whirl {
 namespace {

@@ -1,4 +1,4 @@
-#include "harness/board/board_file.hpp"
+#include "harness/catalogue/board_file.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 namespace whirl {
 namespace {
 
-Result<Board> read_text(const std::string& text) {
+Result<BoardDescription> read_text(const std::string& text) {
   const ScratchFolder folder;
   const std::string path = folder.file("board.lua");
   std::ofstream(path) << text;
@@ -34,7 +34,7 @@ constexpr const char* kDevices = R"(lse = '32768 Hz', timing = '16 ns', devices 
 TEST(BoardDescription, GivesItsDevicesByNameAndNumber) {
   const auto board = read_text(board_with(kDevices));
   ASSERT_TRUE(board) << board.error().message();
-  const Board& b = board.value();
+  const BoardDescription& b = board.value();
   EXPECT_EQ(b.name, "b");
   EXPECT_EQ(b.mcu, "stm32f405rg");
   EXPECT_EQ(b.hse_Hz, 24e6);
@@ -57,7 +57,7 @@ TEST(BoardDescription, GivesItsDevicesByNameAndNumber) {
 TEST(BoardDescription, HoldsAllInSI) {
   const auto board = read_text(board_with(kDevices));
   ASSERT_TRUE(board);
-  const Board& b = board.value();
+  const BoardDescription& b = board.value();
   ASSERT_EQ(b.devices.size(), 6u);
   const BoardDevice& imu = b.devices[0];
   EXPECT_EQ(imu.name, "imu");
@@ -93,7 +93,7 @@ TEST(BoardDescription, RefusesDoublesAndWhatIsOutOfRange) {
   };
   const std::string other = "name = 'b', bus = 'i2c1', address = 9, motor = 2";
   struct Bad {
-    Result<Board> board;
+    Result<BoardDescription> board;
     const char* words;
   };
   const Bad kAll[] = {

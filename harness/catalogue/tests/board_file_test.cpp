@@ -1,5 +1,5 @@
 // Board files: what reaches the board's process, and each mistake in one sentence.
-#include "harness/board/board_file.hpp"
+#include "harness/catalogue/board_file.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 namespace whirl {
 namespace {
 
-Result<Board> read(const std::string& keys) {
+Result<BoardDescription> read(const std::string& keys) {
   const ScratchFolder folder;
   const std::string path = folder.file("b.lua");
   std::ofstream(path, std::ios::binary)
@@ -24,7 +24,7 @@ std::string complaint(const std::string& keys) {
 }
 TEST(BoardFile, ACrystalStartsAfterTwoMillisecondsUnlessTheFileKnowsBetter) {
   EXPECT_EQ(read("").value().hse_start_ns, 2'000'000);
-  const Board quick = read(R"(hse_start = "0.2 ms")").value();
+  const BoardDescription quick = read(R"(hse_start = "0.2 ms")").value();
   EXPECT_EQ(quick.hse_start_ns, 200'000);
   EXPECT_EQ(quick.timing_profile(), "CPU cycles (+-10 %), crystal ready after 0.2 ms");
 }
@@ -32,7 +32,7 @@ TEST(BoardFile, ACrystalStartsAfterTwoMillisecondsUnlessTheFileKnowsBetter) {
 TEST(BoardFile, TimePassesByCyclesUnlessTheFileFixesIt) {
   EXPECT_EQ(read("").value().ns_per_instruction, 0);
   EXPECT_EQ(read(R"(timing = "cycles")").value().ns_per_instruction, 0);
-  const Board fixed = read(R"(timing = "8 ns")").value();
+  const BoardDescription fixed = read(R"(timing = "8 ns")").value();
   EXPECT_EQ(fixed.ns_per_instruction, 8);
   EXPECT_EQ(fixed.timing_profile(), "8 ns per instruction, crystal ready after 2 ms");
   EXPECT_NE(complaint(R"(timing = "8 instructions")").find("timing"), std::string::npos);
@@ -41,7 +41,7 @@ TEST(BoardFile, TimePassesByCyclesUnlessTheFileFixesIt) {
 TEST(BoardFile, OscillatorsAreWhatTheySayUnlessTheFileKnowsBetter) {
   EXPECT_EQ(read("").value().hsi_error, 0.0);
   EXPECT_EQ(read("").value().hse_error, 0.0);
-  const Board off = read(R"(hsi_error = "-1 %", hse_error = "50 ppm")").value();
+  const BoardDescription off = read(R"(hsi_error = "-1 %", hse_error = "50 ppm")").value();
   EXPECT_TRUE(near(off.hsi_error, -0.01, round_off(2, 0.01)));
   EXPECT_TRUE(near(off.hse_error, 5e-5, round_off(2, 5e-5)));
   EXPECT_EQ(off.timing_profile(),
@@ -49,16 +49,17 @@ TEST(BoardFile, OscillatorsAreWhatTheySayUnlessTheFileKnowsBetter) {
 }
 
 TEST(BoardFile, PinsCarryTheirResistorAndTheirBus) {
-  const Board board = read(R"(pins = { { name = "c", pin = "PB8", bus = "i2c1.scl", pull = "up" },
+  const BoardDescription board =
+      read(R"(pins = { { name = "c", pin = "PB8", bus = "i2c1.scl", pull = "up" },
                                        { name = "d", pin = "PB9" } })")
-                          .value();
+          .value();
   EXPECT_EQ(board.pins[0].bus, "i2c1.scl");
   EXPECT_EQ(board.pins[0].pull, "up");
   EXPECT_EQ(board.pins[1].pull, "");
 }
 
 TEST(BoardFile, ABootLoaderLiesBesideTheFileAndTheStartIsAnAddress) {
-  const Board board = read(R"(boot_image = "boot.elf", start = 0x08004000)").value();
+  const BoardDescription board = read(R"(boot_image = "boot.elf", start = 0x08004000)").value();
   EXPECT_NE(board.boot_image.find("/boot.elf"), std::string::npos);
   EXPECT_EQ(board.start, 0x08004000u);
 }
