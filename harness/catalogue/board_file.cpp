@@ -1,6 +1,8 @@
 #include "harness/catalogue/board_file.hpp"
 
+#include <algorithm>
 #include <bit>
+#include <cctype>
 #include <cmath>
 
 #include "base/text.hpp"
@@ -15,13 +17,32 @@ void refuse_other_bytes(const lua::Table& t, const char* key, const std::string&
   if (legal_text(text) != text) t.refuse(key, "is not plain UTF-8 text");
 }
 
+// "boards/esc.lua:12" of an entry.
+std::string line_of(const lua::Table& entry) {
+  const std::string place = entry.place("name");
+  return place.substr(0, place.rfind(": "));
+}
+
+// Plans speak of it: as "esc1", "NODE/esc1", and of all ESCs as "esc".
+void check_name(const lua::Table& entry, const std::string& name) {
+  refuse_other_bytes(entry, "name", name);
+  const bool odd = std::any_of(name.begin(), name.end(), [](char c) {
+    return c == '/' || std::iscntrl(static_cast<unsigned char>(c)) != 0;
+  });
+  if (odd)
+    entry.refuse("name", "has a '/' or what no line shows", "letters, digits and '_' are well");
+  if (name == "esc") entry.refuse("name", "'esc' means every ESC of a board", "call it esc1");
+}
+
 std::vector<BoardPin> read_pins(const lua::Table& file) {
   std::vector<BoardPin> pins;
   for (const lua::Table& entry : file.tables("pins")) {
     BoardPin pin{.name = entry.text("name"), .pin = entry.text("pin")};
     if (entry.has("pull")) pin.pull = entry.choice("pull", {"up", "down"});
     if (entry.has("bus")) pin.bus = entry.text("bus");
-    refuse_other_bytes(entry, "name", pin.name + pin.pin + pin.bus);
+    check_name(entry, pin.name);
+    refuse_other_bytes(entry, "pin", pin.pin + pin.bus);
+    pin.place = line_of(entry);
     for (const BoardPin& other : pins) {
       if (other.name == pin.name) entry.refuse("name", "two pins are called so");
       if (other.pin == pin.pin) entry.refuse("pin", "is listed twice");
@@ -35,7 +56,8 @@ void read_devices(const lua::Table& file, const rack::DeviceTypes& types, BoardD
   const std::vector<lua::Table> entries = file.tables("devices");
   for (const lua::Table& entry : entries) {
     board.devices.push_back(read_device(entry, types));
-    refuse_other_bytes(entry, "name", board.devices.back().name);
+    check_name(entry, board.devices.back().name);
+    board.devices.back().place = line_of(entry);
   }
   if (const auto wrong = rack::check_sharing(board, types)) {
     refuse(entries[static_cast<std::size_t>(wrong->device)], *wrong);

@@ -26,6 +26,15 @@ std::vector<plant::RotorMount> plus_quad(double arm_m, double above_m) {
           {{0, -arm_m, -above_m}, -1}};
 }
 
+// Of the last one with those before it.
+void refuse_shared_place(const Table& motor, const std::vector<plant::RotorMount>& rotors) {
+  constexpr double kApart_m = 0.01;  // two discs one above the other are further apart
+  for (std::size_t i = 0; i + 1 < rotors.size(); ++i) {
+    if ((rotors[i].p_BP_B_m - rotors.back().p_BP_B_m).norm() >= kApart_m) continue;
+    motor.refuse("place", "is that of motor " + std::to_string(i + 1) + ", within 1 cm");
+  }
+}
+
 void read_rotors(const Table& t, plant::AirframeParams& a) {
   const double above_m = t.quantity_or("rotor_height", Dimension::length, 0.03);
   if (t.has("arm") == t.has("motors")) {
@@ -43,6 +52,11 @@ void read_rotors(const Table& t, plant::AirframeParams& a) {
         {{place.quantity("forward", Dimension::length), place.quantity("right", Dimension::length),
           -place.quantity_or("above", Dimension::length, above_m)},
          spin_of(motor)});
+    refuse_shared_place(motor, a.rotors);
+  }
+  if (a.rotors.empty() || a.rotors.size() > plant::kMostMotors) {
+    t.refuse("motors", "1 to " + std::to_string(plant::kMostMotors) + " motors are wanted, not " +
+                           std::to_string(a.rotors.size()));
   }
 }
 

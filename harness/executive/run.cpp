@@ -176,7 +176,7 @@ class Run {
     for (std::size_t i = 0; i < parts_.nodes.size(); ++i) {
       const results::EventLog& log = logs_[i];
       if (!log.cpu_faults.empty()) return core_fault(parts_.nodes[i], log.cpu_faults.front());
-      const char* watchdog = parts_.plan.may_reset ? nullptr : bitten(log.resets);
+      const char* watchdog = parts_.plan.nodes[i].may_reset ? nullptr : bitten(log.resets);
       if (watchdog != nullptr) return watchdog_reset(parts_.nodes[i], watchdog);
     }
     return true;

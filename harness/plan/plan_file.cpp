@@ -16,7 +16,8 @@ constexpr std::size_t kMost_nodes = 16;
 constexpr std::int64_t kDefaultTimeout_ns = 120'000'000'000;
 
 PlanNode read_node(const lua::Table& t) {
-  return {"", t.text("image"), t.text_or("board", "px4fmu_v1"), t.texts("watch")};
+  return {"", t.text("image"), t.text_or("board", "px4fmu_v1"), t.texts("watch"),
+          t.flag_or("may_reset", false)};
 }
 
 // Names stand before a slash, in file names and in front of a dot.
@@ -59,7 +60,7 @@ void read_nodes(const lua::Table& t, Plan& plan) {
     plan.nodes.push_back(read_node(t));
     return;
   }
-  for (const char* key : {"image", "board", "watch"}) {
+  for (const char* key : {"image", "board", "watch", "may_reset"}) {
     if (t.has(key)) t.refuse(key, "stands in each of the nodes");
   }
   for (const lua::Table& entry : t.tables("nodes")) {
@@ -92,7 +93,6 @@ Result<Plan> read_plan(const lua::Table& t, std::string name, const std::string&
   plan.tags = t.texts("tags");
   plan.seed = static_cast<std::uint64_t>(t.integer_or("seed", 1, 0));
   plan.timeout_ns = t.duration_ns_or("timeout", kDefaultTimeout_ns);
-  plan.may_reset = t.flag_or("may_reset", false);
   // What the stand is made of is read (and its unknown keys refused) by who makes it.
   if (auto good = t.finish_except({"stand"}); !good) return good.error();
   return plan;

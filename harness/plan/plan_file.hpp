@@ -4,7 +4,7 @@
 //                  seed = 1, timeout = "60 s", watch = { "fw::imu_task" },
 //                  may_reset = false,
 //                  run = function(t) ... end }
-//   Nodes    instead of image, board and watch: nodes = { { name = "esc", image = "esc", board = "esc32v2",
+//   Nodes    instead of image, board, watch and may_reset: nodes = { { name = "esc", image = "esc", board = "esc32v2",
 //            watch = { ... } }, ... }; the vehicle or stand surrounds the first. wires = { { from = "esc.usart1",
 //            to = "fc.usart2" }, ... } join their UARTs, both ways, at the grain of the exchange
 //   Stand    instead of vehicle: stand = { prop = "hk_10x4.5", battery = "4s_2200" }
@@ -28,6 +28,7 @@ struct PlanNode {
   std::string name;          // empty: the plan has one image and one board
   std::string image, board;  // as written: names or paths
   std::vector<std::string> watch;
+  bool may_reset = false;  // by a watchdog, without failing the plan
 };
 
 struct PlanWire {  // from UART to UART, both ways
@@ -47,7 +48,6 @@ struct Plan {
   std::vector<SourceCall> calls;  // of t's, in the text of its function
   std::uint64_t seed = 1;
   std::int64_t timeout_ns = 0;
-  bool may_reset = false;  // by a watchdog, without failing the plan
   std::optional<lua::Table> stand;
   int run_ref = 0;  // in the file's Lua registry
 

@@ -333,6 +333,31 @@ TEST_F(Real, GdbStopsInATaskAndTheRunGoesOnAfterIt) {
   EXPECT_NE(text.find("code 0"), std::string::npos) << text;
 }
 
+// The process finds it, from its own copy of the description; the line is that of the file.
+TEST_F(Real, WhatThePartDoesNotHaveIsToldWithItsLine) {
+  const auto said = [this](const std::string& entry) {
+    write("odd.lua",
+          "return { board = 'odd', mcu = 'stm32f405rg', hse = '8 MHz',\n" + entry + " }");
+    write("p.lua",
+          "plan \"real\" { image = \"flight\", board = \"odd.lua\", vehicle = \"hp_quad\","
+          " run = function(t) t:wait \"5 ms\" end }\n");
+    return whirl("run " + folder_.file("p.lua"));
+  };
+  std::string escs;
+  for (int n = 1; n <= 4; ++n) {
+    const std::string number = std::to_string(n);
+    escs += "{ name = 'esc" + number +
+            "', type = 'esc_i2c', bus = 'i2c3', address = " + std::to_string(40 + n) +
+            ", motor = " + number + " }, ";
+  }
+  const std::string devices = "devices = { " + escs + "\n";
+  expect_told(said(devices + "},\npins = { { name = 'led', pin = 'PZ1' } }"), 2,
+              "odd.lua:4: pin led: the part has no pin 'PZ1'");
+  expect_told(said(devices + "{ name = 'far', type = 'serial', bus = 'usart9',\n" +
+                   "baud = '9600 baud' } }"),
+              2, "odd.lua:3: far: the part has no bus 'usart9'");
+}
+
 TEST_F(Real, ADeviceThatTheBoardDoesNotKnowIsNamed) {
   expect_told(run("flight", "t:bus { device = \"esc9\" }"), 2, "unknown device 'esc9'");
 }

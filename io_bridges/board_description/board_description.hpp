@@ -24,9 +24,10 @@ struct BoardDevice {
   std::string name = {};  // "imu", "esc1"
   std::string type = {};  // "mpu6000", "esc_i2c"
   // What plans and logs speak of. In a board file they are keys like the others.
-  std::string bus = {};  // "spi1", "i2c3", "usart2"; of some types a pin
-  int address = -1;      // I2C; -1: none
-  int motor = 0;         // 0: none
+  std::string bus = {};    // "spi1", "i2c3", "usart2"; of some types a pin
+  int address = -1;        // I2C; -1: none
+  int motor = 0;           // 0: none
+  std::string place = {};  // in the board file, "esc32v2.lua:12"; may be empty
   std::map<std::string, KeyValue, std::less<>> keys = {};  // the others that are given
 
   // Any key, `bus`, `address` and `motor` too; nothing where it is not given.
@@ -42,6 +43,7 @@ struct BoardPin {
   std::string name = {}, pin = {};
   std::string pull = {};  // "up", "down": a resistor of the board
   std::string bus = {};   // "i2c1.scl": soldered to that line
+  std::string place = {};
 
   bool operator==(const BoardPin&) const = default;
 };

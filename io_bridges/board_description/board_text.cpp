@@ -119,6 +119,7 @@ BoardDevice read_device(const json& object, const std::string& place, Error& fir
   BoardDevice device;
   keys.read("name", device.name);
   keys.read("type", device.type);
+  keys.read("place", device.place);
   if (device.name.empty()) keys.fail("name", "is missing");
   if (device.type.empty()) keys.fail("type", "is missing");
   for (const std::string& path : keys.others()) {
@@ -137,6 +138,7 @@ BoardPin read_pin(const json& object, const std::string& place, Error& first) {
   keys.read("pin", pin.pin);
   keys.read("pull", pin.pull);
   keys.read("bus", pin.bus);
+  keys.read("place", pin.place);
   keys.refuse_others();
   return pin;
 }
@@ -164,7 +166,7 @@ void check(const BoardStart& start, Keys& keys) {
 }
 
 json json_of(const BoardDevice& device) {
-  json out = {{"name", device.name}, {"type", device.type}};
+  json out = {{"name", device.name}, {"type", device.type}, {"place", device.place}};
   for (const std::string& path : device.paths()) {
     std::visit([&](const auto& value) { out[path] = value; }, *device.value(path));
   }
@@ -194,8 +196,11 @@ std::string board_text(const BoardStart& start) {
               {"watch", board.watch}};
   for (const BoardDevice& device : board.devices) out["devices"].push_back(json_of(device));
   for (const BoardPin& pin : board.pins) {
-    out["pins"].push_back(
-        {{"name", pin.name}, {"pin", pin.pin}, {"pull", pin.pull}, {"bus", pin.bus}});
+    out["pins"].push_back({{"name", pin.name},
+                           {"pin", pin.pin},
+                           {"pull", pin.pull},
+                           {"bus", pin.bus},
+                           {"place", pin.place}});
   }
   return text_of(out, 1, NoUtf8::replace);
 }

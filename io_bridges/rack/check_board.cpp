@@ -63,6 +63,25 @@ std::optional<BoardComplaint> claim_device(Owners& owners, const BoardDevice& de
                       "share one address on " + device.bus, device.name, number, "address");
 }
 
+// Keys that are good one by one.
+std::optional<BoardComplaint> check_together(const BoardDevice& device, int number,
+                                             const DeviceType& type) {
+  std::map<std::string, std::string> pins;  // its key of each
+  for (const DeviceKey& key : type.keys) {
+    const auto value = device.value(key.path);
+    if (!value) continue;
+    if (!key.not_with.empty() && device.value(key.not_with)) {
+      return BoardComplaint{number, key.path, "says what " + key.not_with + " says",
+                            "one of the two"};
+    }
+    if (key.kind != KeyKind::pin) continue;
+    const auto [other, first] = pins.emplace(value_text(*value), key.path);
+    if (first) continue;
+    return BoardComplaint{number, key.path, other->second + " is " + other->first + ", too", ""};
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::optional<BoardComplaint> check_device(const BoardDevice& device, int number,
@@ -84,7 +103,7 @@ std::optional<BoardComplaint> check_device(const BoardDevice& device, int number
     return BoardComplaint{number, key.path, "is missing: a " + type->name + " needs it",
                           key.about + ", " + unit_text(key)};
   }
-  return std::nullopt;
+  return check_together(device, number, *type);
 }
 
 std::optional<BoardComplaint> check_sharing(const BoardDescription& board,

@@ -120,6 +120,12 @@ DeviceKey DeviceKey::with_text(std::string text) const {
   return key;
 }
 
+DeviceKey DeviceKey::instead_of(std::string other) const {
+  DeviceKey key = *this;
+  key.not_with = std::move(other);
+  return key;
+}
+
 DeviceKey DeviceKey::own(Sharing how) const {
   DeviceKey key = *this;
   key.sharing = how;

@@ -47,11 +47,13 @@ struct DeviceKey {
   bool needed = false;
   std::optional<KeyValue> fallback = {};  // what is taken where the key is not given
   std::string fallback_text = {};         // where that is no single value
+  std::string not_with = {};              // a key that says the same thing another way
 
   DeviceKey need() const;
   DeviceKey with(KeyValue value) const;
   DeviceKey with_text(std::string text) const;
   DeviceKey own(Sharing how = Sharing::own) const;
+  DeviceKey instead_of(std::string other) const;
 };
 
 DeviceKey bus_key(std::string kind, std::string about);

@@ -10,7 +10,7 @@ DeviceSlot::DeviceSlot(Rack& rack, const std::string& board, const BoardDevice& 
       device_(device),
       type_(type),
       number_(static_cast<std::uint16_t>(number)),
-      place_(board + ": " + device.name) {}
+      place_((device.place.empty() ? board : device.place) + ": " + device.name) {}
 
 const DeviceKey& DeviceSlot::key(const std::string& path) const {
   const DeviceKey* key = type_.find(path);

@@ -75,7 +75,9 @@ TEST(BoardDescription, HoldsAllInSI) {
   EXPECT_TRUE(b.devices[4].value("baud") == KeyValue(57600.0));
   EXPECT_TRUE(b.devices[5].value("params.swap_wires") == KeyValue(true));
   EXPECT_TRUE(b.devices[5].value("params.resistance") == KeyValue(0.09));
-  EXPECT_TRUE(b.pins == (std::vector<BoardPin>{{.name = "led", .pin = "PA15"}}));
+  ASSERT_EQ(b.pins.size(), 1u);
+  EXPECT_EQ(b.pins[0].name, "led");
+  EXPECT_EQ(b.pins[0].pin, "PA15");
   EXPECT_EQ(b.watch, (std::vector<std::string>{"f", "g"}));
 }
 

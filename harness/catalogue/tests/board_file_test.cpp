@@ -210,6 +210,46 @@ TEST(BoardFile, AResistorPullsUpOrDown) {
             std::string::npos);
 }
 
+TEST(BoardFile, WhatPlansCouldNotSpeakOfIsNoName) {
+  const auto said = [](const std::string& name) {
+    return complaint("devices = { { name = '" + name +
+                     "', type = 'volts', bus = 'PA1', params = { volts = '1 V' } } }");
+  };
+  EXPECT_EQ(said("left level"), "");
+  EXPECT_NE(said("a/b").find("devices[1].name: has a '/'"), std::string::npos) << said("a/b");
+  EXPECT_NE(said("a\\nb").find("devices[1].name: has a '/' or what no line shows"),
+            std::string::npos);
+  EXPECT_NE(said("esc").find("'esc' means every ESC of a board"), std::string::npos);
+  EXPECT_NE(complaint("pins = { { name = 'a/b', pin = 'PB8' } }").find("pins[1].name: has a '/'"),
+            std::string::npos);
+}
+
+TEST(BoardFile, KeysThatCannotStandTogetherAreRefused) {
+  EXPECT_NE(complaint("devices = { { name = 'a', type = 'jumper', cs = 'PA1', int = 'PA1' } }")
+                .find("devices[1].int: cs is PA1, too"),
+            std::string::npos);
+  const auto stage = [](const std::string& shunt) {
+    return complaint(
+        "devices = { { name = 'a', type = 'power_stage', motor = 1, bus = 'pins', params = { "
+        "shunt = { " +
+        shunt + " } } } }");
+  };
+  EXPECT_EQ(stage("gain = '5 %'"), stage("gain_error = '5 %'"));
+  EXPECT_NE(stage("gain = '5 %', gain_error = '1 %'")
+                .find("params.shunt.gain_error: says what params.shunt.gain says (one of the two)"),
+            std::string::npos)
+      << stage("gain = '5 %', gain_error = '1 %'");
+}
+
+TEST(BoardFile, EachEntryKnowsItsLine) {
+  const auto board = read(
+      "\npins = { { name = 'led', pin = 'PB8' } },\ndevices = {\n"
+      "{ name = 'a', type = 'jumper', cs = 'PA1', int = 'PA2' } }");
+  ASSERT_TRUE(board) << board.error().message();
+  EXPECT_TRUE(board.value().pins[0].place.ends_with("b.lua:2")) << board.value().pins[0].place;
+  EXPECT_TRUE(board.value().devices[0].place.ends_with("b.lua:4"));
+}
+
 // However often a key's word stands in the file.
 TEST(BoardFile, AMistakeIsToldWithItsLineAndWithWhatThereIs) {
   const auto said = [](const std::string& second) {

@@ -104,8 +104,15 @@ TEST(VehicleFile, MotorsAreListedOrTheArmOfAQuadIsTold) {
   EXPECT_NE(complaint_about("arm = \"25 cm\",", "").find("arm: either"), std::string::npos);
   EXPECT_NE(complaint_about("arm = \"25 cm\",", "arm = \"25 cm\", " + motors).find("arm: either"),
             std::string::npos);
-  EXPECT_NE(complaint_about("arm = \"25 cm\",", "motors = {},").find("1 to 12 motors"),
-            std::string::npos);
+  const std::string none = complaint_about("arm = \"25 cm\",", "motors = {},");
+  EXPECT_NE(none.find("motors: 1 to 12 motors are wanted, not 0"), std::string::npos) << none;
+  EXPECT_NE(none.find(".lua:"), std::string::npos) << none;
+  const std::string shared = complaint_about("arm = \"25 cm\",", R"(motors = {
+      { place = { forward = '10 cm', right = '5 cm' }, spin = 'cw' },
+      { place = { forward = '20 cm', right = '5 cm' }, spin = 'cw' },
+      { place = { forward = '105 mm', right = '5 cm' }, spin = 'ccw' } },)");
+  EXPECT_NE(shared.find("motors[3].place: is that of motor 1, within 1 cm"), std::string::npos)
+      << shared;
 }
 
 TEST(VehicleFile, CalibrationHasTheNamesOfTheImagesSet) {

@@ -205,7 +205,9 @@ TEST(Stand, MotorAndShuntOfThePlanReachTheBoardsPowerStage) {
                    {.name = "stage",
                     .type = "power_stage",
                     .motor = 1,
-                    .keys = {{"params.inductance", 2e-5}, {"params.resistance", 1.0}}}};
+                    .keys = {{"params.inductance", 2e-5},
+                             {"params.resistance", 1.0},
+                             {"params.shunt.gain", 0.1}}}};  // which the part's own error replaces
   const auto set = set_stage(board, stand.motor, stand.stage);
   ASSERT_TRUE(set) << set.error().message();
   EXPECT_TRUE(board.devices[0].keys.empty());

@@ -37,7 +37,7 @@ TEST(PlanFile, WhatIsNotSaidHasItsDefault) {
   EXPECT_FALSE(plan.stand);
   EXPECT_EQ(plan.seed, 1u);
   EXPECT_EQ(plan.timeout_ns, 120'000'000'000);
-  EXPECT_FALSE(plan.may_reset);
+  EXPECT_FALSE(plan.nodes.at(0).may_reset);
   EXPECT_TRUE(plan.tags.empty());
   EXPECT_TRUE(plan.nodes.at(0).watch.empty());
   EXPECT_NE(plan.file.find("p.lua"), std::string::npos);
@@ -56,7 +56,7 @@ TEST(PlanFile, WhatIsSaidIsTaken) {
   EXPECT_EQ(plan.nodes.at(0).board, "b");
   EXPECT_EQ(plan.seed, 0u);
   EXPECT_EQ(plan.timeout_ns, 1'500'000'000);
-  EXPECT_TRUE(plan.may_reset);
+  EXPECT_TRUE(plan.nodes.at(0).may_reset);
   EXPECT_TRUE(plan.has_tag("quick"));
   EXPECT_TRUE(plan.has_tag("slow"));
   EXPECT_FALSE(plan.has_tag("slower"));
@@ -94,6 +94,9 @@ TEST(PlanFile, RefusesWhatIsNoPlan) {
       {with("vehicle = 'v', world = { wind = '2 m/s' }"), "unknown key 'world'"},
       {"local x = {} x.x = x " + with("vehicle = 'v', x = x"), "nested too deep"},
       {"plan 'a' { vehicle = 'v', run = function(t) end }", "image"},
+      {"plan 'a' { vehicle = 'v', may_reset = true, nodes = { { name = 'n', image = 'i' } },"
+       " run = function(t) end }",
+       "may_reset: stands in each of the nodes"},
   };
   for (const auto& [text, words] : kAll) {
     const Loaded loaded = load(text);

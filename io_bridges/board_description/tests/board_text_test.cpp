@@ -28,7 +28,12 @@ BoardStart everything() {
   board.boot_image = "boot.elf";
   board.start = 0x08004000;
   board.ns_per_instruction = 8;
-  BoardDevice device{.name = "imu", .type = "mpu6000", .bus = "spi1", .address = 0x29, .motor = 4};
+  BoardDevice device{.name = "imu",
+                     .type = "mpu6000",
+                     .bus = "spi1",
+                     .address = 0x29,
+                     .motor = 4,
+                     .place = "b.lua:7"};
   device.keys = {{"cs", "PB0"},
                  {"on", true},
                  {"tenth", 0.1},
@@ -37,7 +42,7 @@ BoardStart everything() {
                  {"axes", std::vector<std::string>{"+x", "-y", "-z"}}};
   board.devices = {device, {.name = "x", .type = "y"}};
   board.pins = {{.name = "led", .pin = "PB1"},
-                {.name = "scl", .pin = "PB8", .pull = "up", .bus = "i2c1.scl"}};
+                {.name = "scl", .pin = "PB8", .pull = "up", .bus = "i2c1.scl", .place = "b.lua:9"}};
   board.watch = {"f", "g"};
   return start;
 }

@@ -10,7 +10,8 @@ namespace whirl::board {
 namespace {
 
 Error wrong(const std::string& board, const BoardPin& pin, const std::string& what) {
-  return {ErrorKind::bad_input, board + ": pin " + pin.name, what, ""};
+  return {ErrorKind::bad_input, (pin.place.empty() ? board : pin.place) + ": pin " + pin.name, what,
+          ""};
 }
 
 const BoardPin* line_of(const std::vector<BoardPin>& pins, const std::string& line) {

@@ -35,6 +35,7 @@ class DeviceRack::Wiring final : public rack::Rack {
   std::uint64_t seed() const override { return site_.seed; }
   io::Wire* pin(const std::string& name) override;
   bool set_analog(const std::string& pin, std::function<double(io::Nanoseconds)> volts) override {
+    analog_.push_back(pin);
     return site_.chip.set_analog(pin, std::move(volts));
   }
   io::I2cBus* i2c(int number) override;
@@ -47,6 +48,7 @@ class DeviceRack::Wiring final : public rack::Rack {
   Result<Done> add(const BoardDescription& board, int number);
   Result<Done> subscribe(rack::RackDevice& device, const std::string& place);
   io::SpiBus* spi(int number);
+  void tell_fights(io::Wire& wire, const std::string& name);
   void find_once(io::Nanoseconds now, const std::string& where, const std::string& what);
 
   Site site_;
@@ -54,6 +56,7 @@ class DeviceRack::Wiring final : public rack::Rack {
   std::set<std::string> reported_;                // findings
   std::map<const io::Wire*, std::string> names_;  // of devices by their chip select
   std::vector<BoardPin> named_pins_;              // with neither resistor nor bus
+  std::vector<std::string> analog_;               // pins that a device puts a voltage on
   std::set<int> i2c_soldered_;                    // to the pins that the board names
   std::map<int, std::unique_ptr<io::I2cWireFaults>> i2c_buses_;
   std::map<int, io::SpiBus*> spi_buses_;
@@ -89,8 +92,8 @@ Result<Done> DeviceRack::Wiring::check(const BoardDescription& board) const {
   }
   if (!wrong) wrong = rack::check_sharing(board, site_.types);
   if (!wrong) return Done{};
-  const std::string place =
-      board.name + ": " + board.devices[static_cast<std::size_t>(wrong->device)].name;
+  const BoardDevice& device = board.devices[static_cast<std::size_t>(wrong->device)];
+  const std::string place = (device.place.empty() ? board.name : device.place) + ": " + device.name;
   const bool of_type = wrong->key == "type" || wrong->key.empty();
   return Error{ErrorKind::bad_input, of_type ? place : place + "." + wrong->key, wrong->what,
                wrong->cure};
@@ -125,13 +128,15 @@ void DeviceRack::Wiring::find_once(io::Nanoseconds now, const std::string& where
   if (reported_.insert(where + what).second) site_.finding({now, where, what});
 }
 
+void DeviceRack::Wiring::tell_fights(io::Wire& wire, const std::string& name) {
+  wire.on_fight([this, name](const std::string& low, const std::string& high, io::Nanoseconds now) {
+    find_once(now, name, low + " drives it low, " + high + " drives it high");
+  });
+}
+
 io::Wire* DeviceRack::Wiring::pin(const std::string& name) {
   io::Wire* wire = site_.chip.pin(name);
-  if (wire == nullptr) return nullptr;
-  wire->on_fight(
-      [this, name](const std::string& low, const std::string& high, io::Nanoseconds now) {
-        find_once(now, name, low + " drives it low, " + high + " drives it high");
-      });
+  if (wire != nullptr) tell_fights(*wire, name);
   return wire;
 }
 
@@ -140,12 +145,19 @@ void DeviceRack::Wiring::run_ends(io::Nanoseconds now) {
     if (site_.chip.pin(pin.pin)->was_driven()) continue;
     find_once(now, pin.pin, "the board names it '" + pin.name + "', but nothing ever drove it");
   }
+  for (const std::string& pin : analog_) {
+    const io::Wire* wire = site_.chip.pin(pin);
+    if (wire == nullptr || !wire->was_driven()) continue;
+    find_once(now, pin, "a device puts a voltage on it, and something drove it: both cannot be");
+  }
 }
 
 io::I2cBus* DeviceRack::Wiring::i2c(int number) {
   io::I2cBus* bus = site_.chip.i2c(number);
   if (bus == nullptr || i2c_buses_.count(number) != 0) return bus;
   if (i2c_soldered_.count(number) == 0) site_.chip.solder_i2c(number, "", "");
+  tell_fights(bus->scl(), "i2c" + std::to_string(number) + ".scl");
+  tell_fights(bus->sda(), "i2c" + std::to_string(number) + ".sda");
   i2c_buses_[number] = std::make_unique<io::I2cWireFaults>(site_.events, faults_, *bus, number);
   bus->on_transaction([this, number](const io::I2cTransaction& t) {
     io::BusTransaction head;

@@ -4,7 +4,7 @@
 //   Logs      every I2C transaction; every SPI transaction with its first 16 pairs of bytes (MOSI,
 //             MISO); each with the times of its bytes. The edges of the pins that the board names
 //   Messages  go to the devices that take their kind and port; faults into the book that all share
-//   Findings  two that drive one pin against each other, and two devices selected at once on one SPI
+//   Findings  two that drive one pin or a line of an I2C bus against each other, and two devices selected at once on one SPI
 //             bus (once for each two), a pin of the board file that nothing ever drove (at the end)
 //   Errors    bad_input: what check_board.hpp refuses, a bus or pin that the part does not have
 #pragma once

@@ -138,7 +138,8 @@ void add_shunt_keys(std::vector<DeviceKey>& keys) {
                      .with(usual.gain_tolerance));
   keys.push_back(quantity_key("params.shunt.gain_error", Dimension::ratio, "%", {-0.5, 0.5},
                               "this part's own, instead")
-                     .with_text("drawn"));
+                     .with_text("drawn")
+                     .instead_of("params.shunt.gain"));
   keys.push_back(amperes("shunt.noise", "the same at any current").with_text("grows with current"));
   keys.push_back(amperes("shunt.warm_up", "offset's excess at power-up, standard deviation")
                      .with(usual.warm_up_A));

@@ -103,6 +103,33 @@ TEST(RackLog, ASpiTransactionSaysWhenEachPairHadPassed) {
   EXPECT_EQ(passed_ns[1], 17'000u);
 }
 
+TEST(RackFindings, AFightOnALineOfAnI2cBusIsToldByTheLine) {
+  Bench b;
+  b.build({{.name = "esc1", .type = "esc_i2c", .bus = "i2c3", .address = 0x29, .motor = 1}});
+  io::Wire& sda = b.chip.chip().i2c(3)->sda();
+  sda.drive(sda.add_driver("a slave"), io::Drive::low, 5);
+  EXPECT_TRUE(b.found.empty());
+  sda.drive(sda.add_driver("a push-pull output"), io::Drive::high, 7);
+  ASSERT_EQ(b.found.size(), 1u);
+  EXPECT_EQ(b.found[0].t_ns, 7);
+  EXPECT_EQ(b.found[0].where, "i2c3.sda");
+  EXPECT_EQ(b.found[0].what, "a slave drives it low, a push-pull output drives it high");
+}
+
+TEST(RackFindings, AVoltageOnAPinThatIsDrivenIsSaidAtTheEnd) {
+  Bench b;
+  const auto level = [](const char* name, const char* pin) {
+    return BoardDevice{.name = name, .type = "volts", .bus = pin, .keys = {{"params.volts", 1.5}}};
+  };
+  b.build({level("battery", "PC0"), level("spare", "PC1")});
+  b.output(1, true);
+  b.rack.run_ends(99);
+  ASSERT_EQ(b.found.size(), 1u);
+  EXPECT_EQ(b.found[0].where, "PC1");
+  EXPECT_EQ(b.found[0].what,
+            "a device puts a voltage on it, and something drove it: both cannot be");
+}
+
 TEST(RackFindings, APinThatTheBoardNamesAndNothingDrivesIsSaidAtTheEnd) {
   Bench b;
   b.build({}, {{.name = "led", .pin = "PC7"},
