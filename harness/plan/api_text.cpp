@@ -1,5 +1,6 @@
 // t:ask: a line to the firmware's terminal, and its answer.
 #include <cmath>
+#include <sstream>
 
 #include "harness/lua/pattern.hpp"
 #include "harness/plan/raise.hpp"
@@ -23,6 +24,19 @@ bool matches(lua_State* L, const std::string& text) {
          lua::pattern_found(L, text, check_text(L, kPattern, "a pattern"));
 }
 
+// For a name: history and JUnit know an expectation by it from run to run, and a number in the line may
+// be one that was measured, a constant of a calibration.
+std::string without_numbers(const std::string& line) {
+  std::istringstream words(line);
+  std::string all, word;
+  while (words >> word) {
+    char* rest = nullptr;
+    std::strtod(word.c_str(), &rest);
+    all += (all.empty() ? "" : " ") + (*rest == '\0' ? "#" : word);
+  }
+  return all;
+}
+
 int answered(lua_State* L, int, lua_KContext ref) {
   luaL_unref(L, LUA_REGISTRYINDEX, static_cast<int>(ref));
   Script& self = Script::of(L);
@@ -37,9 +51,10 @@ int answered(lua_State* L, int, lua_KContext ref) {
   // The difference first: that of two rounded times may lie beyond a limit that was just met.
   const double took_s =
       good ? static_cast<double>(now_ns - lua_tointeger(L, kSince)) * 1e-9 : std::nan("");
-  const std::string note = !came ? "no answer" : "it said: " + answer;
-  const std::string line = check_text(L, kLine, "a line");
-  self.judge({took_s, Dimension::time, "answer to '" + line + "'"}, How::at_most, std::nullopt,
+  const std::string line = check_text(L, kLine, "a line"), name = without_numbers(line);
+  const std::string note =
+      (name == line ? "" : "'" + line + "': ") + (came ? "it said: " + answer : "no answer");
+  self.judge({took_s, Dimension::time, "answer to '" + name + "'"}, How::at_most, std::nullopt,
              check_limit(L, kLimit, Dimension::time), lua_tostring(L, kPlace), now_s, note);
   lua_pushlstring(L, answer.data(), answer.size());
   return 1;

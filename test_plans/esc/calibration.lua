@@ -39,7 +39,7 @@ plan "calibration_round_trip" {
     t:wait "1 s"
     local kept = told(t)
     for name, line in pairs(set) do
-      t:expect(kept[name] == line and 1 or 0, "kept: " .. line):equal(1)
+      t:expect(kept[name] == line and 1 or 0, "kept: " .. name):equal(1)
     end
     t:within("3 s", function(s) return s.armed == 1 end, "armed anew")
     t:expect(flag(t:value("esc_flags").value, kUncalibrated) and 1 or 0, "it says that it is calibrated"):equal(0)

@@ -294,6 +294,20 @@ TEST(Calls, AnAnswerIsItsTextItsTimeAndItsName) {
   EXPECT_EQ(late.log.at(1).text, "0");
 }
 
+// What a calibration found must not become part of a name: history and JUnit would not know it again.
+TEST(Calls, AnAnswersNameHoldsNoNumberOfItsLine) {
+  const auto asked = [](const std::string& line) {
+    Scenario s = with_two_signals("t:wait '30 ms' t:ask('" + line + "')");
+    s.answers[line] = {7, "ok"};
+    return only(s);
+  };
+  EXPECT_EQ(asked("set gain 1.039851").name, "answer to 'set gain #'");
+  EXPECT_EQ(asked("set gain 1.039851").note, "'set gain 1.039851': it said: ok");
+  for (const char* number : {"-0.007678406", "3.86979e-05", "5", "nan"}) {
+    EXPECT_EQ(asked(std::string("set d0 ") + number).name, "answer to 'set d0 #'") << number;
+  }
+}
+
 // Each question is answered by the first line that comes after it.
 TEST(Calls, EachQuestionHasItsOwnAnswer) {
   Scenario s = with_two_signals(
