@@ -1,4 +1,6 @@
 // t:expect(measurement) and t:always(signal or condition): what must hold, now or over a time.
+#include <cmath>
+
 #include "harness/plan/raise.hpp"
 #include "harness/plan/values.hpp"
 
@@ -14,8 +16,15 @@ struct Bounds {
   std::optional<Limit> low, high;
 };
 
+// A limit that every figure meets, or none, judges nothing.
+Limit finite_limit(lua_State* L, int index, Dimension dimension) {
+  const Limit limit = check_limit(L, index, dimension);
+  if (!std::isfinite(limit.value_SI)) raise(L, "a limit is a finite number");
+  return limit;
+}
+
 Bounds read_bounds(lua_State* L, How how, Dimension dimension) {
-  const Limit first = check_limit(L, 2, dimension);
+  const Limit first = finite_limit(L, 2, dimension);
   switch (how) {
     case How::at_most:
       return {how, std::nullopt, first};
@@ -24,7 +33,7 @@ Bounds read_bounds(lua_State* L, How how, Dimension dimension) {
     case How::equal:
       return {how, first, first};
     case How::within: {
-      const Limit second = check_limit(L, 3, dimension);
+      const Limit second = finite_limit(L, 3, dimension);
       if (!(first.value_SI <= second.value_SI)) raise(L, ":within wants the lower limit first");
       return {how, first, second};
     }

@@ -274,6 +274,9 @@ int bus(lua_State* L) {
   const std::int64_t end = window_end(self, wish);
   check_finish(L, wish);
   if (w.period.has_value() != w.tolerance.has_value()) raise(L, "period and tolerance go together");
+  if (w.spi && !w.period) {
+    raise(L, "a window of nothing: SPI has no acknowledge", "give period and tolerance");
+  }
   self.add_window(end, [w](Script& script, std::int64_t from, std::int64_t to) {
     judge_bus(script, w, from, to);
   });

@@ -94,6 +94,53 @@ TEST(Verdict, WhatWasNotShownIsNoPass) {
   });
 }
 
+// A window without samples, a record without rows, a change that did not come, a limit that is none.
+TEST(Verdict, AnExpectationWithoutAFigureIsNoPass) {
+  const std::string after_second = "t:wait \"1 s\" ";
+  for (const char* measured :
+       {"0/0", "1/0", R"(t:record("thrust", "1 s"):rise_time())",
+        R"(t:record("thrust", "1 s"):fall_time())", R"(t:record("thrust", "1 s"):response_time())",
+        R"(t:record("thrust", "1 s"):overshoot())", R"(t:record("thrust", "1 s"):settled("5 %"))",
+        R"(t:record("thrust", "150 ms"):final())"}) {
+    const std::string expect = after_second + "local x = " + measured + " t:expect(x)";
+    const bool number = measured[1] == '/';
+    const bool force = expect.find("final") != std::string::npos;
+    const bool ratio = expect.find("overshoot") != std::string::npos;
+    const char* limit = number ? "(1e9)" : force ? " '99 N'" : ratio ? " '99 %'" : " '99 s'";
+    const Ran ran = run_plan(plan_text(expect + ":at_most" + limit));
+    EXPECT_EQ(ran.outcome.code, 1) << measured << ran.outcome.out << ran.outcome.err;
+  }
+  check({
+      {R"(t:within("20 ms", function(s) return s.height_m > 9 end, "high"))", "flight", 1,
+       "never came true"},
+      // Nobody calls, nobody speaks.
+      {R"(t:budget("fw::imu_task") { execution = "1 s" }  t:wait "1 s")", "asleep", 1,
+       "nothing to measure"},
+      {R"(t:budget("fw::imu_task") { response = "1 s" }  t:wait "1 s")", "asleep", 1,
+       "nothing to measure"},
+      {R"(t:budget("fw::imu_task") { latency = "1 s" }  t:wait "1 s")", "asleep", 1,
+       "nothing to measure"},
+      {R"(t:budget("fw::imu_task") { period = "2 s", jitter = "1 s" }  t:wait "1 s")", "asleep", 1,
+       "nothing to measure"},
+      {R"(t:budget("cpu") { busy = "100 %" }  t:wait "1 s")", "asleep", 1, "nothing to measure"},
+      {R"(t:bus { device = "esc1", nacks = 99 }  t:wait "1 s")", "asleep", 1, "0 transactions"},
+      {R"(t:latency { from = "imu", through = { "fw::imu_task" }, to = "esc", at_most = "9 s" }
+          t:wait "1 s")",
+       "asleep", 1, "nothing to measure"},
+      // SPI has no NACK that could be counted.
+      {R"(t:bus { device = "imu" }  t:wait "1 s")", "flight", 2, "a window of nothing"},
+      {R"(t:expect(t:value "tilt"):at_most "inf rad"  t:wait "1 s")", "flight", 2, "inf"},
+      {R"(t:wait "1 s"  t:expect(t:value("tilt", "rad")):at_most(1/0))", "flight", 2,
+       "a limit is a finite number"},
+      {R"(t:wait "1 s"  t:expect(t:value("tilt", "rad")):within(0, 1/0))", "flight", 2,
+       "a limit is a finite number"},
+      {R"(t:wait "1 s"  t:expect(t:value("tilt", "rad")):at_least(-1/0))", "flight", 2,
+       "a limit is a finite number"},
+      {R"(t:wait "1 s"  t:expect(t:value("tilt", "rad")):equal(0/0))", "flight", 2,
+       "a limit is a finite number"},
+  });
+}
+
 TEST(Verdict, ATimeThatLiesOnItsLimitMeetsIt) {
   check(
       {{R"(t:within("60 ms", function() return t:value("tilt", "rad") > 0 and t:now().value > 0.0595 end)

@@ -284,7 +284,7 @@ void add_bus(Scenario& s, Dice& dice, const std::string& id) {
     return off_period(starts, from, to, train.period_ns);
   };
   std::optional<Limited> tolerance;
-  if (dice.chance(0.8)) {
+  if (spi || dice.chance(0.8)) {  // SPI has no acknowledge that could be judged instead
     const std::int64_t to = window.to ? *window.to * kMs : horizon(s) * kMs;
     tolerance =
         most_near(dice, duration(), worst_of(periods(window.begin_ns(), to, to + kMs)), 2e-12);
