@@ -1,5 +1,6 @@
-// A tolerance is a number, a unit (in the name of the maker) and a reason. Tests may not compare
-// reals any other way (near.hpp). NaN never passes: the comparison is written as diff <= limit.
+// A tolerance is a number, a unit (in the name of the maker) and a reason. Tests compare reals by it
+// (near.hpp) or exactly, which cmake/gates/reals.sh sees to. NaN never passes: the comparison is written
+// as diff <= limit.
 #pragma once
 #include <cmath>
 #include <limits>

@@ -1,10 +1,14 @@
 // The whole flight logic around a rigid body of other hands (vehicle_model.hpp).
 #include <gtest/gtest.h>
 
+#include "base/near.hpp"
 #include "firmware/tests/vehicle_model.hpp"
 
 namespace fw::test {
 namespace {
+
+using whirl::near;
+using whirl::stated;
 
 struct Errors {
   double height_rms_m = 0, sideways_rms_m = 0, tilt_rms_rad = 0;
@@ -81,9 +85,10 @@ TEST(Flight, FollowsATargetASideWithoutOvershoot) {
     hover.vehicle.step(hover.flight);
     furthest = std::max(furthest, hover.vehicle.p_W_.x());
   }
-  EXPECT_NEAR(hover.vehicle.p_W_.x(), 1.0, 0.05);
+  EXPECT_TRUE(near(hover.vehicle.p_W_.x(), 1.0, stated(0.05, "5 cm: the sensors' noise and bias")));
   EXPECT_LT(furthest, 1.1);
-  EXPECT_NEAR(yaw_of(hover.vehicle.q_WB_.cast<float>()), 0.5, 0.05);
+  EXPECT_TRUE(near(yaw_of(hover.vehicle.q_WB_.cast<float>()), 0.5,
+                   stated(0.05, "3 deg: the sensors' noise and bias")));
 }
 
 TEST(Flight, LosesTheCaptureAndLandsBlind) {
@@ -147,14 +152,15 @@ TEST(Reference, ReachesAHeightWithinItsSpeedAndWithoutOvershoot) {
   EXPECT_GT(fastest, 0.45f);
   EXPECT_LE(hardest, 0.801f);
   EXPECT_LT(highest, 3.005f);
-  EXPECT_NEAR(reference.p_W_m().z(), -3.0, 0.01);
+  EXPECT_TRUE(near(reference.p_W_m().z(), -3.0, stated(0.01, "1 cm, 8 s behind the ramp")));
 }
 
 TEST(Reference, TurnsTheShortWayAtALimitedRate) {
   Reference reference;
   reference.start(Vector3::Zero(), 3.0f);
   for (int i = 0; i < 4; ++i) reference.step(Vector3::Zero(), -3.0f, 0.025f);
-  EXPECT_NEAR(reference.yaw_rad(), 3.06, 1e-3);  // 0.1 s at 0.6 rad/s, on towards pi
+  EXPECT_TRUE(near(reference.yaw_rad(), 3.06,
+                   stated(1e-3, "2 % of the way")));  // 0.1 s at 0.6 rad/s, on towards pi
 }
 
 TEST(Flight, GivesUpWhenAnEscFallsSilent) {
@@ -187,7 +193,7 @@ TEST(Flight, TakesOffForATargetInTheAirAndLandsForOneOnTheGround) {
     }
   };
   fly_to(-1.1f, 9.0);
-  EXPECT_NEAR(vehicle.p_W_.z(), -1.1, 0.05);
+  EXPECT_TRUE(near(vehicle.p_W_.z(), -1.1, stated(0.05, "5 cm: the sensors' noise and bias")));
   fly_to(0.0f, 8.0);
   EXPECT_EQ(flight.state(), FlightState::disarmed);
   EXPECT_EQ(flight.last_reason(), Reason::landed);

@@ -7,13 +7,15 @@
 #include <limits>
 #include <random>
 
+#include "base/near.hpp"
+
 namespace fw::esc {
 namespace {
 
 void expect_within_an_ulp(float x) {
   const double exact = std::sqrt(static_cast<double>(x));
   const double ulp = std::ldexp(1.0, std::ilogb(exact) - 23);
-  EXPECT_LE(std::abs(static_cast<double>(square_root(x)) - exact), ulp) << x;
+  EXPECT_TRUE(whirl::near(square_root(x), exact, whirl::stated(ulp, "one ulp of a float"))) << x;
 }
 
 TEST(SquareRoot, IsWithinAnUlpForEveryNormalNumber) {

@@ -326,8 +326,11 @@ TEST(Power, HoldsTheAerodynamicPowerInMovingAir) {
 TEST(PowerBalance, IsTorqueTimesSpeedWhereTheBackEmfIsTheOnlyWitness) {
   const LossMap map{
       .loss_ohm = 0.0f, .loss_V = 0.0f, .share = 1.0f, .back_emf_Vs = -0.01f, .drag_Nm = 0.01f};
-  EXPECT_FLOAT_EQ(aerodynamic_power_W(map, 6.0f, 5.0f, 400.0f), 0.01f * (5.0f - 1.0f) * 400.0f);
-  EXPECT_FLOAT_EQ(power_per_ampere_W(map, 6.0f, 5.0f, 400.0f), 0.01f * 400.0f);
+  EXPECT_TRUE(
+      near(aerodynamic_power_W(map, 6.0f, 5.0f, 400.0f), 0.01f * (5.0f - 1.0f) * 400.0f,
+           stated(1e-6 * std::abs(0.01f * (5.0f - 1.0f) * 400.0f), "a few ulp of a float")));
+  EXPECT_TRUE(near(power_per_ampere_W(map, 6.0f, 5.0f, 400.0f), 0.01f * 400.0f,
+                   stated(1e-6 * std::abs(0.01f * 400.0f), "a few ulp of a float")));
 }
 
 TEST(PowerBalance, KnowsWhereTheCurrentHasGaps) {

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <numbers>
 
+#include "base/near.hpp"
 #include "base/random.hpp"
 #include "base/scratch_folder.hpp"
 #include "harness/calibrate/data_file.hpp"
@@ -138,11 +139,11 @@ TEST(Identify, FindsWhatWasPutIn) {
   const Calibration& c = found.value();
   EXPECT_TRUE(physical(c).ok()) << physical(c).error().message();
   const auto close = [](double x, double truth, double share) {
-    EXPECT_NEAR(x, truth, share * std::abs(truth));
+    EXPECT_TRUE(near(x, truth, stated(share * std::abs(truth), "a share of it")));
   };
   close(c.sense.gain.value, t.gain, 1e-6);
-  EXPECT_NEAR(c.sense.offset.value, t.offset, 1e-9);
-  EXPECT_NEAR(c.still.updraft_share, 0.98, 1e-3);
+  EXPECT_TRUE(near(c.sense.offset.value, t.offset, stated(1e-9, "no noise: round-off")));
+  EXPECT_TRUE(near(c.still.updraft_share, 0.98, stated(1e-3, "no noise: the firmware's floats")));
   close(c.motor.loss_ohm.value, t.loss_ohm, 1e-6);
   close(c.motor.loss_V.value, t.loss_V, 1e-6);
   close(c.motor.drag.value, t.drag, 1e-6);
@@ -167,11 +168,12 @@ TEST(Identify, WeighsVoltageAndBackEmfWhereTheyDisagree) {
   const auto found = identify(Stand(t, 1, 0.0).all());
   ASSERT_TRUE(found.ok()) << found.error().message();
   const MotorFit& motor = found.value().motor;
-  EXPECT_NEAR(motor.loss_share.value, t.loss_share, 1e-6);
-  EXPECT_NEAR(motor.loss_emf.value, t.loss_emf, 1e-8);
-  EXPECT_NEAR(motor.loss_ohm.value, t.loss_ohm, 1e-6);
-  EXPECT_NEAR(motor.drag.value, t.drag, 1e-6);
-  EXPECT_NEAR(found.value().rotor.c0.value, t.c0, 1e-3 * t.c0);
+  EXPECT_TRUE(near(motor.loss_share.value, t.loss_share, stated(1e-6, "no noise: round-off")));
+  EXPECT_TRUE(near(motor.loss_emf.value, t.loss_emf, stated(1e-8, "no noise: round-off")));
+  EXPECT_TRUE(near(motor.loss_ohm.value, t.loss_ohm, stated(1e-6, "no noise: round-off")));
+  EXPECT_TRUE(near(motor.drag.value, t.drag, stated(1e-6, "no noise: round-off")));
+  EXPECT_TRUE(near(found.value().rotor.c0.value, t.c0,
+                   stated(1e-3 * t.c0, "0.1 %: the firmware's floats, the solver's tolerance")));
 }
 
 // Where they agree there is nothing to weigh: the losses are found alone.
@@ -188,8 +190,10 @@ TEST(Identify, FindsTheSpeedsEffect) {
   t.speed_effect = 0.5;
   const auto found = identify(Stand(t, 1, 0.0).all());
   ASSERT_TRUE(found.ok()) << found.error().message();
-  EXPECT_NEAR(found.value().rotor.speed_effect.value, 0.5, 0.01);
-  EXPECT_NEAR(found.value().rotor.c0.value, t.c0, 0.01 * t.c0);
+  EXPECT_TRUE(near(found.value().rotor.speed_effect.value, 0.5,
+                   stated(0.01, "1 %: the firmware's floats, the solver's tolerance")));
+  EXPECT_TRUE(near(found.value().rotor.c0.value, t.c0,
+                   stated(0.01 * t.c0, "1 %: the firmware's floats, the solver's tolerance")));
 }
 
 TEST(Identify, IntervalsCoverTheTruthInNinetyFivePercentOfSeeds) {
@@ -214,7 +218,8 @@ TEST(Identify, IntervalsCoverTheTruthInNinetyFivePercentOfSeeds) {
   }
   // The noise is a share of the reading, not the constant that least squares suppose: the count may
   // differ from 285 by more than its own four standard deviations of 15.
-  for (const int count : {ohm, drag, a2, a1}) EXPECT_NEAR(count, 285, 20);
+  for (const int count : {ohm, drag, a2, a1})
+    EXPECT_TRUE(near(count, 285, stated(20, "five standard deviations and a third")));
 }
 
 TEST(Identify, OneSpeedIsRefusedInOneSentence) {

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "base/near.hpp"
 #include "base/random.hpp"
 
 namespace whirl::calibrate {
@@ -29,9 +30,10 @@ TEST(Regression, FindsExactDataExactlyWhateverTheUnits) {
   for (std::size_t i = 0; i < p.y.size(); ++i) p.y[i] = kOffset + kSlope * p.columns[1].x[i];
   const auto fit = solve(p);
   ASSERT_TRUE(fit.ok());
-  EXPECT_NEAR(fit.value().value("slope"), kSlope, 1e-12 * kSlope);
-  EXPECT_NEAR(fit.value().value("offset"), kOffset, 1e-12);
-  EXPECT_NEAR(fit.value().r2, 1.0, 1e-12);
+  EXPECT_TRUE(
+      near(fit.value().value("slope"), kSlope, stated(1e-12 * kSlope, "round-off, scaled")));
+  EXPECT_TRUE(near(fit.value().value("offset"), kOffset, stated(1e-12, "round-off, scaled")));
+  EXPECT_TRUE(near(fit.value().r2, 1.0, stated(1e-12, "round-off")));
 }
 
 TEST(Regression, IntervalsCoverTheTruthInNinetyFivePercentOfSeeds) {
@@ -47,9 +49,9 @@ TEST(Regression, IntervalsCoverTheTruthInNinetyFivePercentOfSeeds) {
     ratio += std::abs(over.value - kOffset / kSlope) <= over.half_width ? 1 : 0;
   }
   // Four standard deviations of a count with p = 0.95: 39. The quotient holds to first order only.
-  EXPECT_NEAR(slope, 1900, 39);
-  EXPECT_NEAR(offset, 1900, 39);
-  EXPECT_NEAR(ratio, 1900, 60);
+  EXPECT_TRUE(near(slope, 1900, stated(39, "four standard deviations")));
+  EXPECT_TRUE(near(offset, 1900, stated(39, "four standard deviations")));
+  EXPECT_TRUE(near(ratio, 1900, stated(60, "and the first order")));
 }
 
 TEST(Regression, CorrelatedResidualsWidenTheIntervals) {
@@ -68,7 +70,9 @@ TEST(Regression, CorrelatedResidualsWidenTheIntervals) {
     ASSERT_TRUE(fit.ok());
     covered += std::abs(fit.value().value("mean") - 1.0) <= fit.value()["mean"].half_width ? 1 : 0;
   }
-  EXPECT_NEAR(covered, 285, 18);  // without the widening: about 165
+  EXPECT_TRUE(
+      near(covered, 285,
+           stated(18, "nearly five standard deviations")));  // without the widening: about 165
 }
 
 TEST(Regression, WeightsCountPointsByTheirWorth) {
@@ -78,7 +82,8 @@ TEST(Regression, WeightsCountPointsByTheirWorth) {
   p.weights[5] = 1e-6;
   const auto fit = solve(p);
   ASSERT_TRUE(fit.ok());
-  EXPECT_NEAR(fit.value().value("slope"), kSlope, 0.15 * kSlope);
+  EXPECT_TRUE(near(fit.value().value("slope"), kSlope,
+                   stated(0.15 * kSlope, "one seed; the slope's standard deviation is 11 %")));
 }
 
 TEST(Regression, RefusesWhatTheDataCannotTellApartByName) {
@@ -113,11 +118,11 @@ TEST(Regression, RefusesWhatOverflowsOnTheWay) {
 }
 
 TEST(Regression, StudentsTIsTheTextbooks) {
-  EXPECT_NEAR(student_t95(1), 12.706, 1e-3);
-  EXPECT_NEAR(student_t95(2), 4.303, 1e-3);
-  EXPECT_NEAR(student_t95(3), 3.182, 1e-3);
-  EXPECT_NEAR(student_t95(6), 2.447, 2e-3);
-  EXPECT_NEAR(student_t95(30), 2.042, 1e-3);
+  EXPECT_TRUE(near(student_t95(1), 12.706, printed_to(1e-3)));
+  EXPECT_TRUE(near(student_t95(2), 4.303, printed_to(1e-3)));
+  EXPECT_TRUE(near(student_t95(3), 3.182, printed_to(1e-3)));
+  EXPECT_TRUE(near(student_t95(6), 2.447, stated(2e-3, "the expansion's 0.1 %")));
+  EXPECT_TRUE(near(student_t95(30), 2.042, stated(2e-3, "the expansion's 0.1 %")));
 }
 
 }  // namespace

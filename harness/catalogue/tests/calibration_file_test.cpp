@@ -5,6 +5,7 @@
 
 #include <fstream>
 
+#include "base/near.hpp"
 #include "base/scratch_folder.hpp"
 
 namespace whirl::catalogue {
@@ -25,7 +26,7 @@ TEST(CalibrationFile, TakesWhatIsWrittenAndFillsInTheRest) {
   ASSERT_TRUE(file.ok()) << file.error().message();
   const calibrate::Setup& s = file.value().setup;
   EXPECT_EQ(file.value().stand.text("prop"), "x");
-  EXPECT_NEAR(s.diameter_m, 0.2286, 1e-12);
+  EXPECT_TRUE(near(s.diameter_m, 0.2286, stated(1e-12, "round-off")));
   EXPECT_EQ(s.winds_mps, (std::vector<double>{1.0, 2.0}));
   EXPECT_EQ(s.measure_ms, 2000);
   EXPECT_EQ(s.serial, 2);

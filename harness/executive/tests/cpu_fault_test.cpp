@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "base/near.hpp"
+
 namespace whirl {
 namespace {
 
@@ -49,7 +51,7 @@ TEST(CpuFault, IsWhereItsInnermostFrameIs) {
 
 TEST(CpuFault, ListsItsRegistersAndTheMeaningOfTheirBits) {
   const results::CpuFaultRow row = describe(fault_at(3, "main"));
-  EXPECT_DOUBLE_EQ(row.t_s, 0.05);
+  EXPECT_TRUE(near(row.t_s, 0.05, round_off(4, 0.05)));
   EXPECT_EQ(row.registers,
             "r0   0x00000000\nr1   0x00000001\nr2   0x00000002\nr3   0x00000003\n"
             "r4   0x00000004\nr5   0x00000005\nr6   0x00000006\nr7   0x00000007\n"

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "base/near.hpp"
 #include "harness/lua/table.hpp"
 
 namespace whirl::lua {
@@ -16,7 +17,8 @@ TEST(Put, AValueTakesThePlaceOfTheFiles) {
   ASSERT_TRUE(t.put("motor.list.2.a", "7").ok());
   ASSERT_TRUE(t.put("swap", "true").ok());
   EXPECT_EQ(t.table("motor").number("kv"), 1000.0);
-  EXPECT_NEAR(t.table("motor").quantity("resistance", Dimension::resistance), 0.09, 1e-12);
+  EXPECT_TRUE(near(t.table("motor").quantity("resistance", Dimension::resistance), 0.09,
+                   stated(1e-12, "round-off")));
   EXPECT_EQ(t.table("motor").tables("list")[1].integer("a"), 7);
   EXPECT_TRUE(t.flag_or("swap", false));
   ASSERT_TRUE(t.put("address", "0x2A").ok());

@@ -80,7 +80,8 @@ TEST(Mpu6000, SamplePeriodIsExactOnItsOwnClock) {
   bench.run(100);
   ASSERT_GT(bench.rises.size(), 50u);
   for (std::size_t i = 1; i < bench.rises.size(); ++i) {
-    EXPECT_NEAR(static_cast<double>(bench.rises[i] - bench.rises[i - 1]), 1.01e6, 1.0);
+    EXPECT_TRUE(near(static_cast<double>(bench.rises[i] - bench.rises[i - 1]), 1.01e6,
+                     stated(1.0, "whole nanoseconds")));
   }
 }
 

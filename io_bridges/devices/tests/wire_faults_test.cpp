@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "base/near.hpp"
 #include "io_bridges/devices/esc_i2c.hpp"
 
 namespace whirl::io {
@@ -208,8 +209,8 @@ TEST(UartFault, LossFlipAndSilenceActOnTheWayToTheMcu) {
   book.add({.number = 2, .kind = FaultKind::uart_flip, .end_ns = 10, .bus = 2, .value = 0.1});
   book.add({.number = 3, .kind = FaultKind::uart_silence, .start_ns = 10, .bus = 2});
   far.say(10'000);
-  EXPECT_NEAR(arrived, 7500, 4 * 43);  // binomial, 4 sigma
-  EXPECT_NEAR(changed, 750, 4 * 26);
+  EXPECT_TRUE(near(arrived, 7500, stated(4 * 43, "binomial, 4 sigma")));  // binomial, 4 sigma
+  EXPECT_TRUE(near(changed, 750, stated(4 * 26, "binomial, 4 sigma")));
   queue.run_until(10);
   arrived = 0;
   far.say(100);

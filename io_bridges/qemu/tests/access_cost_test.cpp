@@ -2,6 +2,7 @@
 // 8 lines of 16 bytes on the STM32F405 (RM0090 3.4.2); the same loops over RAM take the rest off.
 #include <gtest/gtest.h>
 
+#include "base/near.hpp"
 #include "io_bridges/qemu/tests/board_run.hpp"
 
 namespace whirl::board_test {
@@ -28,7 +29,8 @@ void expect_waits(const Counts& counts, std::size_t from, const double (&expecte
   ASSERT_GE(counts.size(), from + 2 * kWalks) << what;
   for (std::size_t n = 0; n < kWalks; ++n) {
     const double waits = static_cast<double>(counts[from + kWalks + n]) - counts[from + n];
-    EXPECT_NEAR(waits, expected[n], 25) << what << ", walk " << n;
+    EXPECT_TRUE(near(waits, expected[n], stated(25, "fetches at a loop's ends")))
+        << what << ", walk " << n;
   }
 }
 
@@ -58,7 +60,8 @@ TEST(AccessCost, WhatIsNotAlignedTakesACycleForEachTransferMore) {
     const Counts expected = {200, 200, 100, 100, 100, 0,   100, 100, 0,
                              0,   0,   0,   200, 200, 100, 100, 100, 0};
     for (std::size_t n = 0; n < expected.size(); ++n) {
-      EXPECT_NEAR(counts[n], expected[n], 1) << mcu << ", access " << n;
+      EXPECT_TRUE(near(counts[n], expected[n], stated(1, "where a block is cut")))
+          << mcu << ", access " << n;
     }
   }
 }
@@ -71,11 +74,13 @@ TEST(AccessCost, AWriteByABitBandAliasHoldsTheBridgeForTwoTransfersAndNotTheCore
        {std::pair{"aliases_f4", "stm32f405rg"}, std::pair{"aliases_f1", "stm32f103cb"}}) {
     const Counts counts = told(name, mcu);
     ASSERT_EQ(counts.size(), 6u) << mcu;
-    EXPECT_NEAR(counts[0], 100, 10) << mcu;
-    EXPECT_NEAR(counts[1], 100, 10) << mcu;
-    EXPECT_NEAR(counts[2], 500, 110) << mcu;
-    EXPECT_NEAR(counts[3], counts[2], 5) << mcu;
-    EXPECT_NEAR(static_cast<int>(counts[4]), 100 * (1 + 6 - 4), 110) << mcu;
+    EXPECT_TRUE(near(counts[0], 100, stated(10, "fetches at a loop's ends"))) << mcu;
+    EXPECT_TRUE(near(counts[1], 100, stated(10, "fetches at a loop's ends"))) << mcu;
+    EXPECT_TRUE(near(counts[2], 500, stated(110, "a cycle of each write"))) << mcu;
+    EXPECT_TRUE(near(counts[3], counts[2], stated(5, "fetches at a loop's ends"))) << mcu;
+    EXPECT_TRUE(
+        near(static_cast<int>(counts[4]), 100 * (1 + 6 - 4), stated(110, "a cycle of each write")))
+        << mcu;
     EXPECT_EQ(counts[5], 5u | 7u << 3) << mcu;
   }
 }
@@ -88,8 +93,9 @@ TEST(OperandCost, LongMultipliesOfAnM3GoByTheSizeOfTheirOperands) {
   ASSERT_EQ(f1.size(), 25u);
   const Counts expected = {100, 200, 0, 200, 100, 200};
   for (std::size_t n = 0; n < expected.size(); ++n) {
-    EXPECT_NEAR(f1[18 + n], expected[n], 3) << n;  // and where a block is cut
-    EXPECT_NEAR(f4[18 + n], 0, 1) << n;
+    EXPECT_TRUE(near(f1[18 + n], expected[n], stated(3, "and where a block is cut")))
+        << n;  // and where a block is cut
+    EXPECT_TRUE(near(f4[18 + n], 0, stated(1, "where a block is cut"))) << n;
   }
 }
 

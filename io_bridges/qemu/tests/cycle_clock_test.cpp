@@ -2,6 +2,7 @@
 // interrupts come; and that every run is the same.
 #include <gtest/gtest.h>
 
+#include "base/near.hpp"
 #include "io_bridges/qemu/tests/board_run.hpp"
 
 namespace whirl::board_test {
@@ -21,10 +22,13 @@ TEST(CycleClock, StraightCodeLoopsAndMemoryTakeTheCyclesOfArmsTables) {
   EXPECT_EQ(more(1), 1u);
   EXPECT_EQ(more(2), 100u);
   // NOP, SUBS, taken BNE with a refill of 1.5 (1 to 3 by alignment); the last one is not taken.
-  EXPECT_NEAR(more(3), 1 + 1000 * (1 + 1 + 2.5) - 1.5, 1.0);
-  EXPECT_NEAR(more(4), 1 + 1000 * (2 + 1 + 2.5) - 1.5, 2.0);  // RAM
-  EXPECT_NEAR(more(5), more(4), 2.0);                         // a register of the core's own bus
-  EXPECT_NEAR(more(6), 5.0, 1.0);                             // MOV, CMP, folded ITE, two, NOP
+  EXPECT_TRUE(near(more(3), 1 + 1000 * (1 + 1 + 2.5) - 1.5, stated(1.0, "a refill's half cycle")));
+  EXPECT_TRUE(near(more(4), 1 + 1000 * (2 + 1 + 2.5) - 1.5,
+                   stated(2.0, "a refill's half cycle, twice")));  // RAM
+  EXPECT_TRUE(
+      near(more(5), more(4),
+           stated(2.0, "a refill's half cycle, twice")));  // a register of the core's own bus
+  EXPECT_TRUE(near(more(6), 5.0, stated(1.0, "folded or not")));  // MOV, CMP, folded ITE, two, NOP
   EXPECT_GE(more(7), 2u + 2u);
   EXPECT_LE(more(7), 2u + 12u);
 }
@@ -50,10 +54,13 @@ TEST(CycleClock, TicksComeWithinOneInstructionOfTheirTime) {
     ASSERT_GT(said.size(), 400u) << b.image;
     std::int64_t sum = 0;
     for (const std::uint32_t period : said) {
-      EXPECT_NEAR(period, 16800.0, b.cycles) << b.image;
+      EXPECT_TRUE(
+          near(period, 16800.0, stated(b.cycles, "the longest instruction, and where it is cut")))
+          << b.image;
       sum += period;
     }
-    EXPECT_NEAR(static_cast<double>(sum) / static_cast<double>(said.size()), 16800.0, 0.1)
+    EXPECT_TRUE(near(static_cast<double>(sum) / static_cast<double>(said.size()), 16800.0,
+                     stated(0.1, "no drift over 400")))
         << b.image;
   }
 }
@@ -75,8 +82,8 @@ TEST(CycleClock, WatchingChangesNoMomentOfTheImageAndCountsEachCallOnce) {
   EXPECT_EQ(plain.said(), watched.said());
   for (const char* name : {"cycles2", "cycles3", "cycles5", "cycles7"}) {
     const BoardRun run = run_for(by_cycles(name, {"systick_handler"}), 50);
-    EXPECT_NEAR(static_cast<double>(run.of(io::Kind::function_call).size()),
-                static_cast<double>(run.said().size()) + 1, 1)
+    EXPECT_TRUE(near(static_cast<double>(run.of(io::Kind::function_call).size()),
+                     static_cast<double>(run.said().size()) + 1, stated(1, "one is under way")))
         << name;
     EXPECT_EQ(run.said(), run_for(by_cycles(name), 50).said()) << name;
   }

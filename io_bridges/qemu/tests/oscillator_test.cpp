@@ -1,6 +1,7 @@
 // Oscillators that are off: the core's own count is as ever, the world's time is not.
 #include <gtest/gtest.h>
 
+#include "base/near.hpp"
 #include "io_bridges/qemu/tests/board_run.hpp"
 
 namespace whirl::board_test {
@@ -39,7 +40,8 @@ double period_ns(const BoardRun& run) {
 void expect_cycles(const BoardRun& run, std::uint32_t cycles) {
   const auto values = run.told();
   EXPECT_GT(values.size(), 50u);
-  for (const std::uint32_t value : values) EXPECT_NEAR(value, cycles, 1);  // asleep, to the ns
+  for (const std::uint32_t value : values)
+    EXPECT_TRUE(near(value, cycles, stated(1, "asleep, to the ns")));  // asleep, to the ns
 }
 
 struct Off {
@@ -54,7 +56,9 @@ TEST(Oscillators, ATickOfHsiComesEarlierByWhatHsiIsFaster) {
                            {R"(,"hsi_error":-0.025)", -0.025},
                            {R"(,"hse_error":0.001)", 0.0}}) {
       const BoardRun run = ticks_of("oscillators", part, off.key);
-      EXPECT_NEAR(period_ns(run), 1e6 / (1.0 + off.share), 0.2) << part.mcu << off.key;
+      EXPECT_TRUE(near(period_ns(run), 1e6 / (1.0 + off.share),
+                       stated(0.2, "whole nanoseconds over fifty")))
+          << part.mcu << off.key;
       expect_cycles(run, part.hsi_cycles);
       EXPECT_FALSE(run.found("terminal")) << part.mcu << off.key;
     }
@@ -67,7 +71,9 @@ TEST(Oscillators, ACrystalOfFiftyMillionthsIsThatMuchOff) {
                            {R"(,"hse_error":-50e-6)", -50e-6},
                            {R"(,"hsi_error":0.01)", 0.0}}) {
       const BoardRun run = ticks_of("oscillators_crystal", part, off.key);
-      EXPECT_NEAR(period_ns(run), 1e6 / (1.0 + off.share), 0.2) << part.mcu << off.key;
+      EXPECT_TRUE(near(period_ns(run), 1e6 / (1.0 + off.share),
+                       stated(0.2, "whole nanoseconds over fifty")))
+          << part.mcu << off.key;
       expect_cycles(run, kCrystal_cycles);
     }
   }

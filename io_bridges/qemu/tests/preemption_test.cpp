@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/json_text.hpp"
+#include "base/near.hpp"
 #include "io_bridges/qemu/tests/board_run.hpp"
 
 namespace whirl::board_test {
@@ -86,7 +87,8 @@ TEST(Preemption, TheLongestCallIsToldWithItsCallersAndWhatCameBetween) {
   const auto cycles = [](int instructions) {  // of 168 MHz
     return instructions * static_cast<double>(kInstruction_ns) * 0.168;
   };
-  EXPECT_NEAR(work.at("execution_cycles"), cycles(1017), 3);
+  EXPECT_TRUE(near(work.at("execution_cycles"), cycles(1017),
+                   stated(3, "whole cycles of each of five stretches")));
   const auto function = [](const nlohmann::json& call, std::size_t frame) {
     const auto line = call.at("path").at(frame).get<std::string>();
     return line.substr(0, line.find('+'));
@@ -131,7 +133,7 @@ TEST(Rtos, TheTickHasItsPeriod) {
   ASSERT_GE(ticks.size(), 98u);
   for (std::size_t i = 1; i < ticks.size(); ++i) {
     const auto period_ns = static_cast<double>(ticks[i].entry_ns - ticks[i - 1].entry_ns);
-    EXPECT_NEAR(period_ns, 1e6, kInstruction_ns);
+    EXPECT_TRUE(near(period_ns, 1e6, stated(kInstruction_ns, "one instruction")));
   }
 }
 

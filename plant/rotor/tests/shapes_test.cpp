@@ -78,7 +78,8 @@ TEST(Shapes, DescentIsSmooth) {
     for (double v = 0.2; v < 20.0; v += 0.2) {
       c.v_AP_P_mps.z() = v;
       const RotorLoads l = rotor.steady(c);
-      EXPECT_LT(std::abs(l.thrust_N - before), 0.06 * still) << s.diameter_in << " " << v;
+      EXPECT_TRUE(near(l.thrust_N, before, stated(0.06 * still, "no jump")))
+          << s.diameter_in << " " << v;
       before = l.thrust_N;
     }
   }

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "base/near.hpp"
 #include "io_bridges/qemu/stm32/tests/bare_chip.hpp"
 
 namespace whirl::stm32 {
@@ -16,12 +17,12 @@ TEST(Dac, AHeldValueIsOutAtOnceOrAtItsTrigger) {
   dac.connect_trigger(0, timer6);
   put(dac, 0x00, 1);
   put(dac, 0x08, 2048);
-  EXPECT_DOUBLE_EQ(dac.volts(1), 1.65);
+  EXPECT_TRUE(near(dac.volts(1), 1.65, round_off(4, 1.65)));
   put(dac, 0x00, 1 | 4);
   put(dac, 0x08, 1024);
-  EXPECT_DOUBLE_EQ(dac.volts(1), 1.65);
+  EXPECT_TRUE(near(dac.volts(1), 1.65, round_off(4, 1.65)));
   timer6.pulse(0);
-  EXPECT_DOUBLE_EQ(dac.volts(1), 0.825);
+  EXPECT_TRUE(near(dac.volts(1), 0.825, round_off(4, 0.825)));
   EXPECT_EQ(get(dac, 0x2C), 1024u);
 }
 

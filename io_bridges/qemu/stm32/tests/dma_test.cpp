@@ -1,5 +1,6 @@
 // DMA2 of an F405 (RM0090 chapter 10): memory to memory, FIFO, double buffer, priorities, errors.
 #include "io_bridges/qemu/stm32/dma.hpp"
+#include "base/near.hpp"
 #include "io_bridges/qemu/stm32/tests/chip_bench.hpp"
 
 namespace whirl::stm32 {
@@ -51,12 +52,14 @@ TEST(Dma, HoldsTheCoreUpForNoLongerThanItsTransfersTake) {
   EXPECT_EQ(bench.chip().core_waits_for_dma_at_most_ns(), 0.0);
   bench.set_up(1, kMemToMem | kPinc | kMinc, 0x20000000, 0x20001000, 100, 0);
   bench.run(1'000'000);
-  EXPECT_NEAR(bench.chip().core_waits_for_dma_at_most_ns(), 200 * 62.5, 1.0);
+  EXPECT_TRUE(near(bench.chip().core_waits_for_dma_at_most_ns(), 200 * 62.5,
+                   stated(1.0, "whole nanoseconds")));
   bench.set_bits(0x40023840, 1);
   bench.put(kLifcr, 0x3D << 6);
   bench.set_up(1, kMemToMem | (2u << 11) | (2u << 13), 0x20000000, kTim2Arr, 10, 0);
   bench.run(1'000'000);
-  EXPECT_NEAR(bench.chip().core_waits_for_dma_at_most_ns(), 200 * 62.5 + 10 * (62.5 + 187.5), 1.0);
+  EXPECT_TRUE(near(bench.chip().core_waits_for_dma_at_most_ns(), 200 * 62.5 + 10 * (62.5 + 187.5),
+                   stated(1.0, "whole nanoseconds")));
 }
 
 TEST(Dma, FifoPacksBytesIntoWordsAndUnpacksThem) {

@@ -1,5 +1,6 @@
 // I2C master: the sequences of RM0090 27.3.3 and of the drivers that are in the field, register by
 // register. Reads must be acknowledged as the wire wants it: all but the last byte.
+#include "base/near.hpp"
 #include "io_bridges/qemu/stm32/tests/i2c_bench.hpp"
 
 namespace whirl::stm32 {
@@ -324,8 +325,9 @@ TEST(I2cMaster, BitTimeFollowsCcrModeAndDuty) {
     bench.point_at(1);
     bench.put(kDr, 2);
     bench.wait(kSr1, BTF, BTF);
-    EXPECT_NEAR(static_cast<double>(bench.file.byte_at[1] - bench.file.byte_at[0]),
-                9.0 * static_cast<double>(row.bit_ns), 5.0);
+    EXPECT_TRUE(near(static_cast<double>(bench.file.byte_at[1] - bench.file.byte_at[0]),
+                     9.0 * static_cast<double>(row.bit_ns),
+                     stated(5.0, "whole nanoseconds of each of nine bits")));
   }
 }
 

@@ -1,5 +1,6 @@
 // SPI1 of an F405 (RM0090 chapter 28), PCLK2 84 MHz; a target behind PB0.
 #include "io_bridges/qemu/stm32/spi.hpp"
+#include "base/near.hpp"
 #include "io_bridges/qemu/stm32/tests/chip_bench.hpp"
 
 namespace whirl::stm32 {
@@ -93,7 +94,8 @@ TEST(Spi, BaudRateIsPclkOverAPowerOfTwo) {
     const Nanoseconds t = bench.now();
     bench.put(kDr, 0);
     bench.run(100'000);
-    EXPECT_NEAR(static_cast<double>(bench.target.at[0] - t), 8.0 * (2 << br) / 84e6 * 1e9, 0.51);
+    EXPECT_TRUE(near(static_cast<double>(bench.target.at[0] - t), 8.0 * (2 << br) / 84e6 * 1e9,
+                     stated(0.51, "whole nanoseconds")));
   }
 }
 
@@ -181,7 +183,8 @@ TEST(Spi, DmaMovesFifteenBytesBothWaysBackToBack) {
   bench.put(kCr2, 3);
   const Nanoseconds t = bench.now();
   while (!bench.irq(56) && bench.now() - t < 1'000'000) bench.run(10);
-  EXPECT_NEAR(static_cast<double>(bench.now() - t), 15 * 762.0, 200.0);
+  EXPECT_TRUE(near(static_cast<double>(bench.now() - t), 15 * 762.0,
+                   stated(200.0, "the first byte's DMA, the bench's steps")));
   for (std::uint8_t i = 0; i < 15; ++i) EXPECT_EQ(*bench.ram(0x20000100u + i), 0x80 + i);
   EXPECT_EQ(bench.target.sent.size(), 15u);
   EXPECT_EQ(bench.get(kSr), TXE);

@@ -125,7 +125,8 @@ TEST(PowerStage, SwappedWiresExchangeTwoPhasesAtTheBridgeAndAtTheConverter) {
     s.set(1, false, true);
     s.set(0, true, true);
     s.now += 100 * kUs;
-    EXPECT_NEAR(s.stage.phase_V(1, s.now), 0.0, 0.05);
+    EXPECT_TRUE(near(s.stage.phase_V(1, s.now), 0.0,
+                     stated(0.05, "tied to ground; the bus is 2.1 V here")));
     const auto current_A = s.stage.motor().phase_currents_A();
     EXPECT_LT(current_A[swapped ? 2 : 1], -10.0);
     EXPECT_EQ(current_A[swapped ? 1 : 2], 0.0);
