@@ -1,8 +1,8 @@
 // Linear least squares as an engineer reports it: values with 95 % confidence, R2, condition.
 //
 //   Method   columns scaled to unit length, then singular values; intervals by Student's t
-//   Correlated residuals (samples of a transient) carry less than their number says: `ordered` widens
-//            the intervals by (1 + r) / (1 - r), r being the residuals' lag-one correlation
+//   Correlated residuals (samples of a transient) carry less than their number says: `ordered` multiplies
+//            the variances by (1 + r) / (1 - r), r being the residuals' lag-one correlation
 //   Errors   bad_input: too few points, a value that is no number, columns that the data cannot tell
 //            apart (condition above worst_condition): the message names them
 #pragma once

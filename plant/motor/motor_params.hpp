@@ -7,8 +7,8 @@
 //            is larger: moving the current from phase to phase against the inductance takes
 //            (3/pi) w_e (L/2) I, and both faces count that by themselves. The thesis's steady points
 //            show 0.12 to 0.18 ohm; with 7 pole pairs 0.1 mH alone would look like 0.17 ohm at
-//            5000 RPM. 0.070 ohm of winding, 0.050 of bridge, leads and warmth and 20 uH look like 0.15 to
-//            0.165 ohm from 4000 to 5500 RPM and meet voltage, bus current and thrust at once
+//            5000 RPM. 0.070 ohm of winding, 0.050 of bridge, leads and warmth and 20 uH look like 0.148
+//            to 0.159 ohm from 4000 to 5500 RPM and meet voltage, bus current and thrust at once
 #pragma once
 #include <string>
 
