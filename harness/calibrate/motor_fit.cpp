@@ -1,3 +1,4 @@
+// The regressions, one after another, with their reasons: docs/motor_fit.md.
 #include <algorithm>
 
 #include "firmware/esc/core/power_balance.hpp"
@@ -31,7 +32,7 @@ Problem line_problem(const std::vector<SteadyPoint>& points) {
   return p;
 }
 
-// What of the electrical power does not reach the air. A share of power counts alike at all powers.
+// What of the electrical power does not reach the air; errors count as shares of shaft power.
 Problem loss_problem(const std::vector<SteadyPoint>& points) {
   Problem p{"losses",
             "electrical less shaft power",
@@ -49,8 +50,7 @@ Problem loss_problem(const std::vector<SteadyPoint>& points) {
   return p;
 }
 
-// The same, and how the power by voltage and the power by back-EMF share in the truth. The voltage is
-// nearly the back-EMF and two drops, so only small departures tell the shares.
+// The same, and the shares of power by voltage and power by back-EMF: nearly collinear columns.
 Problem witness_problem(const std::vector<SteadyPoint>& points) {
   Problem p = loss_problem(points);
   p.columns.push_back({"loss_share", "", {}});

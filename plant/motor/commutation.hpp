@@ -1,20 +1,14 @@
-// What six-step commutation at neutral timing does to the mean of the currents.
+// What six-step commutation at neutral timing does to the mean of the currents. Derivation, and which
+// numbers have none: docs/commutation.md.
 //
-//   Pair     i, the mean of what the two tied phases carry; y, what the third one carries beside them.
-//            With e_y its back-EMF, exactly: L di/dt = u - E - R i; power E i + e_y y; heat
-//            R i^2 + 3/4 R y^2; |phase currents| / 2 = i + |y| / 2 [sum the three loops of the star]
-//   Dip      at each commutation the current I of the outgoing phase becomes y, and i falls to I/2.
-//            Over a sector T_s it recovers with L/R: the mean i lies below (u - E)/R, as if it met
-//            (L / 2 T_s) I more volts. That drop takes no power
-//   Tail     y runs down through a diode: into the bus after a change of the low side (fast), below
-//            ground after one of the high side (slow, against the back-EMF); it heats and pushes on
-//   Circuit  while the pulsed leg is off, the open phase's negative back-EMF drives a y of its own
-//            through its lower diode: a brake. What it carries at the end of a sector that closes
-//            its low switch deepens the dip by 3/4 of it
+//   Pair     i, the mean of what the two tied phases carry; y, what the third one carries beside them
+//   Dip      at a commutation the outgoing current I becomes y, and i falls to I/2 and recovers
+//   Tail     y runs down through a diode: into the bus (fast) or below ground (slow)
+//   Circuit  the open phase's negative back-EMF drives a y of its own through its lower diode: a brake
 //   Dry      under diodes a dip below half the ripple lasts no longer than its PWM period
 //   Valid    four PWM periods in a sector (a 2300 Kv motor at 24 kHz: up to 9000 RPM; beyond, diodes
 //            leave the bus current up to 2.5 % off); a tail shorter than its sector
-//   Source   derived here; oracle: the switched face (tests/faces_test.cpp)
+//   Source   derived in docs/commutation.md; oracle: the switched face (tests/faces_test.cpp)
 #pragma once
 #include "plant/motor/motor_params.hpp"
 

@@ -1,9 +1,9 @@
-// What one ESC knows about its motor, propeller and sensors: measured on a stand, kept in flash.
+// What one ESC knows about its motor, propeller and sensors: measured on a stand, kept in flash. Where each
+// default comes from, and what the stock board has instead: docs/calibration.md.
 //
 //   Units    SI, line to line (two windings conducting)
 //   Defaults a 950 Kv motor with a 10 x 4.5 propeller; sane, not measured: `identified` says so
-//   Source   motor and static map [Bangura 2017, sec. 3.4 with the unit audit: 3.9294e-6 N m/(RPM/s) is
-//            3.752e-5 kg m2; T = 1.789e-7 n^2 - 1.4715e-4 n with n in RPM]
+//   Source   motor and static map [Bangura 2017, sec. 3.4]
 #pragma once
 #include <cstdint>
 
@@ -16,10 +16,8 @@ struct MotorConstants {
   float Kt_NmpA = 0.01005f;  // and back-EMF, V s
   float resistance_ohm = 0.12f;
   float inductance_H = 2.2e-5f;
-  // Moving the current from phase to phase against the inductance takes (3/pi) w_e L/2 per ampere:
-  // like a resistance that grows with speed. Here for 7 pole pairs, per rad/s of the shaft.
-  float overlap_ohm_s = 8e-5f;
-  float freewheel_V = 0.7f;  // diodes that carry the current while the PWM is off; 0: switches
+  float overlap_ohm_s = 8e-5f;  // drop of commutation per ampere and rad/s of the shaft
+  float freewheel_V = 0.7f;     // diodes that carry the current while the PWM is off; 0: switches
   float no_load_current_A = 1.0f;
   float inertia_kgm2 = 3.752e-5f;
   float max_current_A = 20.0f;  // of the winding
@@ -27,20 +25,16 @@ struct MotorConstants {
 };
 
 // What of the electrical power does not reach the air at constant speed: (loss_ohm i + loss_V + share va
-// + back_emf_Vs w) i + drag w, with i the bus current over the duty and va the bus voltage times the
-// duty. Resistance, diodes and commutation are all in it, as one bridge with one PWM pattern has them.
-// share and back_emf_Vs (negative) weigh the second witness of power, Kt i w: voltage that the speed
-// does not explain is mostly lost. With share 1 it is the only one.
+// + back_emf_Vs w) i + drag w, with i = bus current / duty and va = bus voltage x duty.
 struct LossMap {
   float loss_ohm = 0.12f;
   float loss_V = 0.25f;
-  float share = 0.0f;
-  float back_emf_Vs = 0.0f;
+  float share = 0.0f;        // of Kt i w, the second witness of power
+  float back_emf_Vs = 0.0f;  // negative, about -share Kt
   float drag_Nm = 0.01005f;
 };
 
-// Free air: T = CT(w) w^2, P = CP(w) w^3. The coefficients move with the speed, for the Reynolds number
-// does, and a soft blade twists under its load.
+// Free air: T = CT(w) w^2, P = CP(w) w^3. Both bend with speed: Reynolds number, a soft blade's twist.
 struct StaticMap {
   float a3 = 0.0f;
   float a2 = 1.6314e-5f;
@@ -57,8 +51,7 @@ struct StaticMap {
 struct PowerRange {
   float from_radps = 0.0f;  // outside, power is not asked
   float to_radps = 2000.0f;
-  // The share of power that inflow takes is the model's after it is multiplied by 1 + effect (w / middle
-  // - 1): the model has one blade, but a soft one twists, and Reynolds number moves the polars.
+  // 1 - power ratio, times 1 + effect (w / middle - 1), is the model's, which has one shape for all speeds.
   float speed_effect = 0.0f;
 
   bool holds(float w) const { return w >= from_radps && w <= to_radps; }
@@ -76,8 +69,8 @@ struct Calibration {
   PowerRange power;
   StaticMap free_air;
   CurrentSense sense;
-  // From this share of still air's power on, an updraft may give the same power as a downdraft: nothing
-  // is concluded then. Above 1.1: the air is known to come from above, as on a flow generator.
+  // From this share of still air's power on, an updraft may give a downdraft's power: nothing is concluded
+  // then. Above 1.1: the air is known to come from above, as on a flow generator.
   float shared_power = 0.97f;
   ThrustModel rotor{};  // all zero: not identified, modes 4 and 5 fall back to the static map
   float arming_voltage_V = 15.7f;  // at rest

@@ -1,11 +1,8 @@
 // What the air takes from the shaft, from what the ESC measures.
 //
-//   Law     Pam = va i - (loss_ohm i + loss_V + share va + back_emf w) i - drag w - Ir w w'; i is the
-//           bus current over the duty, va the bus voltage times the duty, so va i is the power that
-//           the bus gives
-//   Why not Kt i w alone [Bangura 2017, eq. 5.4]: bus current over duty is not the winding's current
-//           while a phase hands over or a diode conducts, but power is power; and an error of i that
-//           comes from the shunt's offset partly cancels in the losses (12 W/A against 15)
+//   Law     Pam = va i - (loss_ohm i + loss_V + share va + back_emf w) i - drag w - Ir w w', with i the
+//           bus current over the duty and va the bus voltage times the duty
+//   Why not Kt i w alone [Bangura 2017, eq. 5.4]: docs/thrust_estimator.md
 //   Valid   while the winding current has no gaps; constants of one bridge and one PWM pattern, found
 //           against a torque cell
 //   Error   0.05 % of power (one sigma) over 4100 to 5800 rpm on the switched motor with fitted

@@ -11,10 +11,10 @@ constexpr float kSmoothing_s = 0.05f;                            // of CP, at co
 constexpr float kCalming_s = 0.025f;                             // after a step
 constexpr float kMinSpeed_radps = 150.0f;  // below, w^3 makes noise of everything
 
-constexpr float kUsual_change = 0.05f;
-// Air from above of up to 0.8 m/s takes 0.2 % of power, which no shunt shows, and 3.4 % of thrust.
-constexpr float kUnseen_loss = 0.034f;
-constexpr float kOne_sided = 1.1f;  // a shared_power beyond says that the air comes from above
+constexpr float kUsual_change =
+    0.05f;  // of thrust by inflow, as a share: the prior of confidence()
+constexpr float kUnseen_loss = 0.034f;  // of thrust at 0.8 m/s from above, which no shunt shows
+constexpr float kOne_sided = 1.1f;      // a shared_power beyond says that the air comes from above
 
 // Of thrust over still air, before power is asked.
 float expected(const Calibration& calibration) {
@@ -75,8 +75,7 @@ void ThrustEstimator::update(float bus_V, float duty, float bus_A, float speed_r
   const float per_still_W = 1.0f / (still_CP * w * w * w);
   watts_per_ampere_ = per_duty * power_per_ampere_W(calibration_.losses, voltage_V, current_A_, w);
   power_error_ = offset_A * watts_per_ampere_ * per_still_W;
-  // While the rotor accelerates, and until the filters have calmed down after it, the inertial term
-  // dominates and its error with it: trust it less.
+  // While the rotor accelerates, and a little after, the inertial term's error dominates.
   const float share = acceleration_Nm / torque_Nm;
   const float unrest = share * share < 1.0f ? share * share : 1.0f;
   unrest_ -= calming_ * unrest_;
@@ -97,7 +96,8 @@ void ThrustEstimator::update(float bus_V, float duty, float bus_A, float speed_r
   thrust_N_ = CT_ * w * w;
 }
 
-// The wind stays as it was: its inflow ratio falls as the rotor gains speed, and with it what it takes.
+// After a speed step the wind (m/s) is unchanged, so inflow ratio = wind / (w R) shrinks. Rescale both
+// ratios now instead of waiting for the filter.
 void ThrustEstimator::carry_to(float w) {
   if (observable()) {
     const float less = last_.slope * last_.ls * (1.0f - speed_radps_ / w) * per_still_CP_;
@@ -112,10 +112,11 @@ ThrustEstimate ThrustEstimator::conclude() {
   ThrustEstimate nothing;
   if (!calibration_.identified || !still_.real) return nothing;
   nothing.status = Estimate::not_observable;
-  const float most = calibration_.shared_power < 1.0f ? calibration_.shared_power : 1.0f;
-  const float sure = observable() ? 1.0f : 2.0f;  // it does not waver where it just begins to tell
-  if (power_ratio_ >= most - sure * power_error_) return nothing;
-  if (gapless_s_ < kSmoothing_s) return nothing;  // the ratio still holds what gaps made of it
+  const float highest = calibration_.shared_power < 1.0f ? calibration_.shared_power : 1.0f;
+  const float sigmas_needed = observable() ? 1.0f : 2.0f;  // hysteresis
+  if (power_ratio_ >= highest - sigmas_needed * power_error_) return nothing;
+  if (gapless_s_ < kSmoothing_s)
+    return nothing;  // the smoothed ratio still holds what gaps made of it
   if (!calibration_.power.holds(speed_radps_)) return nothing;
   const float taken = (1.0f - power_ratio_) * effect_at(speed_radps_);
   return solver_.solve((1.0f - taken) * still_.CP);
@@ -125,8 +126,7 @@ float ThrustEstimator::effect_at(float w) const {
   return 1.0f + calibration_.power.speed_effect * (w * per_middle_ - 1.0f);
 }
 
-// Between what is expected and what power says, as their variances weigh: power errs with the shunt,
-// which the leverage makes an error of thrust; inflow moves thrust by kUsual_change.
+// Weight of what power says against what is expected, by inverse variances.
 float ThrustEstimator::confidence() const {
   if (!observable()) return 0.0f;
   const float noise = last_.leverage * power_error_ * (1.0f / kUsual_change);

@@ -1,13 +1,9 @@
-// Thrust of the turning rotor from what the ESC measures: aerodynamic power from current and speed,
-// inflow from power, thrust from inflow.
+// Thrust of the turning rotor from what the ESC measures. Derivation, numbers: docs/thrust_estimator.md.
 //
-//   Law     Pam (power_balance.hpp); CP = Pam / w^3, smoothed, over its value in still air at this
-//           speed; inflow and CT by ThrustSolver; T = CT w^2
-//   Scale   the model gives the shape over inflow, the static map thrust and power in still air: so
-//           both follow the Reynolds number, and in still air both controllers agree
-//   Where power decides nothing about inflow, observable() says so and CT of free air is used, or, if
-//           air is known to come from above only, the CT in the middle of what cannot be told from
-//           free air; where it decides little, the estimate lies between the two, as their errors weigh
+//   Law     aerodynamic power (power_balance.hpp) as a ratio to still air's at this speed, smoothed;
+//           from it inflow and CT (ThrustSolver); T = CT w^2
+//   Valid   where power determines inflow: observable(). Elsewhere still air's CT, or what is expected
+//           of air that comes from above only; between the two as their errors weigh
 //   Source  [Bangura 2017, eq. 5.4 and Algorithm 1]
 #pragma once
 #include "firmware/esc/core/calibration.hpp"

@@ -1,14 +1,13 @@
-// The winding current as the shunt tells it, once per PWM period, and the highest duty that it allows:
-// the fast half of the current limit, beside the model's bound on voltage (speed_controller.hpp).
+// The winding current from the shunt, once per PWM period, and the highest duty that it allows: the fast
+// half of the current limit, beside the bound on voltage (speed_controller.hpp). Derivation, stability and
+// where the limits come from: docs/winding_guard.md.
 //
 //   Units    converter counts of the shunt (31.66 mA), of voltages (6.177 mV), PWM counts of 3600
-//   Sense    the amplifier's pole (1 kHz) makes pulses of i for a share d of the period into
-//            s1 = s0 e^-x + i (1 - e^-dx) at the end of the on time, x = 0.314: solved for i. Its noise
-//            is about 1 A, halved by the mean of the last few. Commutation gives some current back to
-//            the bus: what is found is 10 % below the windings' mean
-//   Law      above the limit the voltage droops by 0.4 V per ampere: a virtual resistance, three times
-//            the windings' own. One sample far above cuts the next pulse short
+//   Sense    one pole of 1 kHz, sampled at a pulse's end: s1 = s0 e^-x + i (1 - e^-dx), x = 0.314
+//   Law      above the limit the voltage droops by 0.4 V per ampere; one sample far above cuts the next
+//            pulse short
 //   Trip     cuts in quick succession, a bus current over its limit, or a droop that lasts
+//   Error    reads some 10 % below the windings' mean: commutation gives current back to the bus
 #pragma once
 #include <cstdint>
 
@@ -49,7 +48,7 @@ class WindingGuard {
     shunt_ = shunt;
     note_bus(shunt);
     cut_ = false;
-    if (duty < kLeast_told) {  // hardly any pulse: nothing is told, and the current dies away
+    if (duty < kLeast_told) {  // too short a pulse: noise only
       current_ -= current_ / 4;
       return;
     }
