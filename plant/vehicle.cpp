@@ -7,9 +7,10 @@
 #include "base/check.hpp"
 #include "plant/air/air.hpp"
 #include "plant/airframe/contact_world.hpp"
+#include "plant/averaged_powertrain.hpp"
 #include "plant/base/bounds.hpp"
 #include "plant/base/frames.hpp"
-#include "plant/power_bus.hpp"
+#include "plant/motor/averaged_motor.hpp"
 #include "plant/rotor/rotor.hpp"
 
 namespace whirl::plant {
@@ -17,7 +18,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kSubStep_s = 1.25e-4;  // electrical time constant 0.63 ms
 constexpr double kFewTurns_radps = 20.0;
 
 struct Dip {
@@ -34,45 +34,30 @@ ShaftLoad shaft_load(const RotorLoads& loads, double at_speed_radps) {
   return {torque / (at_speed_radps * at_speed_radps), 0.0};
 }
 
-EnergyBooks sum_of(const std::vector<MotorBooks>& motors, const BatteryBooks& pack) {
-  MotorBooks all;
-  for (const MotorBooks& m : motors) all += m;
-  return {.chemical_J = pack.chemical_J,
-          .battery_J = pack.series_J + pack.relaxation_J + pack.dip_J,
-          .copper_J = all.copper_J,
-          .diode_J = all.diode_J,
-          .no_load_J = all.no_load_J,
-          .magnetic_J = all.magnetic_J,
-          .kinetic_J = all.kinetic_J,
-          .air_J = all.air_J};
-}
-
 }  // namespace
 
 struct Vehicle::Parts {
-  Parts(const VehicleParams& vehicle, RotorSet rotor_set, std::uint64_t seed)
+  Parts(const VehicleParams& vehicle, RotorSet rotor_set, std::unique_ptr<Powertrain> shafts_of,
+        std::uint64_t seed)
       : params(vehicle),
         mass{vehicle.airframe.mass_kg, vehicle.airframe.inertia_kgm2},
         rotors(std::move(rotor_set)),
-        battery(vehicle.battery),
+        powertrain(std::move(shafts_of)),
         air(vehicle.air, seed),
         contact(vehicle.airframe),
-        motors(rotors.size(), AveragedMotor(vehicle.motor)),
-        commands(rotors.size()),
-        drives(rotors.size()),
         loads(rotors.size()),
         loads_at_radps(rotors.size(), 0.0),
-        shaft(rotors.size()),
-        books(rotors.size()),
-        total(rotors.size()) {
+        shaft(rotors.size()) {
     WHIRL_CHECK(rotors.size() == vehicle.airframe.rotors.size(), rotors.size(),
                 vehicle.airframe.rotors.size());
+    WHIRL_CHECK(rotors.size() == powertrain->count(), rotors.size(), powertrain->count());
     state.motors.resize(rotors.size());
   }
 
-  std::size_t count() const { return motors.size(); }
+  std::size_t count() const { return rotors.size(); }
 
-  void run_motors(double dt_s);
+  void load_shafts();
+  void set_dip();
   Forcing run_rotors(double dt_s);
   void run_body(Forcing& forcing, double dt_s);
   void strike();
@@ -85,17 +70,13 @@ struct Vehicle::Parts {
   VehicleParams params;
   MassProperties mass;
   RotorSet rotors;
-  Battery battery;
+  std::unique_ptr<Powertrain> powertrain;
   Air air;
   ContactWorld contact;
   // One of each for each motor:
-  std::vector<AveragedMotor> motors;
-  std::vector<MotorCommand> commands;
-  std::vector<Drive> drives;  // kept: the last bus voltage is the next first guess
   std::vector<RotorLoads> loads;
   std::vector<double> loads_at_radps;
-  std::vector<ShaftLoad> shaft;          // of this step,
-  std::vector<MotorBooks> books, total;  // of its sub-step and of all
+  std::vector<ShaftLoad> shaft;
   std::vector<Dip> dips;
   std::vector<Push> pushes;
   Vector3d spin_start_B_Nms = Vector3d::Zero();
@@ -107,53 +88,23 @@ struct Vehicle::Parts {
 Vector3d Vehicle::Parts::spin_B() const {
   double sum = 0.0;  // counter-clockwise seen from above is about -z
   for (std::size_t i = 0; i < count(); ++i)
-    sum -= params.airframe.rotors[i].spin * motors[i].speed_radps();
+    sum -= params.airframe.rotors[i].spin * powertrain->speed_radps(i);
   return {0.0, 0.0, params.motor.inertia_kgm2 * sum};
 }
 
-void Vehicle::Parts::run_motors(double dt_s) {
-  std::fill(total.begin(), total.end(), MotorBooks{});
-  for (std::size_t i = 0; i < count(); ++i) {
-    drives[i].duty = std::clamp(commands[i].duty, 0.0, 1.0);
-    drives[i].diode = commands[i].freewheel == Freewheel::diode;
-    shaft[i] = shaft_load(loads[i], loads_at_radps[i]);
-    state.motors[i].winding_peak_A = std::abs(motors[i].current_A());
-  }
+// What the powertrain has to bear from now on.
+void Vehicle::Parts::load_shafts() {
+  for (std::size_t i = 0; i < count(); ++i) shaft[i] = shaft_load(loads[i], loads_at_radps[i]);
+  powertrain->set_loads(shaft);
+  set_dip();
+}
+
+void Vehicle::Parts::set_dip() {
   double below_V = 0.0;
   for (const Dip& dip : dips) {
     if (state.t_s >= dip.start_s && state.t_s < dip.end_s) below_V += dip.below_V;
   }
-  battery.set_dip(below_V);
-  const int steps = std::max(1, static_cast<int>(std::ceil(dt_s / kSubStep_s - 1e-9)));
-  double charge = 0.0, voltage = 0.0, avionics_J = 0.0;
-  BatteryBooks pack;
-  for (int k = 0; k < steps; ++k) {
-    const BusDraw draw =
-        step_bus(motors, drives, shaft, params.avionics_current_A, battery, dt_s / steps, books);
-    charge += draw.charge_C;
-    voltage += draw.bus_V / steps;
-    avionics_J += draw.bus_V * params.avionics_current_A * dt_s / steps;
-    pack += draw.battery;
-    for (std::size_t i = 0; i < count(); ++i) {
-      total[i] += books[i];
-      state.motors[i].winding_peak_A =
-          std::max(state.motors[i].winding_peak_A, std::abs(motors[i].current_A()));
-    }
-  }
-  for (std::size_t i = 0; i < count(); ++i) {
-    motors[i].warm(total[i], dt_s);
-    MotorState& m = state.motors[i];
-    m.speed_radps = motors[i].speed_radps();
-    m.winding_current_A = motors[i].current_A();
-    m.bus_current_A = total[i].bus_charge_C / dt_s;
-    m.winding_temperature_K = motors[i].winding_temperature_K();
-    m.blocked = motors[i].blocked();
-  }
-  state.bus_voltage_V = voltage;
-  state.battery_current_A = charge / dt_s;
-  state.charge_used_C = battery.charge_used_C();
-  state.energy = sum_of(total, pack);
-  state.energy.avionics_J = avionics_J;
+  powertrain->set_dip(below_V);
 }
 
 Forcing Vehicle::Parts::run_rotors(double dt_s) {
@@ -167,7 +118,7 @@ Forcing Vehicle::Parts::run_rotors(double dt_s) {
   for (std::size_t i = 0; i < count(); ++i) {
     const Vector3d& arm_B = params.airframe.rotors[i].p_BP_B_m;
     const Vector3d p_W = hub_W(i);
-    conditions.omega_radps = motors[i].speed_radps();
+    conditions.omega_radps = state.motors[i].speed_radps;
     conditions.v_AP_P_mps = v_WB_B + body.w_WB_B_radps.cross(arm_B) - R_BW * air.wind_W_mps(p_W);
     conditions.height_m = -p_W.z();
     loads[i] = rotors[i](conditions, dt_s);
@@ -214,9 +165,9 @@ void Vehicle::Parts::strike() {
   const double slope = std::sqrt(std::max(0.0, 1.0 - axis_W.z() * axis_W.z()));
   for (std::size_t i = 0; i < count(); ++i) {
     if (hub_W(i).z() + params.airframe.rotors[i].radius_m * slope <= 0.0) continue;
-    motors[i].block();
+    powertrain->block(i);
     state.motors[i].blocked = true;
-    state.motors[i].speed_radps = 0.0;
+    state.motors[i].speed_radps = powertrain->speed_radps(i);
   }
 }
 
@@ -234,12 +185,19 @@ void Vehicle::Parts::publish_air() {
 }
 
 Vehicle::Vehicle(const VehicleParams& params, RotorSet rotors, std::uint64_t seed)
-    : parts_(std::make_unique<Parts>(params, std::move(rotors), seed)) {
+    : Vehicle(params, std::move(rotors),
+              std::make_unique<AveragedPowertrain>(params.airframe.rotors.size(), params.motor,
+                                                   params.battery, params.avionics_current_A),
+              seed) {}
+
+Vehicle::Vehicle(const VehicleParams& params, RotorSet rotors,
+                 std::unique_ptr<Powertrain> powertrain, std::uint64_t seed)
+    : parts_(std::make_unique<Parts>(params, std::move(rotors), std::move(powertrain), seed)) {
   double gear_m = 0.0;
   for (const auto& foot : params.airframe.contact.gear_B_m) gear_m = std::max(gear_m, foot.z());
   parts_->body.p_WB_W_m.z() = -gear_m - params.airframe.contact.foot_radius_m;
   parts_->state.specific_force_B_mps2.z() = -kGravity_mps2;
-  parts_->state.bus_voltage_V = parts_->battery.source_V();
+  parts_->state.bus_voltage_V = parts_->powertrain->source_V();
   parts_->publish_air();
 }
 Vehicle::~Vehicle() = default;
@@ -254,14 +212,14 @@ void Vehicle::place(const Vector3d& p_WB_W_m, const Eigen::Quaterniond& q_WB,
 
 void Vehicle::set_motor_speed(int index, double speed_radps) {
   const auto i = static_cast<std::size_t>(index);
-  parts_->motors.at(i).set_speed(speed_radps);
-  parts_->state.motors[i].speed_radps = speed_radps;
+  parts_->powertrain->set_speed(i, speed_radps);
+  parts_->state.motors[i].speed_radps = parts_->powertrain->speed_radps(i);
   parts_->spin_start_B_Nms = parts_->spin_B();
 }
 
 void Vehicle::command(int index, const MotorCommand& command) {
   WHIRL_CHECK(std::isfinite(command.duty), index, command.duty);
-  parts_->commands.at(static_cast<std::size_t>(index)) = command;
+  parts_->powertrain->command(static_cast<std::size_t>(index), command);
 }
 
 void Vehicle::set_steady_wind(const Vector3d& wind) {
@@ -276,6 +234,7 @@ void Vehicle::add_jet(const Jet& jet) {
 
 void Vehicle::dip_supply(double below_V, double start_s, double duration_s) {
   parts_->dips.push_back({below_V, start_s, start_s + duration_s});
+  parts_->set_dip();
 }
 
 void Vehicle::push(const Vector3d& force_W_N, double duration_s) {
@@ -286,11 +245,12 @@ void Vehicle::step(double dt_s) {
   WHIRL_CHECK(dt_s > 0.0 && dt_s <= 0.005, dt_s);
   Parts& p = *parts_;
   p.air.step(p.body.p_WB_W_m, p.body.v_WB_W_mps, dt_s);
-  p.run_motors(dt_s);
+  p.powertrain->step(dt_s, p.state);
   Forcing forcing = p.run_rotors(dt_s);
   p.run_body(forcing, dt_s);
   p.strike();
   p.state.t_s += dt_s;
+  p.load_shafts();
   p.publish_air();
 }
 

@@ -1,8 +1,8 @@
-// A rotorcraft as physics: motors on one battery, a rotor on each, a rigid body, ground.
+// A rotorcraft as physics: a powertrain, a rotor on each of its shafts, a rigid body, ground.
 //
 //   Frame    W and B as in frames.hpp; motors and rotors by index = motor number - 1
 //   Units    SI
-//   Order    one step: commands and air at t -> motors and bus over [t, t + dt] (exact sub-steps)
+//   Order    one step: commands and air at t -> powertrain over [t, t + dt] (powertrain.hpp)
 //            -> rotor loads -> rigid body over [t, t + dt] -> contact -> state() at t + dt
 //   Valid    dt from 0.1 to 2 ms; the rotor's loads are held over the step, except that shaft
 //            torque follows the square of speed
@@ -19,6 +19,7 @@
 #include "plant/airframe/airframe_params.hpp"
 #include "plant/battery/battery_params.hpp"
 #include "plant/motor/motor_params.hpp"
+#include "plant/powertrain.hpp"
 
 namespace whirl::plant {
 
@@ -43,37 +44,7 @@ VehicleParams hp_quad();  // the reference vehicle of [Bangura2017, ch. 3]
 
 Result<Done> validate(const VehicleParams& params, const std::string& place);
 
-enum class Freewheel {
-  synchronous,  // the low side conducts when the high side does not: current may reverse (brakes)
-  diode,        // body diodes only: current never reverses; duty 0 coasts
-};
-
-struct MotorCommand {
-  double duty = 0.0;  // 0..1 of the bus voltage
-  Freewheel freewheel = Freewheel::diode;
-};
-
-struct MotorState {
-  double speed_radps = 0.0;
-  double winding_current_A = 0.0;  // at the end of the step
-  double winding_peak_A = 0.0;     // largest magnitude within the step
-  double bus_current_A = 0.0;      // mean over the step; negative when it feeds the pack
-  double shaft_torque_Nm = 0.0;    // taken by the air
-  double thrust_N = 0.0;
-  double winding_temperature_K = 293.15;
-  bool blocked = false;  // the propeller struck the ground and has stopped
-};
-
-struct EnergyBooks {  // of one step: what the pack gave is the sum of the rest
-  double chemical_J = 0.0;
-  double battery_J = 0.0;  // heat and relaxation of the pack, and a dip that a plan imposes
-  double avionics_J = 0.0;
-  double copper_J = 0.0, diode_J = 0.0, no_load_J = 0.0;
-  double magnetic_J = 0.0, kinetic_J = 0.0;  // what the windings and the shafts store
-  double air_J = 0.0;                        // work of the shafts on the air
-};
-
-struct VehicleState {
+struct VehicleState : PowertrainState {
   double t_s = 0.0;
   Eigen::Vector3d p_WB_W_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d v_WB_W_mps = Eigen::Vector3d::Zero();
@@ -81,11 +52,6 @@ struct VehicleState {
   Eigen::Vector3d w_WB_B_radps = Eigen::Vector3d::Zero();
   Eigen::Vector3d specific_force_B_mps2 = Eigen::Vector3d::Zero();  // at the centre of mass
   Eigen::Vector3d alpha_WB_B_radps2 = Eigen::Vector3d::Zero();
-  std::vector<MotorState> motors;  // index: motor number - 1
-  double bus_voltage_V = 0.0;      // mean over the step
-  double battery_current_A = 0.0;  // mean over the step, avionics included
-  double charge_used_C = 0.0;
-  EnergyBooks energy;
   Eigen::Vector3d wind_W_mps = Eigen::Vector3d::Zero();  // at the centre of mass
   double static_pressure_Pa = 0.0, air_temperature_K = 0.0, air_density_kgpm3 = 0.0;
   double contact_impulse_Ns = 0.0;  // what the ground gave in this step
@@ -96,7 +62,12 @@ class Vehicle {
  public:
   // Pre: validate(params) succeeded. The vehicle starts at rest on its gear at W's origin, nose
   // north. `rotors` has one for each of params.airframe.rotors, and rotors[i] turns as its spin says.
+  // Its motors are averaged ones on its own bus;
   Vehicle(const VehicleParams& params, RotorSet rotors, std::uint64_t seed);
+  // or its shafts are those of `powertrain`: one for each rotor, standing still, of the inertia that
+  // params.motor says. (Of params, motor and battery otherwise count for nothing then.)
+  Vehicle(const VehicleParams& params, RotorSet rotors, std::unique_ptr<Powertrain> powertrain,
+          std::uint64_t seed);
   ~Vehicle();
   Vehicle(Vehicle&&) noexcept;
   Vehicle& operator=(Vehicle&&) noexcept;
