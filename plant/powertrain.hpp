@@ -4,7 +4,8 @@
 //   Units    SI
 //   Order    set_loads() and set_dip() say what holds from now on, t; step() is the time from t to
 //            t + dt under that, and fills in the state at t + dt. Between two steps both are up to date
-//   Kinds    averaged_powertrain.hpp: duties on the vehicle's own bus
+//   Kinds    averaged_powertrain.hpp: duties on the vehicle's own bus; remote_powertrain.hpp: shafts
+//            that somebody else steps
 //   Adding   one class; who makes the vehicle hands one over (Vehicle's second constructor)
 #pragma once
 #include <cstddef>
@@ -32,7 +33,7 @@ struct MotorState {
   double shaft_torque_Nm = 0.0;  // taken by the air: the rotor's, not the powertrain's to fill in
   double thrust_N = 0.0;         // likewise
   double winding_temperature_K = 293.15;
-  bool blocked = false;  // the propeller struck the ground and has stopped
+  bool blocked = false;  // the propeller struck the ground and has stopped, or is being stopped
 };
 
 struct EnergyBooks {  // of one step: what the pack gave is the sum of the rest
@@ -42,6 +43,7 @@ struct EnergyBooks {  // of one step: what the pack gave is the sum of the rest
   double copper_J = 0.0, diode_J = 0.0, no_load_J = 0.0;
   double magnetic_J = 0.0, kinetic_J = 0.0;  // what the windings and the shafts store
   double air_J = 0.0;                        // work of the shafts on the air
+  double exchange_J = 0.0;  // between the pack and remote shafts, see remote_powertrain.hpp
 };
 
 struct PowertrainState {

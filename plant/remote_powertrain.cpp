@@ -1,0 +1,106 @@
+#include "plant/remote_powertrain.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/check.hpp"
+#include "plant/motor/averaged_motor.hpp"
+
+namespace whirl::plant {
+namespace {
+
+constexpr double kSlow_radps = 20.0;  // below, loads go with the square of speed
+// Of a propeller that strikes: from 1000 rad/s in 5 ms, and less than a power stage's steps of 25 us
+// could turn back.
+constexpr double kStrike_radps2 = 2e5;
+
+}  // namespace
+
+RemotePowertrain::RemotePowertrain(std::size_t motors, const BatteryParams& battery,
+                                   double avionics_current_A, double inertia_kgm2)
+    : battery_(battery),
+      avionics_current_A_(avionics_current_A),
+      inertia_kgm2_(inertia_kgm2),
+      share_(std::max(1.0, 0.5 * static_cast<double>(motors))),
+      shafts_(motors),
+      received_(motors),
+      torque_Nm_s2_(motors, 0.0),
+      brake_Nm_(motors, 0.0) {
+  WHIRL_CHECK(inertia_kgm2 > 0.0, inertia_kgm2);
+}
+
+double RemotePowertrain::total_current_A() const {
+  double sum = avionics_current_A_;
+  for (const RemoteShaftState& shaft : shafts_) sum += shaft.source_current_A;
+  return sum;
+}
+
+RemoteShaftLoad RemotePowertrain::load(std::size_t motor) const {
+  const double ohm = battery_.series_resistance_ohm(), own_ohm = share_ * ohm;
+  const double source_V =
+      battery_.source_V() - ohm * total_current_A() + own_ohm * shafts_.at(motor).source_current_A;
+  return {torque_Nm_s2_[motor], brake_Nm_[motor], std::max(0.0, source_V), own_ohm};
+}
+
+void RemotePowertrain::receive(std::size_t motor, const RemoteShaftState& state) {
+  WHIRL_CHECK(std::isfinite(state.speed_radps) && std::isfinite(state.source_current_A), motor);
+  WHIRL_CHECK(!received_.at(motor).has_value(), motor);
+  received_[motor] = state;
+}
+
+void RemotePowertrain::set_speed(std::size_t motor, double speed_radps) {
+  shafts_.at(motor).speed_radps = speed_radps;
+}
+
+void RemotePowertrain::block(std::size_t motor) {
+  brake_Nm_.at(motor) = inertia_kgm2_ * kStrike_radps2;
+}
+
+void RemotePowertrain::command(std::size_t motor, const MotorCommand& command) {
+  WHIRL_CHECK(false, motor, command.duty);  // the bridge is its owner's
+}
+
+void RemotePowertrain::set_loads(std::span<const ShaftLoad> loads) {
+  WHIRL_CHECK(loads.size() == count(), loads.size(), count());
+  for (std::size_t i = 0; i < count(); ++i) {
+    const double w = std::max(kSlow_radps, std::abs(shafts_[i].speed_radps));
+    torque_Nm_s2_[i] = loads[i].quadratic_Nm_s2 + loads[i].constant_Nm / (w * w);
+  }
+}
+
+void RemotePowertrain::step(double dt_s, PowertrainState& state) {
+  WHIRL_CHECK(state.motors.size() == count(), state.motors.size(), count());
+  for (std::size_t i = 0; i < count(); ++i) {
+    WHIRL_CHECK(received_[i].has_value(), i);  // nobody has said what this shaft did
+    shafts_[i] = *received_[i];
+    received_[i].reset();
+  }
+  const double total_A = total_current_A();
+  state.bus_voltage_V =
+      std::max(0.0, battery_.source_V() - battery_.series_resistance_ohm() * total_A);
+  const BatteryBooks pack = battery_.draw(total_A * dt_s, dt_s);
+  state.battery_current_A = total_A;
+  state.charge_used_C = battery_.charge_used_C();
+  EnergyBooks& e = state.energy;
+  e = {.chemical_J = pack.chemical_J,
+       .battery_J = pack.series_J + pack.relaxation_J + pack.dip_J,
+       .avionics_J = state.bus_voltage_V * avionics_current_A_ * dt_s};
+  e.exchange_J = e.chemical_J - e.battery_J - e.avionics_J;
+  for (std::size_t i = 0; i < count(); ++i) {
+    const RemoteShaftState& shaft = shafts_[i];
+    e.exchange_J -= shaft.electrical_in_J;
+    e.copper_J += shaft.copper_J;
+    e.diode_J += shaft.diode_J;
+    e.no_load_J += shaft.no_load_J;
+    e.magnetic_J += shaft.magnetic_J;
+    e.kinetic_J += shaft.kinetic_J;
+    e.air_J += shaft.air_J;
+    MotorState& m = state.motors[i];
+    m.speed_radps = shaft.speed_radps;
+    m.winding_peak_A = shaft.winding_peak_A;
+    m.bus_current_A = shaft.source_current_A;
+    m.blocked = brake_Nm_[i] > 0.0;
+  }
+}
+
+}  // namespace whirl::plant
