@@ -4,6 +4,7 @@
 #include "harness/catalogue/feed.hpp"
 #include "harness/catalogue/motor.hpp"
 #include "harness/catalogue/propeller_file.hpp"
+#include "harness/flight/controllers.hpp"
 #include "harness/lua/table.hpp"
 
 namespace whirl::catalogue {
@@ -85,6 +86,11 @@ void read_gear(const Table& t, plant::ContactParams& c) {
   c.friction = t.number_or("friction", c.friction, at_least(0.0));
 }
 
+std::string controller_of(const Table& esc) {
+  const auto names = flight::names_of(flight::controller_types());
+  return esc.has("controller") ? esc.choice("controller", names) : names.front();
+}
+
 void read_capture(const Table& t, flight::CaptureParams& c) {
   c.rate_Hz = t.quantity_or("rate", Dimension::frequency, c.rate_Hz, between(0.1, 1000.0));
   c.latency_ns = t.duration_ns_or("latency", c.latency_ns);
@@ -117,7 +123,9 @@ Result<flight::FlightParams> read_vehicle(const std::string& path, const Setting
                                                p.vehicle.avionics_current_A, at_least(0.0));
   p.vehicle.motor = read_motor(t.table("motor"), MissingKeys::refused);
   p.vehicle.battery = read_feed(t);
-  p.esc = read_esc(t.table("esc"));
+  const Table esc = t.table("esc");
+  p.controller = controller_of(esc);
+  p.esc = read_esc(esc);
   p.esc.pole_pairs = p.vehicle.motor.pole_pairs;
   if (t.has("capture")) read_capture(t.table("capture"), p.capture);
   const std::string propeller = t.text("propeller");

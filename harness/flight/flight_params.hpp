@@ -15,7 +15,8 @@ struct FlightParams {
   std::string name;
   plant::VehicleParams vehicle;
   std::shared_ptr<const plant::Blade> blade;
-  EscParams esc;
+  std::string controller = "esc_core";  // of each motor: the name of a ControllerType
+  EscParams esc;                        // esc_core's
   CaptureParams capture;
 };
 

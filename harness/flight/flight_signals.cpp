@@ -53,7 +53,7 @@ void FlightWorld::name_signals() {
 
 void FlightWorld::name_motor_signals() {
   using D = Dimension;
-  for (std::size_t i = 0; i < escs_.size(); ++i) {
+  for (std::size_t i = 0; i < controllers_.size(); ++i) {
     const std::string n = "_" + std::to_string(i + 1);
     const auto motor = [this, i]() -> const plant::MotorState& {
       return vehicle_.state().motors[i];
@@ -64,14 +64,13 @@ void FlightWorld::name_motor_signals() {
                [=] { return motor().winding_peak_A; });
     add_signal("bus_current" + n, D::current, "mean over the step",
                [=] { return motor().bus_current_A; });
-    add_signal("esc_armed" + n, D::none, "", [this, i] { return escs_[i].armed() ? 1.0 : 0.0; });
-    const auto estimator = [this, i]() -> const fw::esc::ThrustEstimator& {
-      return escs_[i].core().estimator();
-    };
-    add_signal("esc_thrust" + n, D::force, "as the ESC's core believes",
-               [=] { return static_cast<double>(estimator().thrust_N()); });
-    add_signal("esc_observable" + n, D::none, "1: power tells it the inflow",
-               [=] { return estimator().observable() ? 1.0 : 0.0; });
+    const MotorController& controller = *controllers_[i];
+    add_signal("esc_armed" + n, D::none, "",
+               [&controller] { return controller.armed() ? 1.0 : 0.0; });
+    for (MotorController::Told& told : controller.signals()) {
+      add_signal(told.signal.name + n, told.signal.dimension, told.signal.about,
+                 std::move(told.value));
+    }
   }
 }
 

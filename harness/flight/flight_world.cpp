@@ -31,10 +31,17 @@ FlightWorld::FlightWorld(const FlightParams& params, std::uint64_t seed)
     : FlightWorld(params, plant::blade_element_rotors(params.blade, params.vehicle.airframe),
                   seed) {}
 
-FlightWorld::FlightWorld(const FlightParams& params, plant::RotorSet rotors, std::uint64_t seed)
+FlightWorld::FlightWorld(const FlightParams& params, plant::RotorSet rotors, std::uint64_t seed,
+                         const ControllerTypes& types)
     : vehicle_(params.vehicle, std::move(rotors), seed), capture_(params.capture, seed) {
+  const auto type = std::find_if(types.begin(), types.end(), [&](const ControllerType& t) {
+    return t.name == params.controller;
+  });
+  WHIRL_CHECK(type != types.end(), params.controller);
   const int motors = static_cast<int>(params.vehicle.airframe.rotors.size());
-  for (int motor = 1; motor <= motors; ++motor) escs_.emplace_back(params.esc, seed, motor);
+  for (int motor = 1; motor <= motors; ++motor) {
+    controllers_.push_back(type->make(params, seed, motor));
+  }
   name_signals();
 }
 
@@ -55,10 +62,10 @@ void FlightWorld::take(const io::Batch& happened) {
   while (reader.next()) {
     const io::Header& header = reader.header();
     if (header.kind == io::Kind::esc_setpoint) {
-      WHIRL_CHECK(header.port >= 1 && header.port <= escs_.size(), header.port);
+      WHIRL_CHECK(header.port >= 1 && header.port <= controllers_.size(), header.port);
       const auto setpoint = reader.as<io::EscSetpoint>();
       if (setpoint.valid != 0) {
-        escs_[header.port - 1u].write(setpoint.value);
+        controllers_[header.port - 1u]->write(setpoint.value);
       } else {
         ++setpoints_refused_;
       }
@@ -74,9 +81,9 @@ void FlightWorld::move(std::int64_t t_ns) {
   WHIRL_CHECK(t_ns == now_ns_ + kStep_ns, t_ns, now_ns_);
   apply_faults(now_ns_);
   const plant::VehicleState& before = vehicle_.state();
-  for (std::size_t i = 0; i < escs_.size(); ++i) {
+  for (std::size_t i = 0; i < controllers_.size(); ++i) {
     vehicle_.command(static_cast<int>(i),
-                     escs_[i].step(now_ns_, before.motors[i], before.bus_voltage_V));
+                     controllers_[i]->step(now_ns_, before.motors[i], before.bus_voltage_V));
   }
   vehicle_.step(kStep_s);
 }
@@ -89,7 +96,7 @@ void FlightWorld::tell(std::int64_t t_ns, io::Batch& sensed) {
   copy(s.alpha_WB_B_radps2, motion.alpha_WB_B_radps2);
   copy(s.q_WB.conjugate() * kMagneticField_W_T, motion.magnetic_field_B_T);
   // The message has room for a quad's rotors; those beyond do not shake the board's sensors.
-  const std::size_t shaking = std::min(escs_.size(), std::size(motion.rotor_speed_radps));
+  const std::size_t shaking = std::min(controllers_.size(), std::size(motion.rotor_speed_radps));
   for (std::size_t i = 0; i < shaking; ++i) motion.rotor_speed_radps[i] = s.motors[i].speed_radps;
   motion.static_pressure_Pa = s.static_pressure_Pa;
   motion.air_temperature_K = s.air_temperature_K;
@@ -101,8 +108,9 @@ void FlightWorld::tell(std::int64_t t_ns, io::Batch& sensed) {
   std::copy(std::begin(q_WB), std::end(q_WB), std::begin(motion.q_WB));
   sensed.add(io::Kind::body_motion, 0, t_ns, motion);
 
-  for (std::size_t i = 0; i < escs_.size(); ++i) {
-    sensed.add(io::Kind::esc_state, static_cast<std::uint16_t>(i + 1), t_ns, escs_[i].status());
+  for (std::size_t i = 0; i < controllers_.size(); ++i) {
+    sensed.add(io::Kind::esc_state, static_cast<std::uint16_t>(i + 1), t_ns,
+               controllers_[i]->status());
   }
   const auto send = [&sensed](std::int64_t at_ns, std::span<const std::uint8_t> frame) {
     sensed.add(io::Kind::uart_frame, kRadioPort, at_ns, frame.data(),
@@ -188,7 +196,7 @@ Result<Done> FlightWorld::blow(const request::Wind& wind, std::int64_t now_ns) {
 
 Result<bool> FlightWorld::take_fault(const FaultSpec& fault) {
   if (fault.kind == kEsc_stopped) {
-    const int motor = motor_of(fault), motors = static_cast<int>(escs_.size());
+    const int motor = motor_of(fault), motors = static_cast<int>(controllers_.size());
     if (motor < 1 || motor > motors) {
       return Error{ErrorKind::bad_input, "", "esc_stopped needs one of the vehicle's motors",
                    "motor = 1 to " + std::to_string(motors) + ", or the device that is its ESC"};
@@ -208,7 +216,7 @@ Result<bool> FlightWorld::take_fault(const FaultSpec& fault) {
 
 void FlightWorld::apply_faults(std::int64_t t_ns) {
   faults_.apply(kEsc_stopped, t_ns, [this](const FaultSpec& fault) {
-    escs_[static_cast<std::size_t>(motor_of(fault)) - 1].cut();
+    controllers_[static_cast<std::size_t>(motor_of(fault)) - 1]->cut();
   });
   // The vehicle itself lowers its supply; here is only kept that it did.
   faults_.apply(kSupply_dip, t_ns, [](const FaultSpec&) {});

@@ -1,6 +1,6 @@
-// A flight: the vehicle in its air, a native ESC for each motor, the capture system and the ground station.
+// A flight: the vehicle in its air, a controller for each motor, the capture system and the ground station.
 //
-//   Step     ESCs and station take what the target did; then everything moves 1 ms; then what is
+//   Step     controllers and station take what the target did; then everything moves 1 ms; then what is
 //            sensed goes out: body_motion, esc_state of each motor, uart_frame to the radio
 //   Command  Arm, TakeOff, GoTo, Land. Take-off also streams the point above where the vehicle stands
 //            as its target; land and disarm end the stream
@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "harness/flight/capture.hpp"
+#include "harness/flight/controllers.hpp"
 #include "harness/flight/flight_params.hpp"
-#include "harness/flight/native_esc.hpp"
 #include "harness/flight/station.hpp"
 #include "harness/world/world.hpp"
 #include "plant/vehicle.hpp"
@@ -26,8 +26,9 @@ inline constexpr std::uint16_t kRadioPort = 2;  // USART2
 class FlightWorld : public World {
  public:
   FlightWorld(const FlightParams& params, std::uint64_t seed);
-  // The same with rotors of the caller's choice, for tests.
-  FlightWorld(const FlightParams& params, plant::RotorSet rotors, std::uint64_t seed);
+  // The same with rotors and controllers of the caller's choice, for tests.
+  FlightWorld(const FlightParams& params, plant::RotorSet rotors, std::uint64_t seed,
+              const ControllerTypes& types = controller_types());
 
   const std::vector<Signal>& signals() const override { return signals_; }
   void read(std::span<double> values) const override;
@@ -60,7 +61,7 @@ class FlightWorld : public World {
   double offset_from_target_m() const;
 
   plant::Vehicle vehicle_;
-  std::vector<NativeEsc> escs_;
+  std::vector<std::unique_ptr<MotorController>> controllers_;  // index: motor number - 1
   Capture capture_;
   Station station_;
   TimedFaults faults_;

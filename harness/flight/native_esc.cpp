@@ -4,6 +4,9 @@
 #include <cmath>
 #include <string>
 
+#include "harness/flight/controllers.hpp"
+#include "harness/flight/flight_params.hpp"
+
 namespace whirl::flight {
 namespace {
 
@@ -111,6 +114,21 @@ io::EscState NativeEsc::status() const {
           static_cast<double>(core_.speed_radps() / fw::esc::kRadps_per_rpm),
           core_.flags(),
           {}};
+}
+
+std::vector<MotorController::Told> NativeEsc::signals() const {
+  const auto thrust_N = [this] { return static_cast<double>(core_.estimator().thrust_N()); };
+  const auto observable = [this] { return core_.estimator().observable() ? 1.0 : 0.0; };
+  return {{{"esc_thrust", Dimension::force, "as the ESC's core believes"}, thrust_N},
+          {{"esc_observable", Dimension::none, "1: power tells it the inflow"}, observable}};
+}
+
+ControllerType native_esc_type() {
+  return {"esc_core",
+          [](const FlightParams& params, std::uint64_t seed,
+             int number) -> std::unique_ptr<MotorController> {
+            return std::make_unique<NativeEsc>(params.esc, seed, number);
+          }};
 }
 
 }  // namespace whirl::flight

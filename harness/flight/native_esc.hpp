@@ -1,4 +1,4 @@
-// The motor controller of a flight plan: the firmware's own control core (firmware/esc/core, compiled
+// A motor controller of flight plans: the firmware's own control core (firmware/esc/core, compiled
 // for this machine), between what the ESC would sense of its motor and what its bridge does to it.
 // Bytes, address and rejects are the I2C device's (io_bridges/devices/esc_i2c.hpp).
 //
@@ -22,10 +22,9 @@
 
 #include "firmware/esc/core/core.hpp"
 #include "firmware/esc/core/sensing.hpp"
+#include "harness/flight/motor_controller.hpp"
 #include "harness/flight/zero_crossings.hpp"
-#include "io_bridges/messages/messages.hpp"
 #include "plant/sensors/current_shunt.hpp"
-#include "plant/vehicle.hpp"
 
 namespace whirl::flight {
 
@@ -35,19 +34,18 @@ struct EscParams {
   int pole_pairs = 7;  // of its motor
 };
 
-class NativeEsc {
+class NativeEsc final : public MotorController {
  public:
   NativeEsc(const EscParams& params, std::uint64_t seed, int number);
 
-  // A valid set-point that the device has taken.
-  void write(std::uint16_t v) { setpoint_ = v, fresh_ = true; }
-  // What the motor did in the millisecond that ends now; answers for the next one.
+  void write(std::uint16_t v) override { setpoint_ = v, fresh_ = true; }
   plant::MotorCommand step(std::int64_t now_ns, const plant::MotorState& motor,
-                           double bus_voltage_V);
-  void cut() { cut_ = true; }  // a fault injected into the ESC: it stops and stays so
+                           double bus_voltage_V) override;
+  void cut() override { cut_ = true; }
 
-  io::EscState status() const;
-  bool armed() const { return core_.supervisor().armed(); }
+  io::EscState status() const override;
+  bool armed() const override { return core_.supervisor().armed(); }
+  std::vector<Told> signals() const override;
   const fw::esc::Core& core() const { return core_; }
 
  private:

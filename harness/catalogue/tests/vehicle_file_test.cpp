@@ -115,6 +115,17 @@ TEST(VehicleFile, MotorsAreListedOrTheArmOfAQuadIsTold) {
       << shared;
 }
 
+TEST(VehicleFile, ControllerIsOneOfTheTableAndTheFirstWhereNothingIsSaid) {
+  const std::string key = "esc = { mode = \"thrust_by_rpm\"";
+  const auto said = read_changed(key, "esc = { controller = \"esc_core\", mode = \"rpm\"");
+  ASSERT_TRUE(said.ok()) << said.error().message();
+  EXPECT_EQ(said.value().controller, "esc_core");
+  EXPECT_EQ(read_changed(key, "esc = { mode = \"rpm\"").value().controller, "esc_core");
+  const std::string refused = complaint_about(key, "esc = { controller = \"toy\", mode = \"rpm\"");
+  EXPECT_NE(refused.find("controller"), std::string::npos) << refused;
+  EXPECT_NE(refused.find("esc_core"), std::string::npos) << refused;
+}
+
 TEST(VehicleFile, CalibrationHasTheNamesOfTheImagesSet) {
   const auto params = read_changed(
       "esc = { mode = \"thrust_by_rpm\"",
