@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "base/check.hpp"
+#include "plant/base/motor_count.hpp"
 
 namespace whirl::flight {
 namespace {
@@ -16,6 +17,8 @@ constexpr double kStep_s = 1e-3;
 constexpr std::int64_t kStep_ns = 1'000'000;
 // Earth's field at Canberra in W (north, east, down).
 const Eigen::Vector3d kMagneticField_W_T(23.0e-6, 5.1e-6, -52.9e-6);
+
+static_assert(io::kMostMotors == plant::kMostMotors);  // BodyMotion has room for each rotor
 
 void copy(const Eigen::Vector3d& from, double (&to)[3]) {
   for (int i = 0; i < 3; ++i) to[i] = from[i];
@@ -95,9 +98,9 @@ void FlightWorld::tell(std::int64_t t_ns, io::Batch& sensed) {
   copy(s.w_WB_B_radps, motion.w_WB_B_radps);
   copy(s.alpha_WB_B_radps2, motion.alpha_WB_B_radps2);
   copy(s.q_WB.conjugate() * kMagneticField_W_T, motion.magnetic_field_B_T);
-  // The message has room for a quad's rotors; those beyond do not shake the board's sensors.
-  const std::size_t shaking = std::min(controllers_.size(), std::size(motion.rotor_speed_radps));
-  for (std::size_t i = 0; i < shaking; ++i) motion.rotor_speed_radps[i] = s.motors[i].speed_radps;
+  for (std::size_t i = 0; i < s.motors.size(); ++i) {
+    motion.rotor_speed_radps[i] = s.motors[i].speed_radps;
+  }
   motion.static_pressure_Pa = s.static_pressure_Pa;
   motion.air_temperature_K = s.air_temperature_K;
   motion.bus_voltage_V = s.bus_voltage_V;

@@ -17,10 +17,12 @@
 
 namespace whirl::io {
 
+inline constexpr int kMostMotors = 12;  // of a vehicle; plant::kMostMotors is compared with it
+
 enum class Kind : std::uint8_t {
   // Harness to target.
   body_motion = 1,  // BodyMotion: what the sensors on the board feel from here on
-  esc_state = 2,    // EscState, port = motor number 1..4
+  esc_state = 2,    // EscState, port = motor number 1..kMostMotors
   uart_frame = 3,   // bytes to send into UART `port` from t_ns on
   fault = 4,        // FaultCommand + name text
   end_of_run = 5,   // empty
@@ -28,7 +30,7 @@ enum class Kind : std::uint8_t {
   i2c_order = 7,    // I2cOrder + bytes to write, port = bus number: not before t_ns
   pulse_train = 8,  // PulseTrain, port = motor number: on its throttle pin, from here on
   // Target to harness.
-  esc_setpoint = 32,     // EscSetpoint, port = motor number
+  esc_setpoint = 32,     // EscSetpoint, port = motor number 1..kMostMotors
   uart_received = 33,    // bytes the board has sent on UART `port`; t_ns: the last stop bit
   i2c_transaction = 34,  // BusTransaction + bytes + their times, port = bus number
   spi_transaction = 35,  // BusTransaction + bytes (at most 32 kept: MOSI and MISO in turn) + times
@@ -68,7 +70,7 @@ struct BodyMotion {  // of the body's reference point (centre of mass), at t_ns
   double specific_force_B_mps2[3] = {0, 0, 0};  // what an ideal accelerometer reads
   double w_WB_B_radps[3] = {0, 0, 0};
   double alpha_WB_B_radps2[3] = {0, 0, 0};
-  double rotor_speed_radps[4] = {0, 0, 0, 0};  // for vibration
+  double rotor_speed_radps[kMostMotors] = {};  // for vibration; 0 of rotors that are not there
   double magnetic_field_B_T[3] = {0, 0, 0};
   double static_pressure_Pa = 101325.0;
   double air_temperature_K = 288.15;

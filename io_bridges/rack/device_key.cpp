@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "io_bridges/messages/messages.hpp"
+
 namespace whirl::rack {
 namespace {
 
@@ -154,7 +156,7 @@ DeviceKey motor_key() {
   return {.path = "motor",
           .about = "its number",
           .kind = KeyKind::whole,
-          .limits = {1, 4},
+          .limits = {1, io::kMostMotors},
           .sharing = Sharing::own_in_type};
 }
 

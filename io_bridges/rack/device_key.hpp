@@ -59,7 +59,7 @@ struct DeviceKey {
 DeviceKey bus_key(std::string kind, std::string about);
 DeviceKey pin_key(std::string path, std::string about);  // own
 DeviceKey address_key();
-DeviceKey motor_key();  // 1..4, own in its type
+DeviceKey motor_key();  // 1..io::kMostMotors, own in its type
 DeviceKey flag_key(std::string path, std::string about);
 DeviceKey axes_key(std::string path, std::string about);
 DeviceKey quantity_key(std::string path, Dimension dimension, std::string unit, Limits limits,

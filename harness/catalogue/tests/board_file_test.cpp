@@ -144,7 +144,7 @@ TEST(BoardFile, EachLimitBelongsToItsRange) {
                              {"address", "0x08", "0x07"},
                              {"address", "0x77", "0x78"},
                              {"motor", "1", "0"},
-                             {"motor", "4", "5"}};
+                             {"motor", "12", "13"}};
   for (const Edge& edge : kOfDevices) {
     const auto with = [&](const std::string& value) {
       const bool serial = edge.key == "baud";

@@ -1,7 +1,7 @@
 // One more kind of motor controller: from set-points to a flight, a status, a signal and a fault.
 #include <gtest/gtest.h>
 
-#include <array>
+#include <vector>
 
 #include "base/near.hpp"
 #include "base/rpm.hpp"
@@ -22,28 +22,33 @@ ControllerTypes with_toy() {
   return types;
 }
 
-FlightParams toy_quad() {
+FlightParams toy_vehicle(int more_rotors) {
   auto params =
       catalogue::read_vehicle(std::string(kSourceFolder) + "/test_plans/vehicles/hp_quad.lua");
   EXPECT_TRUE(params.ok());
   params.value().controller = "toy";
+  for (int i = 0; i < more_rotors; ++i) {
+    params.value().vehicle.airframe.rotors.push_back({{0.2, 0.2, -0.03}, i % 2 == 0 ? +1 : -1});
+  }
   return params.value();
 }
 
 struct ToyFlight {
-  FlightParams params = toy_quad();
+  FlightParams params;
   FlightWorld world{params, plant::blade_element_rotors(params.blade, params.vehicle.airframe), 1,
                     with_toy()};
   io::Batch happened, sensed;
   std::int64_t t_ns = 0;
 
-  ToyFlight() { world.step(0, happened, sensed); }
+  explicit ToyFlight(int more_rotors = 0) : params(toy_vehicle(more_rotors)) {
+    world.step(0, happened, sensed);
+  }
 
-  void run(const std::array<double, 4>& speeds_radps, int ms) {
+  void run(const std::vector<double>& speeds_radps, int ms) {
     for (int i = 0; i < ms; ++i) {
       happened.clear();
       sensed.clear();
-      for (std::uint16_t m = 1; m <= 4; ++m) {
+      for (std::uint16_t m = 1; m <= speeds_radps.size(); ++m) {
         const auto setpoint = static_cast<std::uint16_t>(speeds_radps[m - 1u] / 1000.0 * 2047.0);
         happened.add(io::Kind::esc_setpoint, m, t_ns, io::EscSetpoint{setpoint, 1, {}, t_ns});
       }
@@ -75,6 +80,22 @@ TEST(ToyController, TurnsTheVehicleByItsSetPoints) {
   ToyFlight flight;
   flight.run({500, 420, 500, 420}, 1000);
   EXPECT_GT(flight.world.truth().w_WB_B_radps.z(), 0.1);
+}
+
+// What shakes the board's sensors: each rotor, in its place.
+TEST(ToyController, TellsTheBoardHowFastEachRotorOfAnOctoTurns) {
+  ToyFlight flight(4);
+  flight.run({100, 110, 120, 130, 140, 150, 160, 170}, 500);
+  const plant::VehicleState& s = flight.world.truth();
+  io::Reader reader(flight.sensed.bytes());
+  while (reader.next() && reader.header().kind != io::Kind::body_motion) {
+  }
+  const auto motion = reader.as<io::BodyMotion>();
+  for (std::size_t i = 0; i < 8; ++i) {
+    EXPECT_EQ(motion.rotor_speed_radps[i], s.motors[i].speed_radps) << i;
+    EXPECT_GT(motion.rotor_speed_radps[i], 50.0) << i;
+  }
+  EXPECT_EQ(motion.rotor_speed_radps[8], 0.0);
 }
 
 TEST(ToyController, HasItsOwnSignalsAndIsCutByAFault) {

@@ -3,8 +3,11 @@
 #include <algorithm>
 
 #include "base/check.hpp"
+#include "plant/base/motor_count.hpp"
 
 namespace whirl::rack {
+
+static_assert(io::kMostMotors == plant::kMostMotors);
 
 Mounting mounting_of(const std::vector<std::string>& axes) {
   WHIRL_CHECK(axes.size() == 3, axes.size());

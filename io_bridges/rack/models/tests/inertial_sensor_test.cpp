@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 namespace whirl::rack {
 namespace {
 
@@ -15,6 +18,23 @@ io::Mpu6000::Truth sensed(const std::vector<std::string>& axes) {
   }
   sensor.set_motion(motion, 0);
   return sensor.sample(0);
+}
+
+TEST(InertialSensor, EveryRotorThatAVehicleMayHaveShakesIt) {
+  for (int rotor = 0; rotor < io::kMostMotors; ++rotor) {
+    plant::ImuParams params;
+    params.accelerometer.vibration_per_radps2 = 1e-5;
+    InertialSensor sensor(params, mounting_of({"+x", "+y", "+z"}), 1, "imu");
+    io::BodyMotion motion;
+    motion.rotor_speed_radps[rotor] = 400.0;
+    double most_mps2 = 0.0;
+    for (int ms = 0; ms < 20; ++ms) {
+      sensor.set_motion(motion, ms * 1'000'000);
+      most_mps2 =
+          std::max(most_mps2, std::abs(sensor.sample(ms * 1'000'000).specific_force_mps2[2]));
+    }
+    EXPECT_GT(most_mps2, 0.1) << rotor;  // 1e-5 x 400^2 = 1.6
+  }
 }
 
 TEST(InertialSensor, APartSensesAlongItsOwnAxes) {
