@@ -52,12 +52,12 @@ Result<Done> Bench::step() {
   if (!arrived) return arrived.error();
   read();
   if (arrived.value() != TargetState::running) return failed("the core locked up");
-  if (auto good = take(); !good) return good;
+  if (auto good = on_messages(); !good) return good;
   if (sink_) sink_(*this);
   return Done{};
 }
 
-Result<Done> Bench::take() {
+Result<Done> Bench::on_messages() {
   for (io::Reader reader(lockstep_.happened().bytes()); reader.next();) {
     const io::Header& header = reader.header();
     if (header.kind == io::Kind::cpu_fault) {
@@ -67,7 +67,7 @@ Result<Done> Bench::take() {
       return failed("the board was reset in mid-measurement");
     }
     if (header.kind == io::Kind::uart_received && header.port == serial_) {
-      line_.take(reader.payload());
+      line_.decode(reader.payload());
     }
   }
   return Done{};

@@ -47,7 +47,7 @@ class Bench {
 
  private:
   Result<Done> step();
-  Result<Done> take();
+  Result<Done> on_messages();
   void read();
 
   World& world_;

@@ -32,37 +32,37 @@ class Mean {  // of what the instruments and the ESC say
     sum_.voltage_V += read.voltage_V;
     ++reads_;
   }
-  void add(const io::EscSample& told) {
-    duty_ += told.duty;
-    speed_ += told.speed_radps;
-    current_ += told.bus_current_A;
-    square_ += static_cast<double>(told.bus_current_A) * told.bus_current_A;
-    voltage_ += told.bus_voltage_V;
-    ++tells_;
+  void add(const io::EscSample& sample) {
+    duty_ += sample.duty;
+    speed_ += sample.speed_radps;
+    current_ += sample.bus_current_A;
+    square_ += static_cast<double>(sample.bus_current_A) * sample.bus_current_A;
+    voltage_ += sample.bus_voltage_V;
+    ++samples_;
   }
-  bool told() const { return tells_ > 0.0; }
+  bool any_sample() const { return samples_ > 0.0; }
   SteadyPoint point(double wind_mps) const {
     return {wind_mps,
-            duty_ / tells_,
-            speed_ / tells_,
-            current_ / tells_,
-            voltage_ / tells_,
+            duty_ / samples_,
+            speed_ / samples_,
+            current_ / samples_,
+            voltage_ / samples_,
             sum_.current_A / reads_,
             sum_.voltage_V / reads_,
             sum_.thrust_N / reads_,
             sum_.torque_Nm / reads_,
-            1.96 * spread_A() / std::sqrt(tells_)};
+            1.96 * spread_A() / std::sqrt(samples_)};
   }
 
  private:
   double spread_A() const {
-    const double mean = current_ / tells_;
-    return std::sqrt(std::max(0.0, square_ / tells_ - mean * mean));
+    const double mean = current_ / samples_;
+    return std::sqrt(std::max(0.0, square_ / samples_ - mean * mean));
   }
 
   Instruments sum_;
   double duty_ = 0.0, speed_ = 0.0, current_ = 0.0, square_ = 0.0, voltage_ = 0.0;
-  double reads_ = 0.0, tells_ = 0.0;
+  double reads_ = 0.0, samples_ = 0.0;
 };
 
 class Procedure {
@@ -177,9 +177,9 @@ class Procedure {
   Result<Done> listen(const std::function<void(const io::EscSample&)>& sink, bool turning,
                       F during) {
     unsigned flags = kArmed;
-    bench_.on_sample([&](const io::EscSample& told) {
-      flags &= told.flags;
-      sink(told);
+    bench_.on_sample([&](const io::EscSample& sample) {
+      flags &= sample.flags;
+      sink(sample);
     });
     const Result<Done> done = during();
     bench_.on_sample(nullptr);
@@ -191,11 +191,11 @@ class Procedure {
     if (auto good = bench_.run(setup_.settle_ms); !good) return good;
     Mean mean;
     bench_.on_step([&](const Bench& bench) { mean.add(bench.instruments()); });
-    const auto done = listen([&](const io::EscSample& told) { mean.add(told); }, turning,
+    const auto done = listen([&](const io::EscSample& sample) { mean.add(sample); }, turning,
                              [&] { return bench_.run(setup_.measure_ms); });
     bench_.on_step(nullptr);
     if (!done) return done;
-    if (!mean.told()) return failed("the ESC's stream is silent");
+    if (!mean.any_sample()) return failed("the ESC's stream is silent");
     into.push_back(mean.point(wind_mps));
     return Done{};
   }
@@ -203,9 +203,9 @@ class Procedure {
   template <typename Law>  // duty by time
   Result<Done> follow(std::int64_t duration_ms, std::int64_t every_ms, std::vector<Sample>& into,
                       Law law) {
-    const auto sink = [&](const io::EscSample& told) {
-      into.push_back(
-          {1e-3 * told.tick, told.duty, told.speed_radps, told.bus_current_A, told.bus_voltage_V});
+    const auto sink = [&](const io::EscSample& sample) {
+      into.push_back({1e-3 * sample.tick, sample.duty, sample.speed_radps, sample.bus_current_A,
+                      sample.bus_voltage_V});
     };
     return listen(sink, true, [&]() -> Result<Done> {
       for (std::int64_t ms = 0; ms < duration_ms; ms += every_ms) {
@@ -265,7 +265,7 @@ Result<Done> store(Bench& bench, const std::vector<std::string>& lines) {
     if (auto good = bench.must(line); !good) return good;
   }
   unsigned flags = kUncalibrated;
-  bench.on_sample([&](const io::EscSample& told) { flags = told.flags; });
+  bench.on_sample([&](const io::EscSample& sample) { flags = sample.flags; });
   const auto done = bench.run(100);
   bench.on_sample(nullptr);
   if (!done || (flags & kUncalibrated) == 0) return done;

@@ -66,17 +66,17 @@ Result<Calibration> on_the_stand(const catalogue::CalibrationFile& file,
   if (auto good = compose(file, composition, parts); !good) return good.error();
   calibrate::Bench bench(*parts.world, *parts.target, setup.serial);
   if (auto started = bench.start(); !started) return started.error();
-  const auto tell = [&](const std::string& words) {
+  const auto progress = [&](const std::string& words) {
     std::fprintf(stderr, "%7.1f s  %s\n", static_cast<double>(bench.now_ns()) * 1e-9,
                  words.c_str());
   };
-  auto data = measure_all(bench, setup, tell);
+  auto data = measure_all(bench, setup, progress);
   if (!data) return data.error();
   const auto kept = write_text(data_path, data_text(data.value()));
   if (!kept) return kept.error();
   auto result = concluded(std::move(data.value()), setup);
   if (!result || !physical(result.value())) return result;
-  tell("storing the constants in the ESC");
+  progress("storing the constants in the ESC");
   if (auto stored = store(bench, lines(result.value())); !stored) return stored.error();
   return result;
 }

@@ -23,24 +23,24 @@ namespace {
 constexpr std::uint64_t kOwn_night = 0;  // seeds not given
 constexpr std::uint64_t kImages_per_line = 100;
 
-struct Wish {
+struct Amount {
   bool smoke;
   std::uint64_t seeds, first;
 };
 
 // One line of the table: a function of ours, or the name of a program that lies beside whirl and its
-// arguments for what is wished. Such a program ends with 0 when it found nothing.
+// arguments for that amount. Such a program ends with 0 when it found nothing.
 struct Fuzzer {
   const char* name;
   const char* what;
-  Result<Done> (*run)(const Wish& wish);
+  Result<Done> (*run)(const Amount& amount);
   const char* program;
-  std::vector<std::string> (*arguments)(const Wish& wish);
+  std::vector<std::string> (*arguments)(const Amount& amount);
 };
 
-Result<Done> fuzz_images(const Wish& wish);
-Result<Done> fuzz_parsers(const Wish& wish);
-std::vector<std::string> register_arguments(const Wish& wish);
+Result<Done> fuzz_images(const Amount& amount);
+Result<Done> fuzz_parsers(const Amount& amount);
+std::vector<std::string> register_arguments(const Amount& amount);
 
 constexpr Fuzzer kFuzzers[] = {
     {"registers", "random register accesses against both chip models", nullptr, "fuzz_registers",
@@ -49,9 +49,11 @@ constexpr Fuzzer kFuzzers[] = {
     {"parsers", "whatever a file or a wire may hold, by libFuzzer", fuzz_parsers, nullptr, nullptr},
 };
 
-std::vector<std::string> register_arguments(const Wish& wish) {
-  const std::uint64_t seeds = wish.seeds != kOwn_night ? wish.seeds : wish.smoke ? 5000 : 1'000'000;
-  return {std::to_string(seeds), std::to_string(wish.first)};
+std::vector<std::string> register_arguments(const Amount& amount) {
+  const std::uint64_t seeds = amount.seeds != kOwn_night ? amount.seeds
+                              : amount.smoke             ? 5000
+                                                         : 1'000'000;
+  return {std::to_string(seeds), std::to_string(amount.first)};
 }
 
 // A file without a name that another process can read.
@@ -112,13 +114,15 @@ Result<Done> run_image(std::uint64_t seed, Ends& ends) {
   return Done{};
 }
 
-Result<Done> fuzz_images(const Wish& wish) {
-  const std::uint64_t seeds = wish.seeds != kOwn_night ? wish.seeds : wish.smoke ? 12 : 20'000;
+Result<Done> fuzz_images(const Amount& amount) {
+  const std::uint64_t seeds = amount.seeds != kOwn_night ? amount.seeds
+                              : amount.smoke             ? 12
+                                                         : 20'000;
   Ends ends;
   std::string bad;
   for (std::uint64_t done = 0; done < seeds; ++done) {
     if (done > 0 && done % kImages_per_line == 0) print_ends(ends);
-    const std::uint64_t seed = wish.first + done;
+    const std::uint64_t seed = amount.first + done;
     const auto good = run_image(seed, ends);
     if (good) continue;
     if (good.error().kind == ErrorKind::host) return good.error();
@@ -132,13 +136,13 @@ Result<Done> fuzz_images(const Wish& wish) {
                "whirl fuzz images --seeds 1 --first SEED"};
 }
 
-Result<Done> fuzz_parsers(const Wish& wish) {
+Result<Done> fuzz_parsers(const Amount& amount) {
   if (!places()) return places().error();
   ParserFuzzOptions options;
   options.root = places().value().root;
-  options.seconds = wish.smoke ? 10.0 : 3600.0;
-  options.runs = static_cast<std::int64_t>(wish.seeds);
-  options.seed = wish.first + 1;  // libFuzzer takes 0 for "any"
+  options.seconds = amount.smoke ? 10.0 : 3600.0;
+  options.runs = static_cast<std::int64_t>(amount.seeds);
+  options.seed = amount.first + 1;  // libFuzzer takes 0 for "any"
   switch (run_parser_fuzzers(options)) {
     case 0:
       return Done{};
@@ -149,14 +153,14 @@ Result<Done> fuzz_parsers(const Wish& wish) {
   }
 }
 
-Result<Done> run_program(const Fuzzer& fuzzer, const Wish& wish) {
+Result<Done> run_program(const Fuzzer& fuzzer, const Amount& amount) {
   const std::string self = own_program();
   const std::string path = self.substr(0, self.rfind('/') + 1) + fuzzer.program;
   if (access(path.c_str(), X_OK) != 0) {
     return Error{ErrorKind::host, path, "is not there",
                  std::string("build the target ") + fuzzer.program};
   }
-  std::vector<std::string> words = fuzzer.arguments(wish);
+  std::vector<std::string> words = fuzzer.arguments(amount);
   words.insert(words.begin(), path);
   std::vector<char*> argv = argv_of(words);
   std::fflush(stdout);
@@ -200,12 +204,12 @@ Result<Done> check_names(const FuzzOptions& options) {
 // All are run, whatever the first one finds; a bug of ours outweighs the host's trouble.
 int fuzz_command(const FuzzOptions& options) {
   if (const auto good = check_names(options); !good) return complain(good.error());
-  const Wish wish{options.smoke, options.seeds, options.first};
+  const Amount amount{options.smoke, options.seeds, options.first};
   int worst = 0;
   for (const Fuzzer& fuzzer : kFuzzers) {
     if (!wanted(options, fuzzer.name)) continue;
     std::printf("%s: %s\n", fuzzer.name, fuzzer.what);
-    const auto found = fuzzer.run != nullptr ? fuzzer.run(wish) : run_program(fuzzer, wish);
+    const auto found = fuzzer.run != nullptr ? fuzzer.run(amount) : run_program(fuzzer, amount);
     if (!found) worst = results::worse_exit_code(worst, complain(found.error()));
   }
   return worst;

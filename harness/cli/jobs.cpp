@@ -169,11 +169,11 @@ class Jobs {
     WHIRL_CHECK(pid >= 0, errno);
     const auto it = running_.find(pid);
     if (it == running_.end()) return;
-    take_in(it->second, status);
+    read_report(it->second, status);
     running_.erase(it);
   }
 
-  void take_in(const Child& child, int status) {
+  void read_report(const Child& child, int status) {
     std::string output, text;
     if (!read_whole(child.output.fd(), output)) {
       std::printf("whirl: what the process of %s printed cannot be read: %s\n",

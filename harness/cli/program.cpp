@@ -95,7 +95,7 @@ struct RunCommand {
   }
 
   // What was parsed as text. Nothing is said twice.
-  Result<Done> take_in() {
+  Result<Done> parse_texts() {
     if (!seed.empty()) options.seed = std::stoull(seed);
     for (const std::string& text : settings) {
       const Setting setting{text.substr(0, text.find('=')), text.substr(text.find('=') + 1)};
@@ -186,7 +186,7 @@ int run_chosen(int argc, char** argv, Composition composition) {
   } catch (const CLI::ParseError& e) {
     return app.exit(e) == 0 ? 0 : 2;
   }
-  if (const auto good = run.take_in(); !good) return complain(good.error());
+  if (const auto good = run.parse_texts(); !good) return complain(good.error());
   if (!options.out.empty()) composition.results = options.out;
   if (*list) return list_command(options, composition);
   if (*past) return history_command(history, composition.results);

@@ -67,28 +67,28 @@ void FlightWorld::name_motor_signals() {
     const MotorController& controller = *controllers_[i];
     add_signal("esc_armed" + n, D::none, "",
                [&controller] { return controller.armed() ? 1.0 : 0.0; });
-    for (MotorController::Told& told : controller.signals()) {
-      add_signal(told.signal.name + n, told.signal.dimension, told.signal.about,
-                 std::move(told.value));
+    for (MotorController::NamedValue& named : controller.signals()) {
+      add_signal(named.signal.name + n, named.signal.dimension, named.signal.about,
+                 std::move(named.value));
     }
   }
 }
 
 void FlightWorld::name_telemetry_signals() {
   using D = Dimension;
-  const auto told = [this] { return station_.telemetry(now_ns_); };
+  const auto reported = [this] { return station_.telemetry(now_ns_); };
   add_signal("setpoints_refused", D::none, "so far, by all ESCs: wrong length or CRC",
              [this] { return static_cast<double>(setpoints_refused_); });
-  add_signal("told_state", D::none, "HEARTBEAT custom_mode", [=] { return told().state; });
-  add_signal("told_armed", D::none, "HEARTBEAT base_mode", [=] { return told().armed; });
-  add_signal("told_height", D::length, "", [=] { return told().height_m; });
-  add_signal("told_north", D::length, "", [=] { return told().north_m; });
-  add_signal("told_east", D::length, "", [=] { return told().east_m; });
-  add_signal("told_tilt", D::angle, "", [=] { return told().tilt_rad; });
-  add_signal("told_voltage", D::voltage, "", [=] { return told().voltage_V; });
-  add_signal("told_current", D::current, "", [=] { return told().current_A; });
-  add_signal("told_load", D::ratio, "processor load", [=] { return told().load; });
-  add_signal("heartbeat_age", D::time, "", [=] { return told().heartbeat_age_s; });
+  add_signal("told_state", D::none, "HEARTBEAT custom_mode", [=] { return reported().state; });
+  add_signal("told_armed", D::none, "HEARTBEAT base_mode", [=] { return reported().armed; });
+  add_signal("told_height", D::length, "", [=] { return reported().height_m; });
+  add_signal("told_north", D::length, "", [=] { return reported().north_m; });
+  add_signal("told_east", D::length, "", [=] { return reported().east_m; });
+  add_signal("told_tilt", D::angle, "", [=] { return reported().tilt_rad; });
+  add_signal("told_voltage", D::voltage, "", [=] { return reported().voltage_V; });
+  add_signal("told_current", D::current, "", [=] { return reported().current_A; });
+  add_signal("told_load", D::ratio, "processor load", [=] { return reported().load; });
+  add_signal("heartbeat_age", D::time, "", [=] { return reported().heartbeat_age_s; });
   add_signal("command_result", D::none, "of the last COMMAND_ACK; -1 waiting for it, -2 never came",
              [this] { return static_cast<double>(station_.last_result()); });
   add_signal("command_pending", D::none, "1: a command waits for its answer",

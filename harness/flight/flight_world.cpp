@@ -54,13 +54,13 @@ void FlightWorld::read(std::span<double> values) const {
 }
 
 void FlightWorld::step(std::int64_t t_ns, const io::Batch& happened, io::Batch& sensed) {
-  take(happened);
+  on_messages(happened);
   if (t_ns > 0) move(t_ns);
   now_ns_ = t_ns;
-  tell(t_ns, sensed);
+  send(t_ns, sensed);
 }
 
-void FlightWorld::take(const io::Batch& happened) {
+void FlightWorld::on_messages(const io::Batch& happened) {
   io::Reader reader(happened.bytes());
   while (reader.next()) {
     const io::Header& header = reader.header();
@@ -91,7 +91,7 @@ void FlightWorld::move(std::int64_t t_ns) {
   vehicle_.step(kStep_s);
 }
 
-void FlightWorld::tell(std::int64_t t_ns, io::Batch& sensed) {
+void FlightWorld::send(std::int64_t t_ns, io::Batch& sensed) {
   const plant::VehicleState& s = vehicle_.state();
   io::BodyMotion motion;
   copy(s.specific_force_B_mps2, motion.specific_force_B_mps2);
@@ -226,10 +226,10 @@ void FlightWorld::apply_faults(std::int64_t t_ns) {
 }
 
 std::string FlightWorld::status() const {
-  const Telemetry told = station_.telemetry(now_ns_);
+  const Telemetry reported = station_.telemetry(now_ns_);
   const plant::VehicleState& s = vehicle_.state();
   const char* state = s.on_ground ? "on the ground" : "in the air";
-  if (!(told.frames > 0)) state = "silent";
+  if (!(reported.frames > 0)) state = "silent";
   char text[80];
   std::snprintf(text, sizeof text, "%s, %.2f m", state, -s.p_WB_W_m.z());
   return text;

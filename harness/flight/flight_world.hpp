@@ -43,9 +43,9 @@ class FlightWorld : public World {
   const plant::VehicleState& truth() const { return vehicle_.state(); }
 
  private:
-  void take(const io::Batch& happened);
+  void on_messages(const io::Batch& happened);
   void move(std::int64_t t_ns);
-  void tell(std::int64_t t_ns, io::Batch& sensed);
+  void send(std::int64_t t_ns, io::Batch& sensed);
   void apply_faults(std::int64_t t_ns);
   void add_signal(std::string name, Dimension dimension, std::string about,
                   std::function<double()> value);

@@ -20,7 +20,7 @@ struct FlightParams;
 
 class MotorController {
  public:
-  struct Told {  // a signal of its own; its name gets the motor's number: "esc_thrust_1"
+  struct NamedValue {  // a signal of its own; its name gets the motor's number: "esc_thrust_1"
     Signal signal;
     std::function<double()> value;
   };
@@ -35,7 +35,7 @@ class MotorController {
 
   virtual io::EscState status() const = 0;
   virtual bool armed() const = 0;
-  virtual std::vector<Told> signals() const { return {}; }  // valid as long as the controller
+  virtual std::vector<NamedValue> signals() const { return {}; }  // valid as long as the controller
 };
 
 struct ControllerType {

@@ -98,7 +98,7 @@ plant::MotorCommand NativeEsc::step(std::int64_t now_ns, const plant::MotorState
   if (phase_ != Phase::off) {
     zero_.turns();
   } else if (core_.at_rest()) {
-    zero_.note(sensed.bus_current_A);
+    zero_.record(sensed.bus_current_A);
   }
   sensed.bus_current_A -= zero_.offset_A();
 
@@ -116,7 +116,7 @@ io::EscState NativeEsc::status() const {
           {}};
 }
 
-std::vector<MotorController::Told> NativeEsc::signals() const {
+std::vector<MotorController::NamedValue> NativeEsc::signals() const {
   const auto thrust_N = [this] { return static_cast<double>(core_.estimator().thrust_N()); };
   const auto observable = [this] { return core_.estimator().observable() ? 1.0 : 0.0; };
   return {{{"esc_thrust", Dimension::force, "as the ESC's core believes"}, thrust_N},

@@ -45,7 +45,7 @@ class NativeEsc final : public MotorController {
 
   io::EscState status() const override;
   bool armed() const override { return core_.supervisor().armed(); }
-  std::vector<Told> signals() const override;
+  std::vector<NamedValue> signals() const override;
   const fw::esc::Core& core() const { return core_; }
 
  private:

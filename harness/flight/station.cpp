@@ -157,9 +157,10 @@ void Station::hear(const io::MavlinkFrame& frame) {
 }
 
 Telemetry Station::telemetry(std::int64_t now_ns) const {
-  Telemetry told = telemetry_;
-  if (heartbeat_ns_ >= 0) told.heartbeat_age_s = static_cast<double>(now_ns - heartbeat_ns_) * 1e-9;
-  return told;
+  Telemetry known = telemetry_;
+  if (heartbeat_ns_ >= 0)
+    known.heartbeat_age_s = static_cast<double>(now_ns - heartbeat_ns_) * 1e-9;
+  return known;
 }
 
 }  // namespace whirl::flight

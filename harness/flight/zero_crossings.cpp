@@ -28,7 +28,7 @@ void ZeroCrossings::restart() {
   lengths_.fill(0);
 }
 
-void ZeroCrossings::note(std::int64_t at_ns) {
+void ZeroCrossings::record(std::int64_t at_ns) {
   const std::int64_t tick = tick_at(at_ns);
   if (seen_ > 0) {
     lengths_[next_] = static_cast<fw::esc::Ticks>(std::min(tick - crossed_tick_, kLongest_ticks));
@@ -47,7 +47,7 @@ void ZeroCrossings::turn(std::int64_t from_ns, std::int64_t to_ns, double from_r
       0.5 * (from_radps + to_radps) * 1e-9 * config_.pole_pairs * 6.0 / (2.0 * std::numbers::pi);
   const double turned = sectors_ + std::max(0.0, rate_pns) * static_cast<double>(to_ns - from_ns);
   for (double sector = 1.0; sector <= turned; sector += 1.0) {
-    note(from_ns + std::llround((sector - sectors_) / rate_pns));
+    record(from_ns + std::llround((sector - sectors_) / rate_pns));
   }
   sectors_ = turned - std::floor(turned);
   if (in_sync() && ticks_since_crossing() * 6 > 9 * std::int64_t{pace().revolution}) restart();

@@ -27,7 +27,7 @@ class ZeroCrossings {
   float radps(std::uint32_t ticks, unsigned sectors) const;  // of the shaft
 
  private:
-  void note(std::int64_t at_ns);
+  void record(std::int64_t at_ns);
   std::int64_t ticks_since_crossing() const;
 
   fw::esc::CommutationConfig config_;

@@ -15,7 +15,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     WHIRL_CHECK(!line.empty() && line.size() <= 512, line.size());
   });
   for (std::size_t at = 1; at < size; at += piece) {
-    decoder.take({data + at, std::min(piece, size - at)});
+    decoder.decode({data + at, std::min(piece, size - at)});
   }
   return 0;
 }

@@ -140,8 +140,8 @@ Errors errors_about(lua_State* L, int index) {
   const RecordInfo& info = record_of(L);
   Errors errors;
   if (lua_istable(L, index)) {
-    const lua::Table wish = check_table(L, index);
-    for (const std::string& key : wish.keys()) {
+    const lua::Table given = check_table(L, index);
+    for (const std::string& key : given.keys()) {
       const std::size_t column = self.column(L, key);
       if (std::find(info.columns.begin(), info.columns.end(), column) == info.columns.end()) {
         raise(L, "signal '" + key + "' is not in this record");
@@ -151,9 +151,9 @@ Errors errors_about(lua_State* L, int index) {
       }
       errors.dimension = self.dimension(column);
       errors.signals.push_back(key);
-      add_squares(errors, view(self.stage(), info, column), wish.quantity(key, errors.dimension));
+      add_squares(errors, view(self.stage(), info, column), given.quantity(key, errors.dimension));
     }
-    check_finish(L, wish);
+    check_finish(L, given);
     if (errors.signals.empty()) raise(L, "a reference { signal = \"0 m\" } is wanted");
   } else {
     const Chosen c = choose(L);

@@ -30,16 +30,16 @@ std::string spread(const metrics::Distribution& d, const std::string& unit) {
          std::to_string(d.count) + " values";
 }
 
-std::optional<Limit> optional_limit(const lua::Table& wish, const char* key, Dimension dimension) {
-  if (!wish.has(key)) return std::nullopt;
-  const double value = wish.quantity(key, dimension, lua::at_least(0.0));
-  return Limit{value, unit_symbol(wish.text(key))};
+std::optional<Limit> optional_limit(const lua::Table& given, const char* key, Dimension dimension) {
+  if (!given.has(key)) return std::nullopt;
+  const double value = given.quantity(key, dimension, lua::at_least(0.0));
+  return Limit{value, unit_symbol(given.text(key))};
 }
 
-std::int64_t window_end(Script& self, const lua::Table& wish) {
+std::int64_t window_end(Script& self, const lua::Table& given) {
   constexpr std::size_t kMost_windows = 1'000;
-  if (self.windows() >= kMost_windows) wish.refuse("during", "more than 1000 budgets");
-  return wish.has("during") ? self.stage().now_ns + wish.duration_ns("during") : kForever;
+  if (self.windows() >= kMost_windows) given.refuse("during", "more than 1000 budgets");
+  return given.has("during") ? self.stage().now_ns + given.duration_ns("during") : kForever;
 }
 
 // The period of what happens at `times` in [from, to]: with its deviation from nominal. The edges
@@ -161,20 +161,20 @@ void judge_busy(Script& self, const Budget& b, std::int64_t from, std::int64_t t
 }
 
 // The { ... } of t:budget("name") { ... }
-int take_budget(lua_State* L) {
+int read_budget(lua_State* L) {
   Script& self = Script::of(L);
   must_offer(L, self, "budget");
-  const lua::Table wish = check_table(L, 1);
+  const lua::Table given = check_table(L, 1);
   Budget b{lua_tostring(L, lua_upvalueindex(1)), place_of(L), {}, {}, {}, {}, {}, {}, 0.0};
-  b.period = optional_limit(wish, "period", Dimension::time);
-  b.jitter = optional_limit(wish, "jitter", Dimension::time);
-  b.execution = optional_limit(wish, "execution", Dimension::time);
-  b.response = optional_limit(wish, "response", Dimension::time);
-  b.latency = optional_limit(wish, "latency", Dimension::time);
-  b.busy = optional_limit(wish, "busy", Dimension::ratio);
-  b.margin = wish.quantity_or("margin", Dimension::ratio, 0.0, lua::between(0.0, 0.9));
-  const std::int64_t end = window_end(self, wish);
-  check_finish(L, wish);
+  b.period = optional_limit(given, "period", Dimension::time);
+  b.jitter = optional_limit(given, "jitter", Dimension::time);
+  b.execution = optional_limit(given, "execution", Dimension::time);
+  b.response = optional_limit(given, "response", Dimension::time);
+  b.latency = optional_limit(given, "latency", Dimension::time);
+  b.busy = optional_limit(given, "busy", Dimension::ratio);
+  b.margin = given.quantity_or("margin", Dimension::ratio, 0.0, lua::between(0.0, 0.9));
+  const std::int64_t end = window_end(self, given);
+  check_finish(L, given);
   const bool calls = b.jitter || b.execution || b.response || b.latency;
   if (b.period.has_value() != b.jitter.has_value()) raise(L, "period and jitter go together");
   if (!calls && !b.busy)
@@ -199,11 +199,11 @@ int take_budget(lua_State* L) {
 int budget(lua_State* L) {
   check_text(L, 2, "a function's name, or \"cpu\"");
   lua_pushvalue(L, 2);
-  lua_pushcclosure(L, take_budget, 1);
+  lua_pushcclosure(L, read_budget, 1);
   return 1;
 }
 
-struct BusWish {
+struct BusWindow {
   std::string name, place;
   bool spi = false, any_direction = true, read = false;
   int bus = 0, address = 0;
@@ -213,7 +213,7 @@ struct BusWish {
   std::int64_t nacks = 0;
 };
 
-void judge_bus(Script& self, const BusWish& w, std::int64_t from, std::int64_t to) {
+void judge_bus(Script& self, const BusWindow& w, std::int64_t from, std::int64_t to) {
   std::vector<std::int64_t> starts;
   std::int64_t refused = 0;
   for (const auto& r : self.stage().logs[w.node].bus) {
@@ -246,13 +246,13 @@ int numbered_bus(lua_State* L, const BoardDevice& device) {
 int bus(lua_State* L) {
   Script& self = Script::of(L);
   must_offer(L, self, "bus");
-  const lua::Table wish = check_table(L, 2);
-  const std::string name = wish.text("device");
+  const lua::Table given = check_table(L, 2);
+  const std::string name = given.text("device");
   const NodePlace at = node_at(L, self, name);
   const BoardDescription& board = self.stage().nodes[at.node].board;
   const BoardDevice* device = board.find(at.rest);
   if (device == nullptr) raise(L, "unknown device '" + at.rest + "' on " + board.name);
-  BusWish w;
+  BusWindow w;
   w.name = name;
   w.node = at.node;
   w.place = place_of(L);
@@ -262,17 +262,17 @@ int bus(lua_State* L) {
   w.bus = numbered_bus(L, *device);
   w.address = w.spi ? board.number(at.rest) : device->address;
   if (!w.spi && w.address < 0) raise(L, name + " has no address on its bus: nobody calls it");
-  if (wish.has("direction")) {
+  if (given.has("direction")) {
     w.any_direction = false;
-    w.read = wish.choice("direction", {"read", "write"}) == "read";
+    w.read = given.choice("direction", {"read", "write"}) == "read";
     w.name += w.read ? " read" : " write";
   }
-  w.period = optional_limit(wish, "period", Dimension::time);
-  w.tolerance = optional_limit(wish, "tolerance", Dimension::time);
-  w.nacks = wish.integer_or("nacks", 0, 0);
-  w.bytes = wish.integer_or("bytes", 0, 0);
-  const std::int64_t end = window_end(self, wish);
-  check_finish(L, wish);
+  w.period = optional_limit(given, "period", Dimension::time);
+  w.tolerance = optional_limit(given, "tolerance", Dimension::time);
+  w.nacks = given.integer_or("nacks", 0, 0);
+  w.bytes = given.integer_or("bytes", 0, 0);
+  const std::int64_t end = window_end(self, given);
+  check_finish(L, given);
   if (w.period.has_value() != w.tolerance.has_value()) raise(L, "period and tolerance go together");
   if (w.spi && !w.period) {
     raise(L, "a window of nothing: SPI has no acknowledge", "give period and tolerance");
@@ -287,7 +287,7 @@ struct Actuator {
   int bus = 0, address = 0;
 };
 
-struct LatencyWish {
+struct LatencyWindow {
   std::string name, place;
   std::size_t node = 0;
   std::uint16_t sensor = 0;
@@ -306,7 +306,7 @@ std::vector<metrics::Span> writes_to(const results::EventLog& log, const Actuato
   return writes;
 }
 
-void judge_latency(Script& self, const LatencyWish& w, std::int64_t from, std::int64_t to) {
+void judge_latency(Script& self, const LatencyWindow& w, std::int64_t from, std::int64_t to) {
   const auto& events = self.stage().logs[w.node];
   std::vector<std::vector<metrics::Span>> tasks;
   for (std::uint16_t number : w.through) {
@@ -340,17 +340,17 @@ void judge_latency(Script& self, const LatencyWish& w, std::int64_t from, std::i
 int latency(lua_State* L) {
   Script& self = Script::of(L);
   must_offer(L, self, "latency");
-  const lua::Table wish = check_table(L, 2);
-  const NodePlace at = node_at(L, self, wish.text("from"));
+  const lua::Table given = check_table(L, 2);
+  const NodePlace at = node_at(L, self, given.text("from"));
   const BoardDescription& board = self.stage().nodes[at.node].board;
-  const std::string from = at.rest, to = on_node(L, self, at.node, wish.text("to"));
-  LatencyWish w;
+  const std::string from = at.rest, to = on_node(L, self, at.node, given.text("to"));
+  LatencyWindow w;
   w.name = self.stage().nodes[at.node].qualified(from) + " to " + to + " latency";
   w.node = at.node;
   w.place = place_of(L);
   if (board.number(from) < 0) raise(L, "unknown device '" + from + "' on " + board.name);
   w.sensor = static_cast<std::uint16_t>(board.number(from));
-  for (const std::string& function : wish.texts("through")) {
+  for (const std::string& function : given.texts("through")) {
     const int number = board.watch_number(on_node(L, self, at.node, function));
     if (number < 0) raise(L, "'" + function + "' is not watched", "add it to the watch list");
     w.through.push_back(static_cast<std::uint16_t>(number));
@@ -361,10 +361,10 @@ int latency(lua_State* L) {
     w.actuators.push_back({numbered_bus(L, device), device.address});
   }
   if (w.actuators.empty()) raise(L, "no I2C device '" + to + "' on " + board.name);
-  w.limit.value_SI = wish.quantity("at_most", Dimension::time, lua::above(0.0));
-  w.limit.unit = unit_symbol(wish.text("at_most"));
-  const std::int64_t end = window_end(self, wish);
-  check_finish(L, wish);
+  w.limit.value_SI = given.quantity("at_most", Dimension::time, lua::above(0.0));
+  w.limit.unit = unit_symbol(given.text("at_most"));
+  const std::int64_t end = window_end(self, given);
+  check_finish(L, given);
   self.add_window(end, [w](Script& script, std::int64_t begin_ns, std::int64_t end_ns) {
     judge_latency(script, w, begin_ns, end_ns);
   });

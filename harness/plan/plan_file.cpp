@@ -128,7 +128,7 @@ int PlanFile::declare(lua_State* L) {
   if (lua_type(L, 1) != LUA_TSTRING || lua_gettop(L) != 1) {
     return luaL_error(L, "write it as: plan \"name\" { ... }");
   }
-  lua_pushcclosure(L, take, 1);
+  lua_pushcclosure(L, add_plan, 1);
   return 1;
 }
 
@@ -141,7 +141,7 @@ bool is_of_file(const lua_Debug& function, const std::string& path) {
 
 }  // namespace
 
-int PlanFile::take(lua_State* L) {
+int PlanFile::add_plan(lua_State* L) {
   auto* self = static_cast<PlanFile*>(lua::Sandbox::owner(L));
   std::size_t size = 0;
   const char* text = lua_tolstring(L, lua_upvalueindex(1), &size);

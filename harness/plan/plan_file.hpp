@@ -67,7 +67,7 @@ class PlanFile {
   PlanFile(std::string path, lua::Limits limits, Settings settings)
       : path_(std::move(path)), settings_(std::move(settings)), sandbox_(limits) {}
   static int declare(lua_State* L);
-  static int take(lua_State* L);
+  static int add_plan(lua_State* L);
 
   std::string path_;
   Settings settings_;

@@ -57,9 +57,9 @@ void EscLine::send(std::int64_t t_ns, io::Batch& sensed) {
   to_send_.clear();
 }
 
-void EscLine::take(const io::Reader& message) {
+void EscLine::on_message(const io::Reader& message) {
   if (message.header().kind != io::Kind::uart_received || message.header().port != port_) return;
-  decoder_.take(message.payload());
+  decoder_.decode(message.payload());
 }
 
 double EscLine::value(Field field) const {

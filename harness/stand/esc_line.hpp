@@ -27,7 +27,7 @@ class EscLine {
   // In order; no echoes, and nothing that came between a line's say() and its sending.
   const std::vector<std::string>& heard() const { return heard_; }
   void send(std::int64_t t_ns, io::Batch& sensed);
-  void take(const io::Reader& message);  // ignores other ports
+  void on_message(const io::Reader& message);  // ignores other ports
 
   struct Named {
     Signal signal;

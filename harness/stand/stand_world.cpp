@@ -75,21 +75,21 @@ void StandWorld::read(std::span<double> values) const {
 }
 
 void StandWorld::step(std::int64_t t_ns, const io::Batch& happened, io::Batch& sensed) {
-  take(happened);
+  on_messages(happened);
   if (t_ns > 0) move(t_ns);
   now_ns_ = t_ns;
-  tell(t_ns, sensed);
+  send(t_ns, sensed);
 }
 
-void StandWorld::take(const io::Batch& happened) {
+void StandWorld::on_messages(const io::Batch& happened) {
   for (io::Reader reader(happened.bytes()); reader.next();) {
     const io::Header& header = reader.header();
     if (header.kind == io::Kind::shaft_state && header.port == params_.motor) {
       shaft_ = reader.as<io::ShaftState>();
     } else if (header.kind == io::Kind::i2c_reply) {
-      throttle_.take(reader);
+      throttle_.on_message(reader);
     } else if (header.kind == io::Kind::uart_received) {
-      line_.take(reader);
+      line_.on_message(reader);
     } else if (header.kind == io::Kind::shoot_through) {
       ++shots_;
     } else if (header.kind == io::Kind::board_reset) {
@@ -121,7 +121,7 @@ void StandWorld::move(std::int64_t t_ns) {
   battery_.draw(shaft_.source_current_A * kStep_s, kStep_s);
 }
 
-void StandWorld::tell(std::int64_t t_ns, io::Batch& sensed) {
+void StandWorld::send(std::int64_t t_ns, io::Batch& sensed) {
   const double w = std::max(kSlow_radps, shaft_.speed_radps);
   const io::ShaftLoad load{.torque_Nm_s2 = loads_.shaft_torque_Nm / (w * w),
                            .brake_Nm = brake_Nm_,
@@ -240,27 +240,27 @@ void StandWorld::name_signals() {
   add_signal("setpoint", D::none, "0..2047, as commanded",
              [this] { return static_cast<double>(throttle_.value()); });
   add_signal("told_current", D::current, "by the ESC over I2C",
-             [this] { return throttle_.told().current_A; });
+             [this] { return throttle_.reported().current_A; });
   add_signal("told_speed", D::angular_rate, "by the ESC over I2C",
-             [this] { return radps_of(throttle_.told().speed_rpm); });
-  add_signal("esc_flags", D::none, "status byte", [this] { return throttle_.told().flags; });
+             [this] { return radps_of(throttle_.reported().speed_rpm); });
+  add_signal("esc_flags", D::none, "status byte", [this] { return throttle_.reported().flags; });
   add_signal("armed", D::none, "1: the ESC says so", [this] {
-    const double flags = throttle_.told().flags;
+    const double flags = throttle_.reported().flags;
     return std::isnan(flags) ? 0.0 : static_cast<double>(static_cast<int>(flags) & 1);
   });
   add_signal("i2c_refused", D::none, "orders without a good answer",
-             [this] { return static_cast<double>(throttle_.told().refused); });
+             [this] { return static_cast<double>(throttle_.reported().refused); });
   add_signal("i2c_stretch", D::time, "longest hold of SCL in the latest transfers",
-             [this] { return throttle_.told().stretched_s; });
+             [this] { return throttle_.reported().stretched_s; });
   add_signal("i2c_raw_replies", D::none, "to raw transfers",
-             [this] { return static_cast<double>(throttle_.raw_told().replies); });
+             [this] { return static_cast<double>(throttle_.raw_reported().replies); });
   add_signal("i2c_raw_acked", D::none, "raw transfers acknowledged in all bytes",
-             [this] { return static_cast<double>(throttle_.raw_told().acked); });
+             [this] { return static_cast<double>(throttle_.raw_reported().acked); });
   add_signal("i2c_raw_bytes", D::none, "of the last raw read",
-             [this] { return throttle_.raw_told().read_bytes; });
+             [this] { return throttle_.raw_reported().read_bytes; });
   add_signal("i2c_raw_good", D::none,
              "1: the last raw read had a status, its CRC and only FF after",
-             [this] { return throttle_.raw_told().read_good; });
+             [this] { return throttle_.raw_reported().read_good; });
   add_signal("resets", D::none, "of the ESC, by a watchdog or by itself",
              [this] { return static_cast<double>(resets_); });
   add_signal("shoot_through", D::none, "times that both switches of a leg were on",

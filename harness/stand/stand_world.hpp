@@ -49,9 +49,9 @@ class StandWorld : public World {
     double at(std::int64_t t_ns) const;
   };
 
-  void take(const io::Batch& happened);
+  void on_messages(const io::Batch& happened);
   void move(std::int64_t t_ns);
-  void tell(std::int64_t t_ns, io::Batch& sensed);
+  void send(std::int64_t t_ns, io::Batch& sensed);
   Result<Done> set(const request::SetPoint& command);
   void blow(double to_mps, std::int64_t start_ns, std::int64_t edge_ns);
   void add_signal(std::string name, Dimension dimension, std::string about,

@@ -47,33 +47,34 @@ void Throttle::send_next_raw(std::int64_t t_ns, io::Batch& sensed) {
 }
 
 void Throttle::take_raw(const io::I2cReplyHead& head, std::span<const std::uint8_t> bytes) {
-  ++raw_told_.replies;
-  if (head.acked != 0 && head.timed_out == 0) ++raw_told_.acked;
+  ++raw_reported_.replies;
+  if (head.acked != 0 && head.timed_out == 0) ++raw_reported_.acked;
   if (bytes.empty()) return;
-  raw_told_.read_bytes = static_cast<double>(bytes.size());
-  raw_told_.read_good = std::nan("");
+  raw_reported_.read_bytes = static_cast<double>(bytes.size());
+  raw_reported_.read_good = std::nan("");
   if (bytes.size() < kStatusBytes) return;
   const auto rest = bytes.subspan(kStatusBytes);
   const bool filled = std::all_of(rest.begin(), rest.end(), [](auto b) { return b == 0xFF; });
   const bool good = io::unpack_status(address_, bytes.first(kStatusBytes)).has_value();
-  raw_told_.read_good = filled && good ? 1.0 : 0.0;
+  raw_reported_.read_good = filled && good ? 1.0 : 0.0;
 }
 
-void Throttle::take(const io::Reader& message) {
+void Throttle::on_message(const io::Reader& message) {
   if (message.header().port != bus_) return;
   const auto head = message.as<io::I2cReplyHead>();
   const auto bytes = message.tail_after(sizeof head);
   const std::int64_t step = message.header().t_ns / kMs;
   const double stretched_s = static_cast<double>(head.stretched_ns) * 1e-9;
-  told_.stretched_s = step == told_step_ ? std::max(told_.stretched_s, stretched_s) : stretched_s;
-  told_step_ = step;
+  reported_.stretched_s =
+      step == reported_step_ ? std::max(reported_.stretched_s, stretched_s) : stretched_s;
+  reported_step_ = step;
   if (!raw_numbers_.empty() && raw_numbers_.front() == head.number) {
     raw_numbers_.pop_front();
     return take_raw(head, bytes);
   }
-  ++told_.replies;
+  ++reported_.replies;
   if (head.acked == 0 || head.timed_out != 0) {
-    ++told_.refused;
+    ++reported_.refused;
     return;
   }
   if (bytes.empty()) {
@@ -82,12 +83,12 @@ void Throttle::take(const io::Reader& message) {
   }
   const auto status = io::unpack_status(address_, bytes);
   if (!status) {
-    ++told_.refused;
+    ++reported_.refused;
     return;
   }
-  told_.current_A = status->bus_current_A;
-  told_.speed_rpm = status->speed_rpm;
-  told_.flags = status->flags;
+  reported_.current_A = status->bus_current_A;
+  reported_.speed_rpm = status->speed_rpm;
+  reported_.flags = status->flags;
 }
 
 }  // namespace whirl::stand

@@ -2,7 +2,7 @@
 //
 //   Start    set-point 0 from power-up on: the zeros that arm
 //   Wire     a set-point has passed when the reply to its write says that it was acknowledged
-//   Told     status of the last read whose CRC is right; NaN before
+//   Reported     status of the last read whose CRC is right; NaN before
 //   Raw      any bytes and lengths beside them: what a careless master might send
 #pragma once
 #include <cmath>
@@ -18,7 +18,7 @@ namespace whirl::stand {
 
 class Throttle {
  public:
-  struct Told {
+  struct Reported {
     double current_A = std::nan(""), speed_rpm = std::nan(""), flags = std::nan("");
     std::uint64_t replies = 0, refused = 0;  // refused: not acknowledged, timed out or bad CRC
     double stretched_s = 0.0;  // longest hold of SCL in the transfers of the latest step with any
@@ -30,7 +30,7 @@ class Throttle {
     std::int64_t offset_ns = 250'000, shift_ns = 0;  // in its step; moved each time, and wraps
     std::int64_t next_ns = 0;
   };
-  struct RawTold {
+  struct RawReported {
     std::uint64_t replies = 0, acked = 0;
     double read_bytes = std::nan("");  // of the last read
     // 1: the status and its CRC in the first six bytes, 0xFF in all that follow; fewer: a NaN
@@ -50,13 +50,13 @@ class Throttle {
   void send_raw(Raw raw) { raw_.push_back(std::move(raw)); }  // one after another
   void set_rate(double writes_Hz);
   std::uint16_t value() const { return v_; }
-  const RawTold& raw_told() const { return raw_told_; }
-  const Told& told() const { return told_; }
+  const RawReported& raw_reported() const { return raw_reported_; }
+  const Reported& reported() const { return reported_; }
   std::int64_t on_wire_ns() const { return on_wire_ns_; }  // of the last set(); -1: not yet
 
   // What goes out in [t_ns, t_ns + 1 ms).
   void send(std::int64_t t_ns, io::Batch& sensed);
-  void take(const io::Reader& reply);
+  void on_message(const io::Reader& reply);
 
  private:
   void send_next_raw(std::int64_t t_ns, io::Batch& sensed);
@@ -71,11 +71,11 @@ class Throttle {
   std::uint32_t sent_ = 0, first_ = 0;  // orders so far; the first that can carry v_
   std::int64_t on_wire_ns_ = -1;
   std::int64_t write_every_ns_ = 20'000'000;
-  Told told_;
-  std::int64_t told_step_ = -1;  // of told_.stretched_s
+  Reported reported_;
+  std::int64_t reported_step_ = -1;  // of reported_.stretched_s
   std::deque<Raw> raw_;
   std::deque<std::uint32_t> raw_numbers_;  // orders without a reply yet
-  RawTold raw_told_;
+  RawReported raw_reported_;
 };
 
 }  // namespace whirl::stand

@@ -53,7 +53,7 @@ const char* name(FaultKind kind) {
 
 void FaultBook::add(const Fault& fault) {
   entries_.push_back({fault});
-  for (const auto& told : added_) told(fault);
+  for (const auto& listener : added_) listener(fault);
 }
 
 const Fault* FaultBook::find(FaultKind kind, int bus, int address, Nanoseconds now) const {
@@ -75,7 +75,7 @@ void FaultBook::applied(const Fault& fault, Nanoseconds now) {
   }
 }
 
-const Fault* FaultBook::take(FaultKind kind, int bus, int address, Nanoseconds now) {
+const Fault* FaultBook::apply(FaultKind kind, int bus, int address, Nanoseconds now) {
   const Fault* fault = find(kind, bus, address, now);
   if (fault != nullptr) applied(*fault, now);
   return fault;

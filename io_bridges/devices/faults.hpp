@@ -70,7 +70,7 @@ class FaultBook {
   // It really acted: told to the sink once per fault.
   void applied(const Fault& fault, Nanoseconds now);
   // find() and, when there is one, applied().
-  const Fault* take(FaultKind kind, int bus, int address, Nanoseconds now);
+  const Fault* apply(FaultKind kind, int bus, int address, Nanoseconds now);
 
   std::vector<std::uint32_t> pending() const;  // numbers of faults that nobody applied
 

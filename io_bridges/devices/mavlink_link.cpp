@@ -25,7 +25,7 @@ MavlinkLink::MavlinkLink(EventQueue& queue, const Params& params, FindingSink fi
   WHIRL_CHECK(params.baud > 0.0 && params.air_bytes_per_s > 0.0, params.baud);
 }
 
-void MavlinkLink::find(Nanoseconds now, std::string what) {
+void MavlinkLink::report(Nanoseconds now, std::string what) {
   if (findings_) findings_({now, "mavlink_link", std::move(what)});
 }
 
@@ -42,9 +42,9 @@ bool MavlinkLink::takes_air(std::size_t bytes, Nanoseconds now, const char* dire
   const Nanoseconds begin = std::max(now, air_free_ns_);
   if (begin - now > params_.buffer_ns) {
     if (counts_.overruns++ == 0) {
-      find(now, std::string("radio overrun: a frame for the ") + direction +
-                    "link found the half-duplex air taken and the buffer full (later ones are "
-                    "counted only)");
+      report(now, std::string("radio overrun: a frame for the ") + direction +
+                      "link found the half-duplex air taken and the buffer full (later ones are "
+                      "counted only)");
     }
     return false;
   }
@@ -97,9 +97,9 @@ void MavlinkLink::check_format(const UartFormat& format, Nanoseconds now) {
                     format.data_bits == 8 && format.parity == 'N';
   if (fits || format_told_) return;
   format_told_ = true;
-  find(now, "the MCU sends " + std::to_string(std::lround(format.baud)) + " baud, " +
-                std::to_string(format.data_bits) + " data bits, parity " + format.parity +
-                "; the radio listens at " + std::to_string(std::lround(params_.baud)) + " 8N1");
+  report(now, "the MCU sends " + std::to_string(std::lround(format.baud)) + " baud, " +
+                  std::to_string(format.data_bits) + " data bits, parity " + format.parity +
+                  "; the radio listens at " + std::to_string(std::lround(params_.baud)) + " 8N1");
 }
 
 void MavlinkLink::receive(const UartByte& byte, const UartFormat& format, Nanoseconds now) {
@@ -114,7 +114,7 @@ void MavlinkLink::receive(const UartByte& byte, const UartFormat& format, Nanose
 void MavlinkLink::note_stray(Nanoseconds now) {
   if (parser_.counts().stray == 0 || stray_told_) return;
   stray_told_ = true;
-  find(now, "bytes outside of MAVLink frames (later ones are counted only)");
+  report(now, "bytes outside of MAVLink frames (later ones are counted only)");
 }
 
 void MavlinkLink::frame_down(std::span<const std::uint8_t> raw) {

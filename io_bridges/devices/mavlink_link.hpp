@@ -60,7 +60,7 @@ class MavlinkLink : public UartPeer {
   void frame_down(std::span<const std::uint8_t> raw);
   void check_format(const UartFormat& format, Nanoseconds now);
   void note_stray(Nanoseconds now);
-  void find(Nanoseconds now, std::string what);
+  void report(Nanoseconds now, std::string what);
 
   EventQueue& queue_;
   Params params_;

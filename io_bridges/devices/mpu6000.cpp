@@ -140,7 +140,7 @@ void Mpu6000::store(std::uint8_t address, long counts) {
 
 void Mpu6000::encode_sample(Nanoseconds now) {
   if (faults_ != nullptr &&
-      faults_->take(FaultKind::sensor_frozen, params_.bus, params_.device, now) != nullptr) {
+      faults_->apply(FaultKind::sensor_frozen, params_.bus, params_.device, now) != nullptr) {
     return;
   }
   const double per_mps2 = kAccel_counts_per_g[registers_.peek(ACCEL_CONFIG) >> 3 & 3] / kG_mps2;

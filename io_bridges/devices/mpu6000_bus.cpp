@@ -35,11 +35,11 @@ constexpr Unmodelled kUnmodelled[] = {
 
 void Mpu6000::check_unmodelled(std::uint8_t address, std::uint8_t value, Nanoseconds now) {
   for (const Unmodelled& u : kUnmodelled) {
-    if (u.address == address && (value & u.mask) != 0) registers_.find(now, u.what);
+    if (u.address == address && (value & u.mask) != 0) registers_.report(now, u.what);
   }
-  if (address == CONFIG && (value & 7) == 7) registers_.find(now, "DLPF_CFG 7 is reserved");
+  if (address == CONFIG && (value & 7) == 7) registers_.report(now, "DLPF_CFG 7 is reserved");
   if (address == PWR_MGMT_1 && (value & kCLKSEL) > 3) {
-    registers_.find(now, "CLKSEL 4..7: there is no external clock here, sampling stops");
+    registers_.report(now, "CLKSEL 4..7: there is no external clock here, sampling stops");
   }
 }
 
@@ -62,7 +62,7 @@ std::uint8_t Mpu6000::read_register(std::uint8_t address, Nanoseconds now) {
   std::uint8_t value = registers_.read(address, now);
   if (address == WHO_AM_I && faults_ != nullptr) {
     const Fault* wrong =
-        faults_->take(FaultKind::sensor_wrong_identity, params_.bus, params_.device, now);
+        faults_->apply(FaultKind::sensor_wrong_identity, params_.bus, params_.device, now);
     if (wrong != nullptr) value = static_cast<std::uint8_t>(wrong->value);
   }
   const bool any_read = (registers_.peek(INT_PIN_CFG) & kINT_RD_CLEAR) != 0;
@@ -72,7 +72,7 @@ std::uint8_t Mpu6000::read_register(std::uint8_t address, Nanoseconds now) {
 
 void Mpu6000::write_register(std::uint8_t address, std::uint8_t value, Nanoseconds now) {
   if (now < ready_ns_) {
-    registers_.find(now, "written while starting up: the write is lost");
+    registers_.report(now, "written while starting up: the write is lost");
     return;
   }
   const std::uint8_t before = registers_.peek(address);
@@ -136,14 +136,14 @@ void Mpu6000::select(bool selected, Nanoseconds /*now*/) {
 void Mpu6000::check_clock(std::uint32_t sck_Hz, Nanoseconds now) {
   const bool fast = (*command_ & 0x80) != 0 && is_fast_register(address_);
   if (sck_Hz <= (fast ? kFastSck_Hz : kSlowSck_Hz)) return;
-  registers_.find(now, "SCK of " + std::to_string(sck_Hz / 1000) + " kHz where " +
-                           (fast ? "20 MHz" : "1 MHz") + " is the limit");
+  registers_.report(now, "SCK of " + std::to_string(sck_Hz / 1000) + " kHz where " +
+                             (fast ? "20 MHz" : "1 MHz") + " is the limit");
 }
 
 std::uint8_t Mpu6000::transfer(std::uint8_t mosi, std::uint32_t sck_Hz, int mode, Nanoseconds now) {
   if (!selected_) return 0xFF;
   if (mode != 0 && mode != 3) {
-    registers_.find(now, "SPI mode " + std::to_string(mode) + ": the part needs 0 or 3");
+    registers_.report(now, "SPI mode " + std::to_string(mode) + ": the part needs 0 or 3");
     return 0xFF;
   }
   if (!command_) {

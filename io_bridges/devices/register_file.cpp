@@ -22,7 +22,7 @@ const RegisterSpec* RegisterFile::spec(std::uint8_t address) const {
   return nullptr;
 }
 
-void RegisterFile::find(Nanoseconds now, const std::string& what) {
+void RegisterFile::report(Nanoseconds now, const std::string& what) {
   if (told_.insert(what).second && findings_) findings_({now, where_, what});
 }
 
@@ -31,7 +31,7 @@ void RegisterFile::find_at(Nanoseconds now, std::uint8_t address, const char* wh
   const RegisterSpec* r = spec(address);
   std::snprintf(text, sizeof text, "register 0x%02X %s: %s", address, r == nullptr ? "" : r->name,
                 what);
-  find(now, text);
+  report(now, text);
 }
 
 std::uint8_t RegisterFile::read(std::uint8_t address, Nanoseconds now) {

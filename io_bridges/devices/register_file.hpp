@@ -37,7 +37,7 @@ class RegisterFile {
   void poke(std::uint8_t address, std::uint8_t value) { bytes_[address] = value; }
 
   // A finding about this part, told once per text.
-  void find(Nanoseconds now, const std::string& what);
+  void report(Nanoseconds now, const std::string& what);
 
  private:
   const RegisterSpec* spec(std::uint8_t address) const;

@@ -41,7 +41,7 @@ void I2cWireFaults::grip(const Fault& fault) {
   const bool sda = fault.kind == FaultKind::i2c_stuck_sda;
   if (sda) pulses_left_ = static_cast<int>(fault.value);
   (sda ? bus_.sda() : bus_.scl()).force(Drive::low, queue_.now());
-  book_.take(fault.kind, number_, kAnywhere, queue_.now());
+  book_.apply(fault.kind, number_, kAnywhere, queue_.now());
 }
 
 void I2cWireFaults::let_go(Wire& wire) {
@@ -54,7 +54,7 @@ void I2cWireFaults::count_pulse(Nanoseconds now) {
 }
 
 bool I2cWireFaults::deaf(std::uint8_t address, Nanoseconds now) {
-  return book_.take(FaultKind::i2c_silence, number_, address, now) != nullptr;
+  return book_.apply(FaultKind::i2c_silence, number_, address, now) != nullptr;
 }
 
 bool I2cWireFaults::ack(std::uint8_t address, int index, Nanoseconds now) {
@@ -74,7 +74,7 @@ std::uint8_t I2cWireFaults::byte(std::uint8_t address, int index, std::uint8_t v
 }
 
 Nanoseconds I2cWireFaults::stretch(std::uint8_t address, Nanoseconds now) {
-  const Fault* fault = book_.take(FaultKind::i2c_late, number_, address, now);
+  const Fault* fault = book_.apply(FaultKind::i2c_late, number_, address, now);
   return fault == nullptr ? 0 : std::llround(fault->value * 1e9);
 }
 
@@ -91,7 +91,7 @@ void SpiWireFaults::select(bool selected, Nanoseconds now) {
 std::uint8_t SpiWireFaults::transfer(std::uint8_t mosi, std::uint32_t sck_Hz, int mode,
                                      Nanoseconds now) {
   const std::size_t index = current_.size();
-  if (book_.take(FaultKind::spi_silent, bus_, device_, now) != nullptr) {
+  if (book_.apply(FaultKind::spi_silent, bus_, device_, now) != nullptr) {
     spoiled_ = true;
     current_.push_back(0xFF);
     return 0xFF;  // the line's pull-up
@@ -124,7 +124,7 @@ UartWireFaults::UartWireFaults(EventQueue& queue, FaultBook& book, UartPeer& far
 
 void UartWireFaults::towards_mcu(UartByte byte, const UartFormat& format) {
   const Nanoseconds now = queue_.now();
-  if (book_.take(FaultKind::uart_silence, number_, kAnywhere, now) != nullptr) return;
+  if (book_.apply(FaultKind::uart_silence, number_, kAnywhere, now) != nullptr) return;
   const Fault* loss = book_.find(FaultKind::uart_loss, number_, kAnywhere, now);
   if (loss != nullptr && random_.uniform() < loss->value) return book_.applied(*loss, now);
   const Fault* flip = book_.find(FaultKind::uart_flip, number_, kAnywhere, now);

@@ -21,7 +21,7 @@ inline constexpr int kMostMotors = 12;  // of a vehicle; plant::kMostMotors is c
 
 enum class Kind : std::uint8_t {
   // Harness to target.
-  body_motion = 1,  // BodyMotion: what the sensors on the board feel from here on
+  body_motion = 1,  // BodyMotion: the motion of the sensors on the board from here on
   esc_state = 2,    // EscState, port = motor number 1..kMostMotors
   uart_frame = 3,   // bytes to send into UART `port` from t_ns on
   fault = 4,        // FaultCommand + name text

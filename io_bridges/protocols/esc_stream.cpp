@@ -49,7 +49,7 @@ EscSample unpack(std::span<const std::uint8_t> body) {
 
 }  // namespace
 
-void EscStreamDecoder::take(std::span<const std::uint8_t> bytes) {
+void EscStreamDecoder::decode(std::span<const std::uint8_t> bytes) {
   held_.insert(held_.end(), bytes.begin(), bytes.end());
   std::size_t used = 0;
   while (const std::size_t n = step(std::span(held_).subspan(used))) used += n;

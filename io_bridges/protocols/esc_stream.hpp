@@ -54,7 +54,7 @@ class EscStreamDecoder {
 
   void on_sample(std::function<void(const EscSample&)> sink) { sample_sink_ = std::move(sink); }
   void on_line(std::function<void(const std::string&)> sink) { line_sink_ = std::move(sink); }
-  void take(std::span<const std::uint8_t> bytes);
+  void decode(std::span<const std::uint8_t> bytes);
   const Counts& counts() const { return counts_; }
 
  private:

@@ -39,14 +39,14 @@ struct Reader {
     return {ErrorKind::bad_input, place + ":" + std::to_string(line), std::move(what),
             std::move(cure)};
   }
-  std::optional<Error> take(int line, const std::vector<std::string_view>& words);
+  std::optional<Error> read(int line, const std::vector<std::string_view>& words);
   std::optional<Error> take_below(int line, const std::vector<std::string_view>& words);
   std::optional<Error> take_row(int line, const std::vector<std::string_view>& words);
   std::optional<Error> take_reynolds(int line, const std::vector<std::string_view>& words);
   std::optional<Error> check_last(int line) const;
 };
 
-std::optional<Error> Reader::take(int line, const std::vector<std::string_view>& words) {
+std::optional<Error> Reader::read(int line, const std::vector<std::string_view>& words) {
   if (words[0] == "section") {
     if (words.size() != 2) return fault(line, "section wants one name", "write e.g. section e63");
     name = words[1];
@@ -118,7 +118,7 @@ Result<PolarFamily> read_polar(std::string_view text, std::string_view place) {
     text = end == std::string_view::npos ? std::string_view{} : text.substr(end + 1);
     ++line;
     if (words.empty()) continue;
-    if (auto bad = reader.take(line, words)) return *bad;
+    if (auto bad = reader.read(line, words)) return *bad;
   }
   if (auto bad = reader.check_last(line)) return *bad;
   if (reader.curves.empty()) {

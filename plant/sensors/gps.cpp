@@ -20,7 +20,7 @@ Gps::Gps(const GpsParams& params, std::uint64_t seed, const std::string& name)
   }
 }
 
-GpsFix Gps::take(double t_s, const Truth& truth) {
+GpsFix Gps::measure(double t_s, const Truth& truth) {
   GpsFix fix{.taken_s = t_s, .p_WB_W_m = truth.p_WB_W_m, .v_WB_W_mps = truth.v_WB_W_mps};
   for (int i = 0; i < 3; ++i) {
     const bool down = i == 2;
@@ -38,7 +38,7 @@ GpsFix Gps::take(double t_s, const Truth& truth) {
 std::optional<GpsFix> Gps::step(double t_s, const Truth& truth) {
   if (t_s + kRound_s >= static_cast<double>(taken_) * params_.period_s) {
     ++taken_;
-    const GpsFix fix = take(t_s, truth);  // drawn even if lost: an outage shifts no noise
+    const GpsFix fix = measure(t_s, truth);  // drawn even if lost: an outage shifts no noise
     const bool unlucky = chance_.uniform() < params_.dropout_chance;
     const bool out = std::any_of(outages_.begin(), outages_.end(),
                                  [&](const Outage& o) { return o.covers(t_s); });

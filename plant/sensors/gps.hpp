@@ -45,7 +45,7 @@ class Gps {
   std::optional<GpsFix> step(double t_s, const Truth& truth);
 
  private:
-  GpsFix take(double t_s, const Truth& truth);
+  GpsFix measure(double t_s, const Truth& truth);
 
   GpsParams params_;
   std::vector<GaussMarkov> wander_;

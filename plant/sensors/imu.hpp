@@ -1,4 +1,4 @@
-// What a three-axis accelerometer and gyroscope feel at their place, before range and counts.
+// The input of a three-axis accelerometer and gyroscope at their place, before range and counts.
 //
 //   Frame   in: motion of B's origin; out: sensor axes, nominally parallel to B (a part that is
 //           soldered turned is its device's matter)

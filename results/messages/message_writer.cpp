@@ -30,7 +30,7 @@ struct MessageWriter::Inner {
     const FileStart start{.head_size = static_cast<std::uint32_t>(text.size())};
     out.write(reinterpret_cast<const char*>(&start), sizeof start);
     out.write(text.data(), static_cast<std::streamsize>(text.size()));
-    note_state();
+    check_state();
     if (context == nullptr ||
         ZSTD_isError(ZSTD_CCtx_setParameter(context.get(), ZSTD_c_compressionLevel, kLevel)) != 0) {
       lose("zstd gives no stream");
@@ -40,7 +40,7 @@ struct MessageWriter::Inner {
   void lose(const std::string& why) {
     if (lost.empty()) lost = why;
   }
-  void note_state() {
+  void check_state() {
     if (!out) lose(errno != 0 ? std::strerror(errno) : "it cannot be opened");
   }
 
@@ -53,7 +53,7 @@ struct MessageWriter::Inner {
       if (ZSTD_isError(left) != 0) return lose(ZSTD_getErrorName(left));
       errno = 0;
       out.write(packed.data(), static_cast<std::streamsize>(to.pos));
-      note_state();
+      check_state();
     }
   }
 
@@ -63,7 +63,7 @@ struct MessageWriter::Inner {
     out.seekp(offsetof(FileStart, rows));
     out.write(reinterpret_cast<const char*>(&rows), sizeof rows);
     out.close();
-    note_state();
+    check_state();
   }
 
   std::string path;

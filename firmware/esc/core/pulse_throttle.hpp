@@ -1,8 +1,8 @@
-// Servo pulses as set-points: what a receiver's output must look like to be obeyed.
+// Servo pulses as set-points: what a receiver's output must look like to be followed.
 //
 //   Valid    900 to 2100 us, once in 2.3 to 22 ms (50 to 400 Hz and their clocks' tolerance)
 //   Jumps    more than 50 us from the last taken pulse wait for a second one that agrees: a pulse that
-//            a glitch has cut is never obeyed alone
+//            a glitch has cut is never followed alone
 //   Glitch   two rises within 2.3 ms: neither that pulse nor the next, which is a piece of it, counts
 //   Scale    under 1100 us: 0; 1100 to 1950 us: 1 to 2047
 //   Pace     zeros arm by their number (supervisor.hpp), so no two come within 20 ms
@@ -34,7 +34,7 @@ class PulseThrottle {
   }
 
   // A captured pulse. True: v is a set-point.
-  bool take(std::uint32_t width_us, std::uint32_t period_us, std::uint16_t& v) {
+  bool read(std::uint32_t width_us, std::uint32_t period_us, std::uint16_t& v) {
     const bool piece = follows_glitch_;
     follows_glitch_ = period_us < kFastest_us;
     if (piece || !in_range(width_us) || period_us < kFastest_us || period_us > kSlowest_us) {
@@ -75,7 +75,7 @@ class ThrottleSources {
   enum class Source : std::uint8_t { none, i2c, pulses };
   static constexpr std::uint16_t kSilence_ms = 500;
 
-  // A valid set-point of `from` has come; false: it is not obeyed.
+  // A valid set-point of `from` has come; false: it is not followed.
   bool admit(Source from, bool armed) {
     const bool takes_over = owner_ == Source::none || (from == Source::i2c && !armed);
     if (from != owner_ && !takes_over) return false;

@@ -13,7 +13,7 @@ inline constexpr float kAmperes_per_count = 3.3f / 4096.0f / (0.5e-3f * 50.9f);
 // anew at every rest.
 class ZeroCurrent {
  public:
-  void note(float current_A) {
+  void record(float current_A) {
     if (rest_ms_ < kLongest_ms) ++rest_ms_;
     if (known_before_ && rest_ms_ <= kDecay_ms) return;
     // The mean of this rest so far; what was known before counts as much as a short rest.

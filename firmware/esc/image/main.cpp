@@ -59,14 +59,14 @@ StreamSample sample(float raw_current_A) {
 
 void take_setpoints() {
   using Source = ThrottleSources::Source;
-  const auto obey = [](Source from, std::uint16_t v) {
+  const auto follow = [](Source from, std::uint16_t v) {
     if (sources.admit(from, core->supervisor().armed())) core->on_setpoint(v);
   };
   std::uint16_t v = 0;
-  if (i2c_slave::take_setpoint(v)) obey(Source::i2c, v);
+  if (i2c_slave::take_setpoint(v)) follow(Source::i2c, v);
   pulse_input::Pulse pulse;
-  if (pulse_input::take(pulse) && pulses.take(pulse.width_us, pulse.period_us, v)) {
-    obey(Source::pulses, v);
+  if (pulse_input::read(pulse) && pulses.read(pulse.width_us, pulse.period_us, v)) {
+    follow(Source::pulses, v);
   }
   sources.tick();
 }
@@ -91,7 +91,7 @@ __attribute__((noinline)) void control_task() {
   if (drive.energised()) {
     zero.turns();
   } else if (core->at_rest()) {
-    zero.note(sensed.bus_current_A);
+    zero.record(sensed.bus_current_A);
     drive.know(core->calibration());
   }
   const float raw_current_A = sensed.bus_current_A;
@@ -103,7 +103,7 @@ __attribute__((noinline)) void control_task() {
                       static_cast<std::uint16_t>(core->speed_radps() / kRadps_per_rpm),
                       core->flags()});
   ++ticks;
-  if (stream::due()) stream::note(sample(raw_current_A));
+  if (stream::due()) stream::record(sample(raw_current_A));
 }
 
 __attribute__((noinline)) void sampling_task() {

@@ -33,7 +33,7 @@ void MotorDrive::go_catching() {
 
 void MotorDrive::look_for_rotor() {
   const sampling::Phases phases = sampling::take_phases();
-  note(zero_counts_ / 64, phases.bus);
+  record(zero_counts_ / 64, phases.bus);
   const hal::InterruptLock lock;
   const Ticks now = bridge::now();
   switch (catching_.on_sample(now, phases.a, phases.b, phases.c)) {
@@ -62,7 +62,7 @@ void MotorDrive::look_for_rotor() {
   guard_.restart();
 }
 
-void MotorDrive::note(int shunt_counts, int bus_counts) {
+void MotorDrive::record(int shunt_counts, int bus_counts) {
   shunt_sum_ += static_cast<std::uint32_t>(shunt_counts);
   bus_sum_ += static_cast<std::uint32_t>(bus_counts);
   ++samples_;
@@ -70,8 +70,8 @@ void MotorDrive::note(int shunt_counts, int bus_counts) {
 
 void MotorDrive::on_sample() {
   if (phase_ == Phase::catching) return look_for_rotor();
-  const sampling::Sample sample = sampling::take();
-  note(sample.shunt, sample.bus);
+  const sampling::Sample sample = sampling::read();
+  record(sample.shunt, sample.bus);
   if (phase_ == Phase::off) {
     zero_counts_ += (64 * sample.shunt - zero_counts_) / 64;
     return;

@@ -32,7 +32,7 @@ class MotorDrive {
   void look_for_rotor();
   void watch_current(int shunt_counts, int bus_counts);
   void commutate_by(int floating_counts, int bus_counts);
-  void note(int shunt_counts, int bus_counts);
+  void record(int shunt_counts, int bus_counts);
 
   Commutation commutation_{CommutationConfig{}};
   Catching catching_;

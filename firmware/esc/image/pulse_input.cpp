@@ -21,7 +21,7 @@ void start() {
   TIM1::CR1::set(TIM1::CEN);
 }
 
-bool take(Pulse& pulse) {
+bool read(Pulse& pulse) {
   const std::uint32_t sr = TIM1::SR::read();
   if ((sr & TIM1::CC1IF) == 0) return false;
   pulse.width_us = TIM1::CCR2::read();

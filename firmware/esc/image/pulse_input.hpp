@@ -12,6 +12,6 @@ struct Pulse {
 
 void start();
 // What ended at a rising edge since the last call. Two of them in a millisecond: a period of 0.
-bool take(Pulse& pulse);
+bool read(Pulse& pulse);
 
 }  // namespace fw::esc::pulse_input

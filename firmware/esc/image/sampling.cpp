@@ -60,7 +60,7 @@ void watch_phases() {
   ADC2::JSQR::write(sequence(kPhaseChannel + 2, kBusChannel));
 }
 
-Sample take() {
+Sample read() {
   const Sample sample{static_cast<int>(ADC1::JDR1::read()), static_cast<int>(ADC1::JDR2::read()),
                       static_cast<int>(ADC2::JDR1::read())};
   clear();

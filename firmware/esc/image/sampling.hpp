@@ -18,7 +18,7 @@ struct Phases {
 void start();
 void select_floating(std::uint8_t phase);  // for the next trigger
 void watch_phases();                       // all three of them instead, from the next trigger
-Sample take();                             // in the interrupt: reads and clears
+Sample read();                             // in the interrupt: reads and clears
 Phases take_phases();                      // what watch_phases() asked for
 
 }  // namespace fw::esc::sampling

@@ -33,7 +33,7 @@ bool due() {
   return true;
 }
 
-void note(const StreamSample& sample) {
+void record(const StreamSample& sample) {
   const std::uint8_t sequence = state.next++;
   if (state.full) return;
   state.sample = sample;

@@ -11,8 +11,8 @@ namespace fw::esc::stream {
 
 // Samples per second, rounded to whole ticks; 0 stops. False: out of 0..1000.
 bool set_rate(float rate_Hz);
-bool due();                             // once per tick
-void note(const StreamSample& sample);  // from the tick
-void send();                            // from the main loop
+bool due();                               // once per tick
+void record(const StreamSample& sample);  // from the tick
+void send();                              // from the main loop
 
 }  // namespace fw::esc::stream

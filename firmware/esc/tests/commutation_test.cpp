@@ -31,11 +31,11 @@ class TestMotor {
         commutation.on_commutated(static_cast<Ticks>(ticks_));
       }
       if (ticks_ % 100 == 0) {
-        take(commutation.on_sample(static_cast<Ticks>(ticks_), floating_counts(), kBus_counts));
+        apply(commutation.on_sample(static_cast<Ticks>(ticks_), floating_counts(), kBus_counts));
       }
     }
   }
-  void take(const Commutation::Order& order) {
+  void apply(const Commutation::Order& order) {
     if (!order.commutate) return;
     const auto next = static_cast<Ticks>(ticks_ + 1);
     const bool past = static_cast<Ticks>(order.at - next) > 0x8000;
@@ -102,7 +102,7 @@ struct Turning {
     motor.load_Nm = load_Nm;
     motor.noise_counts = noise_counts;
     motor.angle = 2.0 * kPi / 3.0 - off_rad;  // where step 0's field holds the rotor
-    motor.take(commutation.start(0));
+    motor.apply(commutation.start(0));
     motor.run(commutation, 2.0, 0.4);
   }
 };

@@ -1,4 +1,4 @@
-// Which pulses are obeyed, and whose set-points.
+// Which pulses are followed, and whose set-points.
 #include "firmware/esc/core/pulse_throttle.hpp"
 
 #include <gtest/gtest.h>
@@ -8,9 +8,9 @@ namespace {
 
 using Source = ThrottleSources::Source;
 
-int take(PulseThrottle& p, std::uint32_t width_us, std::uint32_t period_us = 20'000) {
+int read(PulseThrottle& p, std::uint32_t width_us, std::uint32_t period_us = 20'000) {
   std::uint16_t v = 9999;
-  return p.take(width_us, period_us, v) ? v : -1;
+  return p.read(width_us, period_us, v) ? v : -1;
 }
 
 TEST(PulseThrottle, ThesisRangeSpansAllSetPoints) {
@@ -23,44 +23,44 @@ TEST(PulseThrottle, ThesisRangeSpansAllSetPoints) {
 
 TEST(PulseThrottle, FirstPulseAndJumpsWaitForASecondOne) {
   PulseThrottle p;
-  EXPECT_EQ(take(p, 1500), -1);
-  EXPECT_EQ(take(p, 1502), PulseThrottle::setpoint_of(1502));
-  EXPECT_EQ(take(p, 1540), PulseThrottle::setpoint_of(1540));  // a small step is taken at once
-  EXPECT_EQ(take(p, 1900), -1);
-  EXPECT_EQ(take(p, 1540), PulseThrottle::setpoint_of(1540));  // it was a glitch
-  EXPECT_EQ(take(p, 1900), -1);
-  EXPECT_EQ(take(p, 1900), PulseThrottle::setpoint_of(1900));
+  EXPECT_EQ(read(p, 1500), -1);
+  EXPECT_EQ(read(p, 1502), PulseThrottle::setpoint_of(1502));
+  EXPECT_EQ(read(p, 1540), PulseThrottle::setpoint_of(1540));  // a small step is taken at once
+  EXPECT_EQ(read(p, 1900), -1);
+  EXPECT_EQ(read(p, 1540), PulseThrottle::setpoint_of(1540));  // it was a glitch
+  EXPECT_EQ(read(p, 1900), -1);
+  EXPECT_EQ(read(p, 1900), PulseThrottle::setpoint_of(1900));
 }
 
 TEST(PulseThrottle, PulsesOutsideOfTheFormAreCountedAndNothingElse) {
   PulseThrottle p;
-  take(p, 1500);
-  take(p, 1500);
-  for (std::uint32_t width_us : {0u, 5u, 899u, 2101u, 30'000u}) EXPECT_EQ(take(p, width_us), -1);
-  for (std::uint32_t period_us : {22'001u, 65'535u}) EXPECT_EQ(take(p, 1500, period_us), -1);
+  read(p, 1500);
+  read(p, 1500);
+  for (std::uint32_t width_us : {0u, 5u, 899u, 2101u, 30'000u}) EXPECT_EQ(read(p, width_us), -1);
+  for (std::uint32_t period_us : {22'001u, 65'535u}) EXPECT_EQ(read(p, 1500, period_us), -1);
   EXPECT_EQ(p.rejected(), 7u);
-  EXPECT_GT(take(p, 1500), 0);  // still the last one
+  EXPECT_GT(read(p, 1500), 0);  // still the last one
 }
 
 // 1900 us, low for 50 us after 600 us: the captures are (600, 650) and (1250, 19350).
 TEST(PulseThrottle, APieceOfACutPulseIsNotObeyedEvenIfEveryPulseIsCut) {
   PulseThrottle p;
-  take(p, 1900);
-  take(p, 1900);
+  read(p, 1900);
+  read(p, 1900);
   for (int i = 0; i < 10; ++i) {
-    EXPECT_EQ(take(p, 600, 650), -1);
-    EXPECT_EQ(take(p, 1250, 19'350), -1);
+    EXPECT_EQ(read(p, 600, 650), -1);
+    EXPECT_EQ(read(p, 1250, 19'350), -1);
   }
-  EXPECT_GT(take(p, 1900), 0);
+  EXPECT_GT(read(p, 1900), 0);
 }
 
 TEST(PulseThrottle, ZerosComeNoFasterThanFiftyHertz) {
   PulseThrottle p;
   int zeros = 0;
-  for (int i = 0; i < 400; ++i) zeros += take(p, 1000, 2500) == 0 ? 1 : 0;  // one second at 400 Hz
+  for (int i = 0; i < 400; ++i) zeros += read(p, 1000, 2500) == 0 ? 1 : 0;  // one second at 400 Hz
   EXPECT_GE(zeros, 48);
   EXPECT_LE(zeros, 50);
-  EXPECT_GT(take(p, 1040, 2500) + take(p, 1090, 2500) + take(p, 1130, 2500), -1);  // up at once
+  EXPECT_GT(read(p, 1040, 2500) + read(p, 1090, 2500) + read(p, 1130, 2500), -1);  // up at once
 }
 
 TEST(ThrottleSources, I2cTakesOverWhileNotArmedAndPulsesOnlyAfterItsSilence) {

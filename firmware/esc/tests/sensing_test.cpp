@@ -12,7 +12,7 @@ using whirl::near;
 using whirl::stated;
 
 void rest(ZeroCurrent& zero, float reading_A, int ms) {
-  for (int i = 0; i < ms; ++i) zero.note(reading_A);
+  for (int i = 0; i < ms; ++i) zero.record(reading_A);
 }
 
 TEST(ZeroCurrent, FindsTheOffsetAtPowerUpAndAnewAtEveryRest) {

@@ -23,7 +23,7 @@ class ToyController final : public MotorController {
 
   io::EscState status() const override { return {0.0, rpm_of(speed_radps_), 0, {}}; }
   bool armed() const override { return !cut_; }
-  std::vector<Told> signals() const override {
+  std::vector<NamedValue> signals() const override {
     return {{{"toy_duty", Dimension::ratio, ""}, [this] { return duty_; }}};
   }
 

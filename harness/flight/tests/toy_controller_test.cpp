@@ -48,7 +48,8 @@ struct ToyFlight {
     for (int i = 0; i < ms; ++i) {
       happened.clear();
       sensed.clear();
-      for (std::uint16_t m = 1; m <= speeds_radps.size(); ++m) {
+      const auto motors = static_cast<std::uint16_t>(speeds_radps.size());
+      for (std::uint16_t m = 1; m <= motors; ++m) {
         const auto setpoint = static_cast<std::uint16_t>(speeds_radps[m - 1u] / 1000.0 * 2047.0);
         happened.add(io::Kind::esc_setpoint, m, t_ns, io::EscSetpoint{setpoint, 1, {}, t_ns});
       }

@@ -33,8 +33,8 @@ Window write_window(Scenario& s, Dice& dice) {
 
 // A worst value under its limit: a failure that was seen stays one; a window that the run has cut
 // short, and one without a value, have shown nothing.
-void tell_worst(const Limited& limit, const std::string& name, const std::vector<double>& values,
-                const Window& window, const End& end, std::vector<Told>& told) {
+void report_worst(const Limited& limit, const std::string& name, const std::vector<double>& values,
+                  const Window& window, const End& end, std::vector<Told>& told) {
   double worst = values.empty() ? kNaN : values.front();
   for (double x : values) worst = std::isnan(x) || std::isnan(worst) ? kNaN : std::max(worst, x);
   Told mine = limit.judge(name, worst, 2e-12);
@@ -188,8 +188,8 @@ void add_budget(Scenario& s, Dice& dice, const std::string& id) {
   s.judgements.push_back([=](const End& end, std::vector<Told>& told) {
     if (window.from > end.last_act_ms) return;
     for (const Part& part : parts) {
-      tell_worst(part.limit, part.name, part.values(from, window.end_ns(end), end.known_ms * kMs),
-                 window, end, told);
+      report_worst(part.limit, part.name, part.values(from, window.end_ns(end), end.known_ms * kMs),
+                   window, end, told);
     }
   });
 }
@@ -228,8 +228,8 @@ void add_busy(Scenario& s, Dice& dice, const std::string& id) {
   (void)id;
   s.judgements.push_back([=](const End& end, std::vector<Told>& told) {
     if (window.from > end.last_act_ms) return;
-    tell_worst(limit, "CPU busy share", share(window.begin_ns(), window.end_ns(end)), window, end,
-               told);
+    report_worst(limit, "CPU busy share", share(window.begin_ns(), window.end_ns(end)), window, end,
+                 told);
     // A mean over a part of its time says nothing of the whole.
     if (!window.whole(end)) told.back().right = end.returned ? Right::unshown : Right::any;
   });
@@ -300,8 +300,8 @@ void add_bus(Scenario& s, Dice& dice, const std::string& id) {
     const std::int64_t from = window.begin_ns(), to = window.end_ns(end),
                        known = end.known_ms * kMs;
     if (tolerance)
-      tell_worst(*tolerance, name + " period deviation", periods(from, to, known), window, end,
-                 told);
+      report_worst(*tolerance, name + " period deviation", periods(from, to, known), window, end,
+                   told);
     if (spi) return;
     const auto mine = chosen(from, to, known);
     const auto refused =
@@ -375,8 +375,8 @@ void add_latency(Scenario& s, Dice& dice, const std::string& id) {
   s.wait(dice.between(10, 150));
   s.judgements.push_back([=](const End& end, std::vector<Told>& told) {
     if (window.from > end.last_act_ms) return;
-    tell_worst(limit, "imu to dev_" + id + " latency",
-               latencies(window.begin_ns(), window.end_ns(end)), window, end, told);
+    report_worst(limit, "imu to dev_" + id + " latency",
+                 latencies(window.begin_ns(), window.end_ns(end)), window, end, told);
   });
 }
 

@@ -34,9 +34,9 @@ struct Bench {
     decoder.on_sample([this](const EscSample& s) { samples.push_back(s); });
     decoder.on_line([this](const std::string& line) { lines.push_back(line); });
   }
-  void take(const std::vector<std::uint8_t>& bytes) { decoder.take(bytes); }
-  void take(const std::string& text) {
-    decoder.take(std::vector<std::uint8_t>(text.begin(), text.end()));
+  void decode(const std::vector<std::uint8_t>& bytes) { decoder.decode(bytes); }
+  void decode(const std::string& text) {
+    decoder.decode(std::vector<std::uint8_t>(text.begin(), text.end()));
   }
 
   EscStreamDecoder decoder;
@@ -46,7 +46,7 @@ struct Bench {
 
 TEST(EscStream, ReadsTheGoldenFrame) {
   Bench b;
-  b.take(kGolden);
+  b.decode(kGolden);
   ASSERT_EQ(b.samples.size(), 1u);
   const EscSample& s = b.samples[0];
   EXPECT_EQ(s.sequence, 0xA5);
@@ -82,7 +82,7 @@ TEST(EscStream, TextBetweenFramesComesAsLinesHoweverItIsCut) {
   for (const std::size_t piece : {std::size_t{1}, std::size_t{7}, std::size_t{64}, all.size()}) {
     Bench b;
     for (std::size_t i = 0; i < all.size(); i += piece) {
-      b.decoder.take(std::span(all).subspan(i, std::min(piece, all.size() - i)));
+      b.decoder.decode(std::span(all).subspan(i, std::min(piece, all.size() - i)));
     }
     EXPECT_EQ(b.lines, (std::vector<std::string>{"kt 1.00500002e-2", "ok"}));
     EXPECT_EQ(b.samples.size(), 3u);
@@ -94,13 +94,13 @@ TEST(EscStream, TextBetweenFramesComesAsLinesHoweverItIsCut) {
 TEST(EscStream, FindsTheFrameBehindATornOneWhereverItWasTorn) {
   for (std::size_t lost = 0; lost < EscStreamDecoder::kFrameSize; ++lost) {
     Bench b;
-    b.take(frame(7));
+    b.decode(frame(7));
     std::vector<std::uint8_t> torn = frame(8);
     torn.erase(torn.begin() + static_cast<std::ptrdiff_t>(lost));
-    b.take(torn);
-    b.take(frame(9));
-    b.take(frame(10));
-    b.take("ok\r\n");
+    b.decode(torn);
+    b.decode(frame(9));
+    b.decode(frame(10));
+    b.decode("ok\r\n");
     ASSERT_EQ(b.samples.size(), 3u) << lost;
     EXPECT_EQ(b.samples[1].sequence, 9) << lost;
     EXPECT_EQ(b.decoder.counts().lost_frames, 1u) << lost;
@@ -113,7 +113,7 @@ TEST(EscStream, AnyFlippedBitIsRefusedAndCounted) {
     Bench b;
     std::vector<std::uint8_t> bytes = kGolden;
     bytes[bit / 8] ^= static_cast<std::uint8_t>(1u << bit % 8);
-    b.take(bytes);
+    b.decode(bytes);
     EXPECT_TRUE(b.samples.empty()) << bit;
     EXPECT_GE(b.decoder.counts().bad_crc, 1u) << bit;
   }
@@ -121,18 +121,18 @@ TEST(EscStream, AnyFlippedBitIsRefusedAndCounted) {
 
 TEST(EscStream, MissingFramesAreCountedBySequenceAcrossItsWrap) {
   Bench b;
-  b.take(frame(254));
-  b.take(frame(255));
-  b.take(frame(0));
+  b.decode(frame(254));
+  b.decode(frame(255));
+  b.decode(frame(0));
   EXPECT_EQ(b.decoder.counts().lost_frames, 0u);
-  b.take(frame(5));
+  b.decode(frame(5));
   EXPECT_EQ(b.decoder.counts().lost_frames, 4u);
   EXPECT_EQ(b.decoder.counts().frames, 4u);
 }
 
 TEST(EscStream, ALineWithAForeignByteIsDropped) {
   Bench b;
-  b.take(
+  b.decode(
       std::string("st\x07"
                   "atus\r\nok\r\n"));
   EXPECT_EQ(b.lines, std::vector<std::string>{"ok"});

@@ -38,10 +38,10 @@ Board::Board(Setup setup, io::Channel channel, Emulator& emulator)
              }),
       chip_(make_chip(
           *setup_.part,
-          {events_, *this, *this, *this, [this](const io::Finding& f) { find(f); },
+          {events_, *this, *this, *this, [this](const io::Finding& f) { report(f); },
            setup_.description.hse_Hz, setup_.description.lse_Hz, setup_.description.hse_start_ns,
            setup_.description.hsi_error, setup_.description.hse_error})),
-      devices_({events_, *chip_, happened_, [this](const io::Finding& f) { find(f); },
+      devices_({events_, *chip_, happened_, [this](const io::Finding& f) { report(f); },
                 setup_.run.seed, rack::device_types()}),
       hangs_(events_, emulator, happened_),
       systick_(
@@ -55,9 +55,9 @@ Board::Board(Setup setup, io::Channel channel, Emulator& emulator)
           kPeripherals, [this] { return emulator_.accessing_pc(); },
           [this] { return events_.now(); },
           [this](std::uint32_t address, const Unanswered::Touch& touch) {
-            find({touch.t_ns, "board",
-                  "no model answers at " + hex(address) + (touch.read ? ", read" : ", written") +
-                      " by " + setup_.image.describe(touch.pc) + " (" + hex(touch.pc) + ")"});
+            report({touch.t_ns, "board",
+                    "no model answers at " + hex(address) + (touch.read ? ", read" : ", written") +
+                        " by " + setup_.image.describe(touch.pc) + " (" + hex(touch.pc) + ")"});
           }),
       itm_("ITM", 0),
       flash_patch_("FPB", 0),
@@ -136,7 +136,7 @@ void Board::power_on(const std::string& versions) {
   systick_.reset();
   cycle_counter_.reset();
   channel_.set_hello(versions);
-  for (const std::string& oddity : setup_.image.oddities()) find({0, "image", oddity});
+  for (const std::string& oddity : setup_.image.oddities()) report({0, "image", oddity});
   report_unknown_watches();
   boundary_.at(0);
   channel_.set_state(io::BoardState::running);
@@ -150,7 +150,7 @@ void Board::report_unknown_watches() {
   for (const std::string& name : setup_.description.watch) {
     const bool converter = name.size() == 4 && name.compare(0, 3, "adc") == 0;
     if (converter || !setup_.image.functions_named(name).empty()) continue;
-    find({0, "watch", "the image has no function '" + name + "'"});
+    report({0, "watch", "the image has no function '" + name + "'"});
   }
 }
 
@@ -180,7 +180,7 @@ void Board::await_orders() {
   WHIRL_CHECK(channel_.wait(-1));
   const io::Delivery orders = channel_.received();
   io::Reader reader(orders.bytes);
-  while (reader.next()) obey(reader);
+  while (reader.next()) on_message(reader);
   WHIRL_CHECK(reader.complete());
   WHIRL_CHECK(orders.t_ns > events_.now(), orders.t_ns, events_.now());
   boundary_.at(orders.t_ns);
@@ -192,7 +192,7 @@ void Board::hang(const io::FaultCommand& fault) {
   if (number < watch.size()) hangs_.add(fault, setup_.image.functions_named(watch[number]));
 }
 
-void Board::obey(const io::Reader& message) {
+void Board::on_message(const io::Reader& message) {
   if (message.header().kind == io::Kind::fault) {
     const auto fault = message.as<io::FaultCommand>();
     if (fault.kind == static_cast<std::uint32_t>(io::FaultKind::code_hangs)) return hang(fault);
@@ -255,7 +255,7 @@ void Board::check_profile() {
                 "%.3g cycles",
                 clocks_told_.sysclk_Hz * 1e-6,
                 static_cast<long long>(setup_.description.ns_per_instruction), cycles);
-  find({events_.now(), "board", text});
+  report({events_.now(), "board", text});
 }
 
 void Board::finish(io::BoardState state) {
@@ -320,7 +320,7 @@ void Board::core_stopped(StoppedCore why, Nanoseconds now, const Registers& regi
   std::abort();  // as in finish()
 }
 
-void Board::find(const io::Finding& finding) {
+void Board::report(const io::Finding& finding) {
   const std::string text = finding.where + '\0' + finding.what;
   happened_.add(io::Kind::finding, 0, finding.t_ns, text.data(),
                 static_cast<std::uint32_t>(text.size()));

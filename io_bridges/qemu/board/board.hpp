@@ -81,7 +81,7 @@ class Board final : stm32::InterruptLines, stm32::SystemBus, stm32::FlashArray {
 
   // Messages to the harness, in order of time.
   io::Batch& happened() { return happened_; }
-  void find(const io::Finding& finding);
+  void report(const io::Finding& finding);
 
  private:
   void set(int irq, bool level) override;                                          // InterruptLines
@@ -93,7 +93,7 @@ class Board final : stm32::InterruptLines, stm32::SystemBus, stm32::FlashArray {
 
   void synchronise();
   void await_orders();
-  void obey(const io::Reader& message);
+  void on_message(const io::Reader& message);
   void hang(const io::FaultCommand& fault);
   Result<Done> watch_converters();
   void retime();

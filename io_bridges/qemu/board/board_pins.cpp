@@ -64,14 +64,14 @@ Result<std::set<int>> join_pins(const std::vector<BoardPin>& pins, stm32::ChipMo
 void log_edges(const std::vector<BoardPin>& pins, stm32::ChipModel& chip, io::Batch& happened) {
   for (std::size_t number = 0; number < pins.size(); ++number) {
     if (!pins[number].bus.empty()) continue;
-    const auto tell = [&happened, number](bool level, io::Nanoseconds now) {
+    const auto record = [&happened, number](bool level, io::Nanoseconds now) {
       io::PinEdge edge;
       edge.level = level ? 1 : 0;
       happened.add(io::Kind::pin_edge, static_cast<std::uint16_t>(number), now, edge);
     };
     io::Wire& wire = *chip.pin(pins[number].pin);
-    tell(wire.level(), 0);
-    wire.watch(tell);
+    record(wire.level(), 0);
+    wire.watch(record);
   }
 }
 

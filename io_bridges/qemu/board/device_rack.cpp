@@ -48,8 +48,8 @@ class DeviceRack::Wiring final : public rack::Rack {
   Result<Done> add(const BoardDescription& board, int number);
   Result<Done> subscribe(rack::RackDevice& device, const std::string& place);
   io::SpiBus* spi(int number);
-  void tell_fights(io::Wire& wire, const std::string& name);
-  void find_once(io::Nanoseconds now, const std::string& where, const std::string& what);
+  void report_fights(io::Wire& wire, const std::string& name);
+  void report_once(io::Nanoseconds now, const std::string& where, const std::string& what);
 
   Site site_;
   io::FaultBook faults_;
@@ -123,32 +123,32 @@ Result<Done> DeviceRack::Wiring::subscribe(rack::RackDevice& device, const std::
   return Done{};
 }
 
-void DeviceRack::Wiring::find_once(io::Nanoseconds now, const std::string& where,
-                                   const std::string& what) {
+void DeviceRack::Wiring::report_once(io::Nanoseconds now, const std::string& where,
+                                     const std::string& what) {
   if (reported_.insert(where + what).second) site_.finding({now, where, what});
 }
 
-void DeviceRack::Wiring::tell_fights(io::Wire& wire, const std::string& name) {
+void DeviceRack::Wiring::report_fights(io::Wire& wire, const std::string& name) {
   wire.on_fight([this, name](const std::string& low, const std::string& high, io::Nanoseconds now) {
-    find_once(now, name, low + " drives it low, " + high + " drives it high");
+    report_once(now, name, low + " drives it low, " + high + " drives it high");
   });
 }
 
 io::Wire* DeviceRack::Wiring::pin(const std::string& name) {
   io::Wire* wire = site_.chip.pin(name);
-  if (wire != nullptr) tell_fights(*wire, name);
+  if (wire != nullptr) report_fights(*wire, name);
   return wire;
 }
 
 void DeviceRack::Wiring::run_ends(io::Nanoseconds now) {
   for (const BoardPin& pin : named_pins_) {
     if (site_.chip.pin(pin.pin)->was_driven()) continue;
-    find_once(now, pin.pin, "the board names it '" + pin.name + "', but nothing ever drove it");
+    report_once(now, pin.pin, "the board names it '" + pin.name + "', but nothing ever drove it");
   }
   for (const std::string& pin : analog_) {
     const io::Wire* wire = site_.chip.pin(pin);
     if (wire == nullptr || !wire->was_driven()) continue;
-    find_once(now, pin, "a device puts a voltage on it, and something drove it: both cannot be");
+    report_once(now, pin, "a device puts a voltage on it, and something drove it: both cannot be");
   }
 }
 
@@ -156,8 +156,8 @@ io::I2cBus* DeviceRack::Wiring::i2c(int number) {
   io::I2cBus* bus = site_.chip.i2c(number);
   if (bus == nullptr || i2c_buses_.count(number) != 0) return bus;
   if (i2c_soldered_.count(number) == 0) site_.chip.solder_i2c(number, "", "");
-  tell_fights(bus->scl(), "i2c" + std::to_string(number) + ".scl");
-  tell_fights(bus->sda(), "i2c" + std::to_string(number) + ".sda");
+  report_fights(bus->scl(), "i2c" + std::to_string(number) + ".scl");
+  report_fights(bus->sda(), "i2c" + std::to_string(number) + ".sda");
   i2c_buses_[number] = std::make_unique<io::I2cWireFaults>(site_.events, faults_, *bus, number);
   bus->on_transaction([this, number](const io::I2cTransaction& t) {
     io::BusTransaction head;
@@ -177,8 +177,8 @@ io::SpiBus* DeviceRack::Wiring::spi(int number) {
   if (bus == nullptr || spi_buses_.count(number) != 0) return bus;
   spi_buses_[number] = bus;
   bus->on_clash([this, number](const io::Wire& first, const io::Wire& second, io::Nanoseconds now) {
-    find_once(now, "spi" + std::to_string(number),
-              names_[&first] + " and " + names_[&second] + " are selected at once");
+    report_once(now, "spi" + std::to_string(number),
+                names_[&first] + " and " + names_[&second] + " are selected at once");
   });
   bus->on_byte([this](const io::Wire* chip_select, std::uint8_t mosi, std::uint8_t miso,
                       io::Nanoseconds now) {

@@ -26,17 +26,17 @@ class Unanswered final : public stm32::Peripheral {
 
   const char* name() const override { return "unanswered"; }
   std::uint32_t read(std::uint32_t offset, unsigned size) override {
-    note(offset, size, true);
+    record(offset, size, true);
     return 0;
   }
   void write(std::uint32_t offset, std::uint32_t, unsigned size) override {
-    note(offset, size, false);
+    record(offset, size, false);
   }
   void reset() override {}
   const std::map<std::uint32_t, Touch>& touched() const { return touched_; }
 
  private:
-  void note(std::uint32_t offset, unsigned, bool read) {
+  void record(std::uint32_t offset, unsigned, bool read) {
     const std::uint32_t address = base_ + (offset & ~3u);
     Touch& touch = touched_[address];
     (read ? touch.read : touch.written) = true;

@@ -64,7 +64,7 @@ void Instruments::report_unreachable_code(std::uint32_t address) {
   const board::MemoryBlock& ccm = machine_.board().part().ccm;
   if (ccm_reported_ || address - ccm.base >= ccm.size) return;
   ccm_reported_ = true;
-  machine_.board().find(
+  machine_.board().report(
       {machine_.clock().core_now(), "core",
        "code is fetched from CCM at " + hex(address) + ": on the part, a bus fault"});
 }

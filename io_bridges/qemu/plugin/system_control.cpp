@@ -111,7 +111,7 @@ void SystemControl::report_deep_sleep(io::Nanoseconds now) {
 
 void SystemControl::report_once(bool& reported, io::Nanoseconds now, const char* what) {
   if (std::exchange(reported, true)) return;
-  board_.find({now, "core", what});
+  board_.report({now, "core", what});
 }
 
 std::uint32_t SystemControl::word(std::uint32_t offset) {

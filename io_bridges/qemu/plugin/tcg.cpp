@@ -186,7 +186,7 @@ Spare::Spare(const std::vector<Operation*>& block)
   }
 }
 
-Argument Spare::take(int type) {
+Argument Spare::allocate(int type) {
   std::vector<Argument>& ours = ours_[type];
   while (taken_[type] == ours.size()) {
     const Argument fresh = functions.tcg_temp_new_internal(type, false);
@@ -197,13 +197,13 @@ Argument Spare::take(int type) {
 }
 
 Argument Ahead::op32(int number, Argument a, Argument b) {
-  const Argument result = spare_.take(kWord);
+  const Argument result = spare_.allocate(kWord);
   put(number, result, a, b);
   return result;
 }
 
 Argument Ahead::op64(int number, Argument a, Argument b) {
-  const Argument result = spare_.take(kDoubleword);
+  const Argument result = spare_.allocate(kDoubleword);
   put(number, result, a, b);
   return result;
 }

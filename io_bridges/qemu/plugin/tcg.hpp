@@ -63,7 +63,7 @@ int size_log2(const Operation& access);
 class Spare {
  public:
   explicit Spare(const std::vector<Operation*>& block);
-  Argument take(int type);
+  Argument allocate(int type);
   // What those taken since then hold is no longer wanted. The translator has few hundred of them.
   using Taken = std::array<std::size_t, 2>;
   Taken taken() const { return taken_; }

@@ -33,7 +33,7 @@ void Rng::update() {
   irq_.set(ready_ && (cr_ & kInterrupt) != 0);
 }
 
-std::uint32_t Rng::take() {
+std::uint32_t Rng::next() {
   if (!ready_) return 0;
   ready_ = false;
   update();
@@ -51,7 +51,7 @@ std::uint32_t Rng::read(std::uint32_t offset, unsigned size) {
       word = ready_ ? kReady : 0;
       break;
     case DR:
-      word = take();
+      word = next();
       break;
     default:
       break;

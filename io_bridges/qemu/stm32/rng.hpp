@@ -21,7 +21,7 @@ class Rng : public Peripheral {
   void reset() override;
 
  private:
-  std::uint32_t take();
+  std::uint32_t next();
   void update();
 
   RandomStream stream_;

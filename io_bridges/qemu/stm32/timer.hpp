@@ -176,7 +176,7 @@ class Timer : public Peripheral {
   void com_event();
   void follow_writes();
   void set_master_line();
-  void tell_observer();
+  void notify_observer();
   PwmChannel pwm_channel(int ch) const;
 
   Chip chip_;

@@ -80,7 +80,7 @@ void Timer::refresh_outputs() {
       compare_[ch].set(bit(enables, 0) && channel_[ch].ref != bit(enables, 1), now);
   }
   set_master_line();
-  tell_observer();
+  notify_observer();
 }
 
 void Timer::drive_pins(int ch) {
@@ -184,7 +184,7 @@ PwmPattern Timer::pwm_pattern() {
   return now;
 }
 
-void Timer::tell_observer() {
+void Timer::notify_observer() {
   if (!pattern_dirty_ || !observer_) return;
   pattern_dirty_ = false;
   const PwmPattern pattern = pwm_pattern();

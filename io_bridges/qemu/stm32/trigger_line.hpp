@@ -42,7 +42,7 @@ class TriggerLine {
   void set(bool level, Nanoseconds now) {
     if (level == level_) return;
     level_ = level;
-    tell(level, now);
+    notify(level, now);
   }
   void pulse(Nanoseconds now) {
     set(true, now);
@@ -54,7 +54,7 @@ class TriggerLine {
     Sink sink;
     bool listening;
   };
-  void tell(bool level, Nanoseconds now) {
+  void notify(bool level, Nanoseconds now) {
     for (std::size_t i = 0; i < sinks_.size(); ++i) {
       if (sinks_[i].listening) sinks_[i].sink(level, now);
     }

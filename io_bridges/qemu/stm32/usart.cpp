@@ -227,7 +227,7 @@ void Usart::receive(const io::UartByte& byte, const io::UartFormat& format) {
   if (sample.noise) errors |= NF;
   if (sample.stop_missing && sample.bits == 0 && (cr2_ & LINEN) != 0) sr_ |= LBD;
   if ((cr1_ & PCE) != 0 && odd_number_of_ones(sample.bits) != ((cr1_ & PS) != 0)) errors |= PE;
-  take(sample.bits, errors);
+  receive(sample.bits, errors);
   last_rx_end_ = chip_.events.now();
   idle_.in(2 * frame_ns());
   update();
@@ -261,7 +261,7 @@ bool Usart::muted(std::uint16_t bits) {
   return (cr1_ & RWU) != 0;
 }
 
-void Usart::take(std::uint16_t bits, std::uint32_t errors) {
+void Usart::receive(std::uint16_t bits, std::uint32_t errors) {
   if (muted(bits)) return;
   if ((sr_ & RXNE) != 0) {
     sr_ |= ORE;  // DR keeps the older character

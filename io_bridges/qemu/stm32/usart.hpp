@@ -43,7 +43,7 @@ class Usart final : public WordBlock {
   void character_sent();
   void send_to_peer(std::uint16_t bits, bool is_break);
   void receive(const io::UartByte& byte, const io::UartFormat& format);
-  void take(std::uint16_t bits, std::uint32_t errors);
+  void receive(std::uint16_t bits, std::uint32_t errors);
   bool muted(std::uint16_t bits);
   void line_idle();
   void idle_passed();

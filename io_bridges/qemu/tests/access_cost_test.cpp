@@ -10,14 +10,14 @@ namespace {
 
 using Counts = std::vector<std::uint32_t>;
 
-Counts told(const std::string& name, const std::string& mcu) {
+Counts counts_of(const std::string& name, const std::string& mcu) {
   BoardSetup setup{image(name), {}};
   setup.mcu = mcu;
   setup.more =
       R"("ns_per_instruction":0,"devices":[{"name":"terminal","type":"serial","baud":115200,)"
       R"("bus":")" +
       std::string(mcu == "stm32f405rg" ? "usart2" : "usart1") + R"("}])";
-  return run_for(setup, 100).told();
+  return run_for(setup, 100).numbers();
 }
 
 constexpr std::size_t kWalks = 6;
@@ -35,7 +35,8 @@ void expect_waits(const Counts& counts, std::size_t from, const double (&expecte
 }
 
 TEST(AccessCost, DataFromFlashWaitsUnlessACacheHoldsIt) {
-  const Counts f4 = told("tables_f4", "stm32f405rg"), f1 = told("tables_f1", "stm32f103cb");
+  const Counts f4 = counts_of("tables_f4", "stm32f405rg"),
+               f1 = counts_of("tables_f1", "stm32f103cb");
   constexpr double kW4 = 5, kW1 = 2, kLine = 4;  // words to a line
   // The same word, word by word, a line each; 8 lines stay, 10 push each other out; four words at once.
   expect_waits(
@@ -54,7 +55,7 @@ TEST(AccessCost, DataFromFlashWaitsUnlessACacheHoldsIt) {
 TEST(AccessCost, WhatIsNotAlignedTakesACycleForEachTransferMore) {
   for (const auto& [name, mcu] :
        {std::pair{"operands_f4", "stm32f405rg"}, std::pair{"operands_f1", "stm32f103cb"}}) {
-    const Counts counts = told(name, mcu);
+    const Counts counts = counts_of(name, mcu);
     ASSERT_GE(counts.size(), 18u) << mcu;
     // LDR, STR, LDRH, LDRSH, STRH, LDRB at 1, 2 and 3 bytes behind a word.
     const Counts expected = {200, 200, 100, 100, 100, 0,   100, 100, 0,
@@ -72,7 +73,7 @@ TEST(AccessCost, WhatIsNotAlignedTakesACycleForEachTransferMore) {
 TEST(AccessCost, AWriteByABitBandAliasHoldsTheBridgeForTwoTransfersAndNotTheCore) {
   for (const auto& [name, mcu] :
        {std::pair{"aliases_f4", "stm32f405rg"}, std::pair{"aliases_f1", "stm32f103cb"}}) {
-    const Counts counts = told(name, mcu);
+    const Counts counts = counts_of(name, mcu);
     ASSERT_EQ(counts.size(), 6u) << mcu;
     EXPECT_TRUE(near(counts[0], 100, stated(10, "fetches at a loop's ends"))) << mcu;
     EXPECT_TRUE(near(counts[1], 100, stated(10, "fetches at a loop's ends"))) << mcu;
@@ -88,7 +89,8 @@ TEST(AccessCost, AWriteByABitBandAliasHoldsTheBridgeForTwoTransfersAndNotTheCore
 // DDI 0337: UMULL, SMULL 3 to 5, UMLAL, SMLAL 4 to 7, the signed one a cycle longer, by the size of the
 // operands; DDI 0439: always 1.
 TEST(OperandCost, LongMultipliesOfAnM3GoByTheSizeOfTheirOperands) {
-  const Counts f4 = told("operands_f4", "stm32f405rg"), f1 = told("operands_f1", "stm32f103cb");
+  const Counts f4 = counts_of("operands_f4", "stm32f405rg"),
+               f1 = counts_of("operands_f1", "stm32f103cb");
   ASSERT_EQ(f4.size(), 25u);
   ASSERT_EQ(f1.size(), 25u);
   const Counts expected = {100, 200, 0, 200, 100, 200};
@@ -101,7 +103,7 @@ TEST(OperandCost, LongMultipliesOfAnM3GoByTheSizeOfTheirOperands) {
 
 TEST(OperandCost, WhatIsCountedTouchesNoResult) {
   for (const Counts& counts :
-       {told("operands_f4", "stm32f405rg"), told("operands_f1", "stm32f103cb")}) {
+       {counts_of("operands_f4", "stm32f405rg"), counts_of("operands_f1", "stm32f103cb")}) {
     ASSERT_EQ(counts.size(), 25u);
     EXPECT_EQ(counts.back(), 0u);
   }

@@ -121,7 +121,7 @@ std::vector<std::uint32_t> BoardRun::said() const {
   return values;
 }
 
-std::vector<std::uint32_t> BoardRun::told() const {
+std::vector<std::uint32_t> BoardRun::numbers() const {
   std::string text;
   for (const Message* message : of(io::Kind::uart_received)) text += text_of(*message);
   std::istringstream lines(text.substr(0, text.rfind('\n')));

@@ -43,7 +43,7 @@ struct BoardRun {
   std::vector<const Message*> of(io::Kind kind) const;
   // What the image said: values written to the bench part's SAY register.
   std::vector<std::uint32_t> said() const;
-  std::vector<std::uint32_t> told() const;     // the numbers that came from a terminal, a line each
+  std::vector<std::uint32_t> numbers() const;  // the numbers that came from a terminal, a line each
   bool found(const std::string& words) const;  // in some finding
   std::string text_of(const Message& message, std::size_t head = 0) const;
 };

@@ -47,7 +47,7 @@ ImageRun run_image(const std::string& image, const std::string& devices, int mil
     return run;
   }
   std::string text;
-  const auto take = [&](const io::Batch& batch) {
+  const auto on_messages = [&](const io::Batch& batch) {
     for (io::Reader r(batch.bytes()); r.next();) {
       const std::string payload(r.payload().begin(), r.payload().end());
       if (r.header().kind == io::Kind::uart_received) text += payload;
@@ -59,7 +59,7 @@ ImageRun run_image(const std::string& image, const std::string& devices, int mil
   for (int k = 1; k <= milliseconds && text.find("\ndone 1\n") == std::string::npos; ++k) {
     board.run(k * 1'000'000LL, {});
     const auto state = board.arrive(happened);
-    take(happened);
+    on_messages(happened);
     if (!state) {
       run.error += state.error().message();
       break;

@@ -38,7 +38,7 @@ double period_ns(const BoardRun& run) {
 }
 
 void expect_cycles(const BoardRun& run, std::uint32_t cycles) {
-  const auto values = run.told();
+  const auto values = run.numbers();
   EXPECT_GT(values.size(), 50u);
   for (const std::uint32_t value : values)
     EXPECT_TRUE(near(value, cycles, stated(1, "asleep, to the ns")));  // asleep, to the ns

@@ -21,7 +21,7 @@ struct Core {
   CoreState handler(std::uint32_t exception, std::uint32_t lr) const {
     return {now, exception, kMain, lr, kHandler};
   }
-  void take(std::uint32_t exception, std::uint32_t thread_sp) {
+  void enter(std::uint32_t exception, std::uint32_t thread_sp) {
     watch.exception(thread(thread_sp), handler(exception, kToThread));
   }
   void nest(std::uint32_t below, std::uint32_t exception) {

@@ -26,7 +26,7 @@ class Toy final : public rack::RackDevice, public io::I2cTarget {
   bool write(std::uint8_t, io::Nanoseconds) override { return true; }
   std::uint8_t read(io::Nanoseconds now) override {
     const bool wrong =
-        faults_.take(io::FaultKind::sensor_wrong_identity, bus_, address_, now) != nullptr;
+        faults_.apply(io::FaultKind::sensor_wrong_identity, bus_, address_, now) != nullptr;
     return wrong ? 0xEE : static_cast<std::uint8_t>(air_K_ + offset_K_ - 200.0);
   }
   void acked(bool, io::Nanoseconds) override {}

@@ -13,17 +13,17 @@ TEST(Watch, ALatencyGoesFromTheRequestToTheHandlerAndWithItsCalls) {
   core.now = 70;
   core.watch.line_changed(20, true, 70);  // it is still requested: the first time counts
   core.now = 100;
-  core.take(20, kTask);
+  core.enter(20, kTask);
   core.now = 110;
   core.watch.enter_function(2, core.handler(20, kToThread));
   core.now = 150;
   core.leave_to_thread(20, kTask);
   core.watch.line_changed(20, true, 160);
   core.now = 170;
-  core.take(20, kTask);
+  core.enter(20, kTask);
   core.leave_to_thread(20, kTask);
   core.now = 200;
-  core.take(20, kTask);  // nobody has requested it
+  core.enter(20, kTask);  // nobody has requested it
   core.watch.enter_function(2, core.handler(20, kToThread));
   core.now = 210;
   core.leave_to_thread(20, kTask);
@@ -48,7 +48,7 @@ TEST(Watch, ARequestThatWasTakenBackHasNoLatency) {
   core.watch.line_changed(20, true, 10);
   core.watch.line_changed(20, false, 20);
   core.now = 30;
-  core.take(20, kTask);
+  core.enter(20, kTask);
   core.watch.line_changed(21, true, 40);
   core.watch.line_changed(21, false, 41);
   core.watch.line_changed(21, true, 45);
@@ -63,7 +63,7 @@ TEST(Watch, ExceptionsBeyondTheLastOneHaveNoLatency) {
   for (std::uint32_t exception : {255u, 256u, 300u, 511u}) {
     core.watch.line_changed(exception, true, 10);
     core.now = 30;
-    core.take(exception, kTask);
+    core.enter(exception, kTask);
     core.leave_to_thread(exception, kTask);
   }
   EXPECT_EQ(all_told(core), (std::vector<Told>{{kLatency, 255, 10, 30}}));
@@ -85,7 +85,7 @@ TEST(Watch, AnExceptionIsTakenOrLeftOrNeither) {
 TEST(Watch, AnyReturnOfAnExceptionEndsItsHandler) {
   for (std::uint32_t value : {0xFFFFFFE1u, 0xFFFFFFE9u, 0xFFFFFFF9u, 0xFFFFFFFDu}) {
     Core core;
-    core.take(1, kTask);
+    core.enter(1, kTask);
     core.watch.enter_function(2, core.handler(1, kToThread));
     core.now = 40;
     CoreState leaving = core.returning(1);
@@ -151,7 +151,7 @@ TEST(Watch, AResetEndsAllThatWasOpen) {
   Core core;
   core.call(1, kTask, 0x08000011);
   core.watch.line_changed(20, true, 0);
-  core.take(21, kTask);
+  core.enter(21, kTask);
   core.watch.core_was_reset();
   core.now = 50;
   core.come_back(0x08000010, kTask);  // by chance the same place again
@@ -159,7 +159,7 @@ TEST(Watch, AResetEndsAllThatWasOpen) {
   EXPECT_EQ(core.watch.stacks().count(), 1u);
   core.call(2, kMain, 0x08000011);
   core.now = 60;
-  core.take(20, kMain);
+  core.enter(20, kMain);
   core.now = 80;
   core.leave_to_thread(20, kMain);
   core.come_back(0x08000010, kMain);
@@ -206,7 +206,7 @@ TEST(Watch, ATaskThatGoesOnAtItsFrameIsTheSameTask) {
     core.now = 10;
     core.leave_to_thread(15, kOther);
     core.now = 30;
-    core.take(15, kOther);
+    core.enter(15, kOther);
     core.now = 40;
     core.leave_to_thread(15, f.frame);
     EXPECT_EQ(core.watch.stacks().count(), 2u) << std::hex << f.exc_return;

@@ -13,11 +13,11 @@ TEST(Watch, AnotherTasksTimeIsNotTheCallers) {
   Core core;
   core.call(1, kTask, 0x08000011);
   core.now = 100;
-  core.take(15, kTask - 8);
+  core.enter(15, kTask - 8);
   core.now = 110;
   core.leave_to_thread(15, kOther);  // a task that has never run
   core.now = 1000;
-  core.take(15, kOther - 16);
+  core.enter(15, kOther - 16);
   core.now = 1010;
   core.leave_to_thread(15, kTask - 8);
   core.now = 1050;
@@ -34,7 +34,7 @@ TEST(Watch, ASwitchInThreadModeBelowTheFrameBelongsToTheTask) {
   core.watch.stack_pointer_loads(core.thread(kOther - 8), true);
   core.call(1, kTask, 0x08000011);
   core.now = 100;
-  core.take(15, kTask - 8);
+  core.enter(15, kTask - 8);
   core.leave_to_thread(15, kTask - 8 - kFrame);
   core.now = 130;
   core.watch.stack_pointer_loads(core.thread(kTask - 60), true);
@@ -43,7 +43,7 @@ TEST(Watch, ASwitchInThreadModeBelowTheFrameBelongsToTheTask) {
   core.now = 1000;
   core.watch.stack_pointer_loads(core.thread(kOther - 8), true);
   core.now = 1010;
-  core.take(11, kTask - 8 - kFrame);  // the supervisor call
+  core.enter(11, kTask - 8 - kFrame);  // the supervisor call
   core.leave_to_thread(11, kTask - 8);
   core.now = 1050;
   core.come_back(0x08000010, kTask);
@@ -54,7 +54,7 @@ TEST(Watch, ASwitchInThreadModeBelowTheFrameBelongsToTheTask) {
 TEST(Watch, WhatHasNotReturnedIsToldAtTheEndWithoutALength) {
   Core core;
   core.call(1, kTask, 0x08000011);
-  core.take(15, kTask - 8);
+  core.enter(15, kTask - 8);
   core.call(2, kMain, 0xFFFFFFF9);
   core.now = 50;
   core.watch.run_ends(core.now);
@@ -81,7 +81,7 @@ TEST(Watch, ATailChainedExceptionIsNobodysTimeButItsOwn) {
   Core core;
   core.call(1, kTask, 0x08000011);
   core.now = 10;
-  core.take(20, kTask);
+  core.enter(20, kTask);
   core.watch.enter_function(2, core.handler(20, kToThread));
   core.now = 30;
   core.leave_to(20, 20);  // behind itself
@@ -97,7 +97,7 @@ TEST(Watch, ATailChainedExceptionIsNobodysTimeButItsOwn) {
 
 TEST(Watch, AHandlerBelowAnotherOneGoesOnWithItsTime) {
   Core core;
-  core.take(20, kTask);
+  core.enter(20, kTask);
   core.watch.enter_function(2, core.handler(20, kToThread));
   for (int i = 0; i < 3; ++i) {
     core.now += 10;

@@ -85,7 +85,7 @@ struct I2cBench : ChipBench {
     put(kDr, reg);
     wait(kSr1, TXE, TXE);
   }
-  std::uint8_t take() {
+  std::uint8_t received() {
     wait(kSr1, RXNE, RXNE);
     return static_cast<std::uint8_t>(get(kDr));
   }

@@ -85,7 +85,7 @@ TEST(I2cMaster, HalReadsOneByte) {
   bench.get(kSr1);
   bench.get(kSr2);
   bench.set_bits(kCr1, STOP);
-  EXPECT_EQ(bench.take(), 0x31);
+  EXPECT_EQ(bench.received(), 0x31);
   bench.wait(kCr1, STOP, 0);
   EXPECT_EQ(bench.file.log, "WRnP");
   EXPECT_EQ(bench.file.fetched_at.size(), 1u);
@@ -102,7 +102,7 @@ TEST(I2cMaster, StopBeforeAddrIsClearedStillReadsTheByte) {
   bench.run(20'000);
   bench.get(kSr1);
   bench.get(kSr2);
-  EXPECT_EQ(bench.take(), 0x31);
+  EXPECT_EQ(bench.received(), 0x31);
   bench.wait(kCr1, STOP, 0);
   EXPECT_EQ(bench.file.log, "WRnP");
 }
@@ -151,7 +151,7 @@ TEST(I2cMaster, HalReadsSixBytes) {
   bench.start_and_address(0xA1);
   bench.clear_addr();
   Bytes got;
-  for (int i = 0; i < 3; ++i) got.push_back(bench.take());
+  for (int i = 0; i < 3; ++i) got.push_back(bench.received());
   bench.wait(kSr1, BTF, BTF);
   const std::size_t before = bench.file.fetched_at.size();
   bench.run(30 * kBit_ns);
@@ -179,7 +179,7 @@ TEST(I2cMaster, LibopencmReadsThreeBytes) {
   Bytes got;
   for (int i = 0; i < 3; ++i) {
     if (i == 2) bench.clear_bits(kCr1, ACK);
-    got.push_back(bench.take());
+    got.push_back(bench.received());
   }
   bench.set_bits(kCr1, STOP);
   bench.wait(kCr1, STOP, 0);

@@ -40,7 +40,7 @@ TEST(I2cSlave, ReceivesASetPointAsThePolledHalDoes) {
   bench.wait(kSr1, ADDR, ADDR);
   EXPECT_EQ(bench.get(kSr2), 2u);  // EV1: BUSY, neither MSL nor TRA
   Bytes got;
-  for (int i = 0; i < 3; ++i) got.push_back(bench.take());
+  for (int i = 0; i < 3; ++i) got.push_back(bench.received());
   bench.clear_stopf();
   EXPECT_EQ(got, (Bytes{0x12, 0x03, 0xAB}));
   EXPECT_TRUE(bench.reply.acked);
@@ -71,10 +71,10 @@ TEST(I2cSlave, HoldsTheClockWhenBothItsRegistersAreFull) {
   EXPECT_FALSE(bench.bus().scl().level());
   bench.run(200'000);
   EXPECT_FALSE(bench.done);
-  EXPECT_EQ(bench.take(), 1);
+  EXPECT_EQ(bench.received(), 1);
   EXPECT_EQ(bench.get(kSr1) & (RXNE | BTF), RXNE);
-  EXPECT_EQ(bench.take(), 2);
-  EXPECT_EQ(bench.take(), 3);
+  EXPECT_EQ(bench.received(), 2);
+  EXPECT_EQ(bench.received(), 3);
   bench.clear_stopf();
   EXPECT_TRUE(bench.reply.acked);
 }
@@ -118,7 +118,7 @@ TEST(I2cSlave, WriteThenRepeatedStartReadIsARegisterRead) {
   SlaveBench bench;
   bench.send(0x29, {0x07}, 2);
   bench.clear_addr();
-  EXPECT_EQ(bench.take(), 7);
+  EXPECT_EQ(bench.received(), 7);
   bench.wait(kSr1, ADDR, ADDR);
   EXPECT_EQ(bench.get(kSr1) & STOPF, 0u);
   EXPECT_EQ(bench.get(kSr2) & 4, 4u);
@@ -136,9 +136,9 @@ TEST(I2cSlave, TheLogSaysWhenEachByteHadPassed) {
   bench.bus().on_transaction([&logged](const io::I2cTransaction& t) { logged = t; });
   bench.send(0x29, {0x12, 0x03, 0xAB});
   bench.clear_addr();
-  EXPECT_EQ(bench.take(), 0x12);
-  EXPECT_EQ(bench.take(), 0x03);
-  EXPECT_EQ(bench.take(), 0xAB);
+  EXPECT_EQ(bench.received(), 0x12);
+  EXPECT_EQ(bench.received(), 0x03);
+  EXPECT_EQ(bench.received(), 0xAB);
   bench.finish();
   ASSERT_EQ(logged.bytes, (Bytes{0x12, 0x03, 0xAB}));
   ASSERT_EQ(logged.passed_ns.size(), 3u);
@@ -178,7 +178,7 @@ TEST(I2cSlave, GeneralCallNeedsEngc) {
   bench.send(0x00, {6});
   bench.wait(kSr1, ADDR, ADDR);
   EXPECT_EQ(bench.get(kSr2) & 0x10, 0x10u);  // GENCALL
-  EXPECT_EQ(bench.take(), 6);
+  EXPECT_EQ(bench.received(), 6);
   bench.finish();
 }
 
@@ -265,7 +265,7 @@ TEST(I2cSlave, ATransmitterWhoseClockIsGoneKeepsItsBitUntilItIsDisabled) {
   bench.put(kCr1, 1 | ACK);
   bench.send(0x29, {0x12});
   bench.clear_addr();
-  EXPECT_EQ(bench.take(), 0x12);
+  EXPECT_EQ(bench.received(), 0x12);
   bench.clear_stopf();
   bench.finish();
   EXPECT_FALSE(bench.reply.timed_out);
@@ -280,7 +280,7 @@ TEST(I2cSlave, AByteInWhichTheClockIsHeldEndsWhenItRuns) {
   bench.run(100'000);
   EXPECT_EQ(bench.get(kSr1) & RXNE, 0u);
   bench.bus().scl().force(io::Drive::none, bench.now());
-  EXPECT_EQ(bench.take(), 0x77);
+  EXPECT_EQ(bench.received(), 0x77);
   bench.clear_stopf();
   bench.finish();
   EXPECT_TRUE(bench.reply.acked);
