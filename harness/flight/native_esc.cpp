@@ -13,7 +13,7 @@ namespace {
 constexpr std::int64_t kTick_ns = 1'000'000;
 constexpr double kStanding_s =
     15e-3;                         // without a crossing, at the terminals of a bridge that is off
-constexpr int kHeld_ms = 178;      // alignment and forced steps, see Start
+constexpr int kHeld_ms = 161;      // alignment and forced steps, see Start
 constexpr int kStarting_ms = 300;  // a start that has not caught on by then is begun anew
 // The ESC32v2: 12 bits of 3.3 V behind 1.5/11.5 dividers and a shunt of 0.5 mohm with gain 50.9.
 constexpr double kVolts_per_count = 3.3 / 4096.0 * 11.5 / 1.5;
