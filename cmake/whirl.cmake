@@ -1,8 +1,9 @@
 # How targets are declared in this house.
-#   whirl_library(name SOURCES ... LINK ... [HEAVY])   static, position independent (the board is a plug-in);
-#                                               HEAVY: optimized even where only the tests count
-#   whirl_test(name SOURCES ... LINK ... LABELS ... [HEAVY] [COST s])   a GoogleTest executable; label host:
-#                                               needs the images, QEMU or a fast build, so no sanitizers;
+#   whirl_library(name SOURCES ... LINK ... [HEAVY] [APART])   static, position independent (the board is a
+#                                               plug-in); HEAVY: optimized even where only the tests count;
+#                                               APART: two of its files call different things by one name
+#   whirl_test(name SOURCES ... LINK ... LABELS ... [HEAVY] [APART] [COST s])   a GoogleTest executable; label
+#                                               host: needs the images, QEMU or a fast build, so no sanitizers;
 #                                               COST: the longest ones start first
 include_guard()
 include(cmake/mutate.cmake)
@@ -47,13 +48,22 @@ if(WHIRL_PRECOMPILE)
   target_precompile_headers(whirl_precompiled_tests PRIVATE <gtest/gtest.h>)
 endif()
 
+# Where it is the whole build that counts, four files of a target are compiled as one: most of a file's time goes
+# into the headers that all of them include. What each includes for itself, ./whirl lint sees, file by file.
+function(whirl_together name apart)
+  if(WHIRL_TOGETHER AND NOT apart)
+    set_target_properties(${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 4)
+  endif()
+endfunction()
+
 function(whirl_library name)
-  cmake_parse_arguments(ARG "HEAVY" "" "SOURCES;LINK" ${ARGN})
+  cmake_parse_arguments(ARG "HEAVY;APART" "" "SOURCES;LINK" ${ARGN})
   if(ARG_SOURCES)
     whirl_mutated_sources(${name} sources ${ARG_SOURCES})
     add_library(${name} STATIC ${sources})
     target_link_libraries(${name} PUBLIC whirl_options ${ARG_LINK})
     set_target_properties(${name} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+    whirl_together(${name} "${ARG_APART}")
     set(suffix _heavy)
     if(NOT ARG_HEAVY)
       set(suffix "")
@@ -75,12 +85,13 @@ add_custom_target(whirl_host_tests)
 add_custom_target(whirl_unit_tests)
 
 function(whirl_test name)
-  cmake_parse_arguments(ARG "HEAVY" "TIMEOUT;COST" "SOURCES;LINK;LABELS" ${ARGN})
+  cmake_parse_arguments(ARG "HEAVY;APART" "TIMEOUT;COST" "SOURCES;LINK;LABELS" ${ARGN})
   if(NOT ARG_TIMEOUT)
     set(ARG_TIMEOUT 300)
   endif()
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE whirl_options ${ARG_LINK} GTest::gtest GTest::gtest_main)
+  whirl_together(${name} "${ARG_APART}")
   if(NOT ARG_HEAVY)
     target_compile_options(${name} PRIVATE ${WHIRL_LIGHT})
     if(WHIRL_PRECOMPILE)
