@@ -1,28 +1,41 @@
 #include "base/output_file.hpp"
 
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 #include <filesystem>
 
 namespace whirl {
 
-OutputFile::OutputFile(std::string path) : path_(std::move(path)), out_(path_, std::ios::binary) {}
+OutputFile::OutputFile(std::string path) : path_(std::move(path)) {
+  errno = 0;
+  out_.open(part(), std::ios::binary);
+  if (!out_) why_not_ = errno;
+}
+
+void OutputFile::write(std::string_view text) {
+  if (!out_) return;
+  errno = 0;
+  out_.write(text.data(), static_cast<std::streamsize>(text.size()));
+  if (!out_) why_not_ = errno;
+}
 
 Result<Done> OutputFile::close() {
+  const bool open = static_cast<bool>(out_);
   errno = 0;
   out_.close();
-  if (out_) return Done{};
-  const int why = errno;
+  if (open && out_ && std::rename(part().c_str(), path_.c_str()) == 0) return Done{};
+  if (why_not_ == 0) why_not_ = errno;
   discard();
-  return Error{
-      ErrorKind::host, path_,
-      std::string("cannot be written") + (why != 0 ? std::string(": ") + std::strerror(why) : ""),
-      "is the disk full?"};
+  const std::string why = why_not_ != 0 ? std::string(": ") + std::strerror(why_not_) : "";
+  return Error{ErrorKind::host, path_, "cannot be written" + why,
+               why_not_ == 0 || why_not_ == ENOSPC ? "is the disk full?" : ""};
 }
 
 void OutputFile::discard() {
+  out_.close();
   std::error_code ignored;
-  std::filesystem::remove(path_, ignored);
+  std::filesystem::remove(part(), ignored);
 }
 
 Result<Done> write_text(const std::string& path, const std::string& text) {

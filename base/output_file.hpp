@@ -1,4 +1,5 @@
-// A file that is written whole or not at all.
+// A file that is written whole or not at all: as NAME.part until it is closed. What bore the name before
+// stays until then.
 #pragma once
 #include <fstream>
 #include <string>
@@ -12,17 +13,18 @@ class OutputFile {
  public:
   explicit OutputFile(std::string path);
 
-  void write(std::string_view text) {
-    out_.write(text.data(), static_cast<std::streamsize>(text.size()));
-  }
+  void write(std::string_view text);
   // Errors  host: it could not be written whole; nothing of it remains
   Result<Done> close();
   void discard();  // instead: it is not wanted after all
   const std::string& path() const { return path_; }
 
  private:
+  std::string part() const { return path_ + ".part"; }
+
   std::string path_;
   std::ofstream out_;
+  int why_not_ = 0;  // errno of what failed first
 };
 
 // Nothing is left of a file that could not be written whole.

@@ -61,19 +61,28 @@ int export_command(const ExportOptions& options) {
   const std::string messages = fs::is_directory(options.run, ignored)
                                    ? (fs::path(options.run) / "messages.whirl").string()
                                    : options.run;
+  const auto seen = results::look_through(messages);
+  if (!seen) return complain(seen.error());
+  // What the run itself has made of it is better than what damage has left.
+  if (seen.value().damage && options.out.empty()) {
+    Error damage = *seen.value().damage;
+    damage.cure = "nothing was written; --out FOLDER takes what is before that";
+    return complain(damage);
+  }
   const auto folder = folder_for(options.out, messages);
   if (!folder) return complain(folder.error());
   const std::vector<results::SinkType> types = wanted(options.formats);
   const auto done = results::replay(messages, folder.value(), types);
   if (!done) return complain(done.error());
-  std::vector<std::string> made;
-  for (const results::SinkType& type : types) made.emplace_back(type.makes);
-  std::printf("%s: %.9g s of %s\n", shown_path(folder.value()).c_str(),
-              static_cast<double>(done.value().end_ns) * 1e-9, word_list(made).c_str());
   int code = 0;
   for (const Error& lost : done.value().lost) code = complain(lost);
-  if (done.value().damage) return complain(*done.value().damage);
-  if (!done.value().whole) {
+  if (done.value().damage) code = complain(*done.value().damage);
+  std::vector<std::string> made;
+  for (const results::SinkType& type : types) made.emplace_back(type.makes);
+  std::printf("%s: %.9g s of %s%s\n", shown_path(folder.value()).c_str(),
+              static_cast<double>(done.value().end_ns) * 1e-9, word_list(made).c_str(),
+              done.value().lost.empty() ? "" : ", but for those above");
+  if (!done.value().whole && !done.value().damage) {
     std::fprintf(stderr, "whirl: the run was cut off there: the files end with it\n");
   }
   return code;

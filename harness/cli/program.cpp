@@ -133,6 +133,7 @@ int run_chosen(int argc, char** argv, Composition composition) {
   past->add_option("plan", history.plan, "plan name (default: all)");
   past->add_option("--expectation", history.expectation, "only names that contain this");
   past->add_option("--last", history.last, "so many runs")->check(CLI::Range(1, 1000));
+  past->add_option("--out", options.out, "where the runs went (default: results)");
 
   ExportOptions exported;
   auto* exports = app.add_subcommand("export", "a run's messages in other formats");

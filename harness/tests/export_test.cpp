@@ -41,9 +41,9 @@ TEST_F(Export, EveryMessageThatCrossedIsInIt) {
   for (const char* kind : {",1,fault,", ",0,statistics,"}) {
     EXPECT_EQ(all.find(kind), std::string::npos) << kind;  // nobody sent these
   }
-  EXPECT_NE(all.find(",0,i2c_transaction,3,\"start_ns="), std::string::npos);
+  EXPECT_NE(all.find(",0,i2c_transaction,3,,\"start_ns="), std::string::npos);
   EXPECT_NE(all.find("length=3;kept=3;bytes=1002"), std::string::npos);
-  EXPECT_NE(all.find(",0,busy_time,0,\"since_ns=0;busy_ns=40000000\""), std::string::npos);
+  EXPECT_NE(all.find(",0,busy_time,0,,\"since_ns=0;busy_ns=40000000\""), std::string::npos);
 }
 
 TEST_F(Export, WhatItCannotDoIsSaid) {
@@ -61,15 +61,22 @@ TEST_F(Export, WhatItCannotDoIsSaid) {
   EXPECT_NE(other.err.find("is no file of a run's messages"), std::string::npos) << other.err;
 }
 
-TEST_F(Export, OfACutFileWhatIsThere) {
+// Of a file that was whole once: what the run made of it is not written over.
+TEST_F(Export, OfADamagedFileWhatIsBeforeThatAndElsewhere) {
   const std::string whole = kept("messages.whirl");
   root_.write("cut/messages.whirl", whole.substr(0, whole.size() / 2));
-  const Outcome outcome = whirl(root_, {"export", root_.path() + "/cut", "--csv"});
-  EXPECT_EQ(root_.read("cut/truth.csv"),
-            kept("truth.csv").substr(0, root_.read("cut/truth.csv").size()));
-  EXPECT_GT(root_.read("cut/truth.csv").size(), 100u);
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_NE(outcome.err.find("the run was cut off there"), std::string::npos) << outcome.err;
+  root_.write("cut/truth.csv", "of the run");
+  const std::string messages = root_.path() + "/cut/messages.whirl";
+  const Outcome refused = whirl(root_, {"export", root_.path() + "/cut", "--csv"});
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_NE(refused.err.find("is damaged: 2"), std::string::npos) << refused.err;
+  EXPECT_NE(refused.err.find("nothing was written; --out FOLDER takes"), std::string::npos);
+  EXPECT_EQ(root_.read("cut/truth.csv"), "of the run");
+  const Outcome taken = whirl(root_, {"export", messages, "--csv", "--out", root_.path() + "/o"});
+  EXPECT_EQ(taken.code, 2);
+  const std::string part = root_.read("o/truth.csv");
+  EXPECT_GT(part.size(), 1000u);
+  EXPECT_EQ(part, kept("truth.csv").substr(0, part.size()));
 }
 
 }  // namespace

@@ -4,14 +4,15 @@
 
 namespace whirl::results {
 
-inline constexpr std::uint64_t kRowsUnknown = UINT64_MAX;
+inline constexpr std::uint64_t kUnknown = UINT64_MAX;
 
 struct FileStart {
   char mark[8] = {'W', 'H', 'I', 'R', 'L', 'M', 'S', 'G'};
   std::uint32_t version = 1;
   std::uint32_t head_size = 0;
-  std::uint64_t rows = kRowsUnknown;
+  std::uint64_t rows = kUnknown;
+  std::uint64_t file_size = kUnknown;
 };
-static_assert(sizeof(FileStart) == 24);
+static_assert(sizeof(FileStart) == 32);
 
 }  // namespace whirl::results

@@ -2,9 +2,9 @@
 // crossed. All other files of a run are made from it (results/sinks).
 //
 //   Written  as the run goes, in bounded memory: who is killed leaves all but the last instants
-//   Format   "WHIRLMSG", version (u32), size of the head (u32), number of rows (u64; all ones until
-//            the run is over), the head as JSON (run_head.hpp); then one zstd stream of messages as
-//            they crossed (io::Header and payload). A row is a message of the kind `signals`: one
+//   Format   "WHIRLMSG", version (u32), size of the head (u32), number of rows and of the file's bytes
+//            (u64; all ones until the run is over), the head as JSON (run_head.hpp); then messages as
+//            they crossed (io::Header and payload), in zstd frames of 1 MiB with checksums. A row is a message of the kind `signals`: one
 //            64-bit number per column, XORed with the row before, most significant bytes of all
 //            columns first, which halves what zstd leaves of it
 //   Valid    on machines of this byte order, by a whirl of the same version of the messages
@@ -30,7 +30,8 @@ class MessageWriter {
 
   void add(const io::Batch& batch);
   void add_row(std::int64_t t_ns, std::span<const double> values);  // one per column
-  // Errors  host: what could not be written since it was opened; the file is then removed.
+  // Errors  host: what could not be written since it was opened. What could be is left, as of a run
+  //         that was cut off; of a file that could not even begin nothing is.
   Result<Done> finish();
 
   const std::string& path() const;
@@ -55,7 +56,7 @@ class MessageReader {
   const RunHead& head() const;
   std::optional<std::uint64_t> rows() const;  // nothing: its run was cut off
 
-  // Errors  bad_input: what follows is damaged. The end of a file whose run was cut off is an end.
+  // Errors  bad_input: what follows is damaged, or missing. Where a run was cut off is an end.
   Result<Next> next();
   const io::Reader& message() const;  // until the following next(); of a row: its header
   std::span<const double> row() const;

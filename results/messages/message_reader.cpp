@@ -44,10 +44,12 @@ struct MessageReader::Inner {
     if (!in.read(text.data(), static_cast<std::streamsize>(text.size()))) {
       return wrong("is cut off in its head");
     }
+    read_B = sizeof start + text.size();
     auto read = read_head(text);
     if (!read) return wrong(read.error().what);
     head = std::move(read.value());
-    if (start.rows != kRowsUnknown) rows = start.rows;
+    if (start.rows != kUnknown) rows = start.rows;
+    file_size = start.file_size;
     row.resize(head.columns.size());
     row_code.emplace(head.columns.size());
     return Done{};
@@ -74,22 +76,34 @@ struct MessageReader::Inner {
       source = {packed.data(), static_cast<std::size_t>(in.gcount()), 0};
       if (in.bad()) return wrong(std::string("cannot be read: ") + std::strerror(errno));
     }
-    const std::size_t before = plain.size();
+    const std::size_t before = plain.size(), was = source.pos;
     plain.resize(before + ZSTD_DStreamOutSize());
     ZSTD_outBuffer to{plain.data() + before, plain.size() - before, 0};
     const bool fed = source.pos < source.size;
     const std::size_t status = ZSTD_decompressStream(context.get(), &to, &source);
     plain.resize(before + to.pos);
+    read_B += source.pos - was;
     if (ZSTD_isError(status) != 0) {
       return wrong(std::string("is damaged: ") + ZSTD_getErrorName(status));
     }
     return fed || to.pos > 0;
   }
 
+  // Of a run that came to its end the file says how much there is.
+  Result<Next> end() const {
+    if (!rows || (rows_read == *rows && read_B == file_size && taken == plain.size())) {
+      return Next::end;
+    }
+    return wrong("is damaged: " + std::to_string(rows_read) + " of " + std::to_string(*rows) +
+                 " rows are there, " + std::to_string(read_B) + " of " + std::to_string(file_size) +
+                 " bytes");
+  }
+
   std::string path;
   std::ifstream in;
   RunHead head;
   std::optional<std::uint64_t> rows;
+  std::uint64_t file_size = kUnknown, read_B = 0, rows_read = 0;
   std::optional<RowCode> row_code;
   std::vector<double> row;
   std::unique_ptr<ZSTD_DCtx, decltype(&ZSTD_freeDCtx)> context;
@@ -129,14 +143,14 @@ Result<MessageReader::Next> MessageReader::next() {
   Inner& i = *inner_;
   const auto begin = i.ahead(sizeof(io::Header));
   if (!begin) return begin.error();
-  if (begin.value() == nullptr) return Next::end;
+  if (begin.value() == nullptr) return i.end();
   io::Header header;
   std::memcpy(&header, begin.value(), sizeof header);
   if (header.size > kLargest_message) return i.wrong("is damaged: a message has no end");
   const std::size_t size = sizeof header + header.size;
   const auto whole = i.ahead(size);
   if (!whole) return whole.error();
-  if (whole.value() == nullptr) return Next::end;
+  if (whole.value() == nullptr) return i.end();
   i.message = io::Reader({whole.value(), size});
   i.message.next();
   i.taken += size;
@@ -146,6 +160,7 @@ Result<MessageReader::Next> MessageReader::next() {
   }
   if (header.size != i.row.size() * 8) return i.wrong("is damaged: a row of another length");
   i.row_code->decode(i.message.payload(), i.row);
+  ++i.rows_read;
   return Next::row;
 }
 

@@ -15,6 +15,8 @@ namespace {
 
 // Level 1 halves a flight; level 6 takes 3.6 times as long and saves nothing more.
 constexpr int kLevel = 1;
+// A frame's end carries its checksum, and a reader trusts what is before it.
+constexpr std::size_t kFrame_B = 1u << 20;
 
 }  // namespace
 
@@ -31,12 +33,15 @@ struct MessageWriter::Inner {
     out.write(reinterpret_cast<const char*>(&start), sizeof start);
     out.write(text.data(), static_cast<std::streamsize>(text.size()));
     check_state();
-    if (context == nullptr ||
-        ZSTD_isError(ZSTD_CCtx_setParameter(context.get(), ZSTD_c_compressionLevel, kLevel)) != 0) {
+    if (context == nullptr || !set(ZSTD_c_compressionLevel, kLevel) ||
+        !set(ZSTD_c_checksumFlag, 1)) {
       lose("zstd gives no stream");
     }
   }
 
+  bool set(ZSTD_cParameter parameter, int value) const {
+    return ZSTD_isError(ZSTD_CCtx_setParameter(context.get(), parameter, value)) == 0;
+  }
   void lose(const std::string& why) {
     if (lost.empty()) lost = why;
   }
@@ -57,11 +62,21 @@ struct MessageWriter::Inner {
     }
   }
 
+  void add(const void* data, std::size_t size) {
+    put(data, size);
+    in_frame += size;
+    if (in_frame < kFrame_B) return;
+    put(nullptr, 0, ZSTD_e_end);
+    in_frame = 0;
+  }
+
   void close() {
     put(nullptr, 0, ZSTD_e_end);
+    if (!lost.empty()) return out.close();
     errno = 0;
+    const std::uint64_t figures[] = {rows, static_cast<std::uint64_t>(out.tellp())};
     out.seekp(offsetof(FileStart, rows));
-    out.write(reinterpret_cast<const char*>(&rows), sizeof rows);
+    out.write(reinterpret_cast<const char*>(figures), sizeof figures);
     out.close();
     check_state();
   }
@@ -74,6 +89,7 @@ struct MessageWriter::Inner {
   std::unique_ptr<ZSTD_CCtx, decltype(&ZSTD_freeCCtx)> context;
   std::vector<char> packed;
   std::uint64_t rows = 0;
+  std::size_t in_frame = 0;  // bytes, before they are packed
 };
 
 MessageWriter::MessageWriter(const std::string& path, const RunHead& head)
@@ -83,14 +99,14 @@ MessageWriter::MessageWriter(MessageWriter&&) noexcept = default;
 MessageWriter& MessageWriter::operator=(MessageWriter&&) noexcept = default;
 
 void MessageWriter::add(const io::Batch& batch) {
-  inner_->put(batch.bytes().data(), batch.bytes().size());
+  inner_->add(batch.bytes().data(), batch.bytes().size());
 }
 
 void MessageWriter::add_row(std::int64_t t_ns, std::span<const double> values) {
   const auto code = inner_->row_code.code(values);
   const io::Header header{t_ns, io::Kind::signals, 0, 0, static_cast<std::uint32_t>(code.size())};
-  inner_->put(&header, sizeof header);
-  inner_->put(code.data(), code.size());
+  inner_->add(&header, sizeof header);
+  inner_->add(code.data(), code.size());
   ++inner_->rows;
 }
 
@@ -108,7 +124,10 @@ Result<Done> MessageWriter::finish() {
   inner_->close();
   if (inner_->lost.empty()) return Done{};
   std::error_code ignored;
-  std::filesystem::remove(inner_->path, ignored);  // half of it would only take room
+  if (std::filesystem::is_regular_file(inner_->path, ignored) &&
+      std::filesystem::file_size(inner_->path, ignored) <= sizeof(FileStart)) {
+    std::filesystem::remove(inner_->path, ignored);
+  }
   return Error{ErrorKind::host, inner_->path, "cannot be written: " + inner_->lost,
                "is the disk full?"};
 }

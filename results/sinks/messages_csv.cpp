@@ -18,11 +18,31 @@ std::string quoted(const std::string& text) {
   return out + '"';
 }
 
+std::string entry(const std::vector<std::string>& names, std::size_t number) {
+  return number < names.size() ? names[number] : "";
+}
+
+// The pin, device or function that its number stands for; empty: none.
+std::string thing_of(const io::Reader& message, const NodeHead& node) {
+  switch (message.header().kind) {
+    case io::Kind::pin_edge:
+      return entry(node.pins, message.header().port);
+    case io::Kind::data_ready:
+      return entry(node.devices, message.header().port);
+    case io::Kind::spi_transaction:
+      return entry(node.devices, message.as<io::BusTransaction>().address);
+    case io::Kind::function_call:
+      return entry(node.watch, message.header().port);
+    default:
+      return "";
+  }
+}
+
 class MessagesCsv : public Sink {
  public:
-  explicit MessagesCsv(const SinkSetup& setup) : out_(setup.folder + "/messages.csv") {
-    for (const NodeHead& node : setup.head.nodes) nodes_.push_back(node.name);
-    out_.write("t_s,board,to_board,kind,port,fields\n");
+  explicit MessagesCsv(const SinkSetup& setup)
+      : out_(setup.folder + "/messages.csv"), nodes_(setup.head.nodes) {
+    out_.write("t_s,board,to_board,kind,port,of,fields\n");
   }
 
   void on_message(const io::Reader& message) override {
@@ -33,10 +53,13 @@ class MessagesCsv : public Sink {
     char text[96];
     std::snprintf(text, sizeof text, "%.9f,", static_cast<double>(header.t_ns) * 1e-9);
     line_ = text;
-    line_ += nodes_[header.board];
+    const NodeHead& node = nodes_[header.board];
+    line_ += node.name;
     line_ += info->to_board ? ",1," : ",0,";
     line_.append(info->name);
     line_ += "," + std::to_string(header.port) + ",";
+    const std::string of = thing_of(message, node);
+    line_ += (of.empty() ? of : quoted(of)) + ",";
     line_ += quoted(io::fields_text(*info, message.payload())) + "\n";
     out_.write(line_);
   }
@@ -48,7 +71,7 @@ class MessagesCsv : public Sink {
 
  private:
   OutputFile out_;
-  std::vector<std::string> nodes_;
+  std::vector<NodeHead> nodes_;
   std::string line_;
 };
 

@@ -5,18 +5,6 @@
 namespace whirl::results {
 namespace {
 
-// Of a run that was cut off nobody wrote down how many rows there are.
-Result<std::uint64_t> count_rows(const std::string& messages) {
-  auto reader = MessageReader::open(messages);
-  if (!reader) return reader.error();
-  std::uint64_t rows = 0;
-  for (;;) {
-    const auto next = reader.value().next();
-    if (!next || next.value() == MessageReader::Next::end) return rows;
-    rows += next.value() == MessageReader::Next::row ? 1 : 0;
-  }
-}
-
 void pour(MessageReader& reader, const std::vector<Sink*>& sinks, Replayed& done) {
   for (;;) {
     const auto next = reader.next();
@@ -42,22 +30,36 @@ void pour(MessageReader& reader, const std::vector<Sink*>& sinks, Replayed& done
 
 }  // namespace
 
+Result<Replayed> look_through(const std::string& messages) {
+  auto reader = MessageReader::open(messages);
+  if (!reader) return reader.error();
+  Replayed done;
+  pour(reader.value(), {}, done);
+  done.whole = reader.value().rows().has_value() && !done.damage;
+  return done;
+}
+
 Result<Replayed> replay(const std::string& messages, const std::string& folder,
                         const std::vector<SinkType>& types, const std::vector<Sink*>& others) {
   auto reader = MessageReader::open(messages);
   if (!reader) return reader.error();
   Replayed done;
   const std::optional<std::uint64_t> stated = reader.value().rows();
-  const auto rows = stated ? Result<std::uint64_t>(*stated) : count_rows(messages);
-  if (!rows) return rows.error();
+  // Of a run that was cut off nobody wrote down how many rows there are.
+  std::uint64_t rows = stated.value_or(0);
+  if (!stated) {
+    const auto counted = look_through(messages);
+    if (!counted) return counted.error();
+    rows = counted.value().rows;
+  }
   std::vector<std::unique_ptr<Sink>> made;
   std::vector<Sink*> sinks = others;
   for (const SinkType& type : types) {
-    made.push_back(type.make({reader.value().head(), folder, rows.value()}));
+    made.push_back(type.make({reader.value().head(), folder, rows}));
     sinks.push_back(made.back().get());
   }
   pour(reader.value(), sinks, done);
-  done.whole = stated == done.rows;
+  done.whole = stated.has_value() && !done.damage;
   for (Sink* sink : sinks) {
     for (Error& lost : sink->finish()) done.lost.push_back(std::move(lost));
   }

@@ -18,8 +18,12 @@ struct Replayed {
   std::optional<Error> damage;  // what follows could not be read
 };
 
-// `sinks` are given what is in the file, up to its damage.
-// Errors  bad_input: no such file, or no file of messages; then no sink has been made
+// How much is in it, and in which state.
+// Errors  bad_input: no such file, or no file of messages
+Result<Replayed> look_through(const std::string& messages);
+
+// The sinks are given what is in the file, up to its damage.
+// Errors  as above; then no sink has been made
 Result<Replayed> replay(const std::string& messages, const std::string& folder,
                         const std::vector<SinkType>& types, const std::vector<Sink*>& others = {});
 

@@ -1,4 +1,5 @@
 // truth.csv: every signal at every step.
+#include <algorithm>
 #include <charconv>
 
 #include "base/output_file.hpp"
@@ -14,7 +15,8 @@ constexpr std::size_t kFlush_B = 60'000;
 class TruthCsv : public Sink {
  public:
   explicit TruthCsv(const SinkSetup& setup)
-      : out_(setup.folder + "/truth.csv"), stride_(1 + setup.rows / kMostRows) {
+      : out_(setup.folder + "/truth.csv"),
+        stride_(std::max<std::uint64_t>(1, (setup.rows + kMostRows - 1) / kMostRows)) {
     text_ = "t_s";
     for (const Column& column : setup.head.columns) {
       text_ += "," + column.name + (column.unit_suffix.empty() ? "" : "_" + column.unit_suffix);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <random>
 
 #include "base/scratch_folder.hpp"
 
@@ -115,12 +116,38 @@ TEST(MessageFile, ACutFileEndsWhereItIsCut) {
   const Seen seen = read_all(in.value());
   EXPECT_EQ(seen.damage, "");
   EXPECT_LT(seen.rows, kSteps);
+}
 
-  write(folder.file("m"));
-  fs::resize_file(folder.file("m"), fs::file_size(folder.file("m")) - 1);
-  auto almost = MessageReader::open(folder.file("m"));
-  ASSERT_TRUE(almost);
-  EXPECT_EQ(read_all(almost.value()).damage, "");
+// A run that came to its end: any byte that is missing or other is damage.
+TEST(MessageFile, EveryByteOfAWholeFileCounts) {
+  const ScratchFolder folder;
+  const auto damage = [&folder](auto change) {
+    write(folder.file("m"));
+    change(folder.file("m"), static_cast<std::streamoff>(fs::file_size(folder.file("m"))));
+    auto in = MessageReader::open(folder.file("m"));
+    return in ? read_all(in.value()).damage : in.error().what;
+  };
+  EXPECT_EQ(damage([](const std::string&, std::streamoff) {}), "");
+  const std::string cut =
+      damage([](const std::string& path, std::streamoff size) { fs::resize_file(path, size - 1); });
+  EXPECT_TRUE(cut.starts_with("is damaged: 3000 of 3000 rows are there, ")) << cut;
+  EXPECT_NE(damage([](const std::string& path, std::streamoff) {
+              std::ofstream(path, std::ios::binary | std::ios::app) << 'x';
+            }),
+            "");
+  std::mt19937 random(1);
+  for (int i = 0; i < 50; ++i) {
+    const std::string flipped = damage([&random](const std::string& path, std::streamoff size) {
+      // Behind the head, which is text.
+      const auto at = size / 50 + static_cast<std::streamoff>(random() % (size / 50 * 49));
+      std::fstream file(path, std::ios::binary | std::ios::in | std::ios::out);
+      file.seekg(at);
+      const char byte = static_cast<char>(file.get() ^ (1 << random() % 8));
+      file.seekp(at);
+      file.put(byte);
+    });
+    EXPECT_NE(flipped, "") << i;
+  }
 }
 
 std::string refusal(const std::string& path) {
@@ -147,7 +174,7 @@ TEST(MessageFile, WhatIsNoneIsRefusedWithTheReason) {
   overwrite(folder.file("m"), 12, "\xFF\xFF\xFF\x7F");
   EXPECT_EQ(refusal(folder.file("m")), "is damaged: its head has no end");
   write(folder.file("m"));
-  overwrite(folder.file("m"), 24, "[");
+  overwrite(folder.file("m"), 32, "[");
   EXPECT_EQ(refusal(folder.file("m")),
             "is no file of a run's messages: its first lines do not say of which run");
 }

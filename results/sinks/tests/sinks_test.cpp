@@ -44,7 +44,6 @@ class Sinks : public testing::Test {
   RunHead head_{"p", 1, 1'000'000, {{"climb", "mps", "m/s"}}, {{"", {}, {}, {}}}};
   int spike_ = -1;
 
- private:
   ScratchFolder folder_;
 };
 
@@ -134,12 +133,38 @@ TEST_F(Sinks, MessagesAreWrittenFieldByField) {
   io::Batch batch;
   batch.add(io::Kind::finding, 0, 1'500'000, "spi1\0a \"b\"", 10);
   batch.add(io::Header{2, static_cast<io::Kind>(200), 0, 7, 1}, std::vector<std::uint8_t>{0xAB});
+  batch.add(io::Kind::pin_edge, 1, 3, io::PinEdge{1, {}});
+  head_.nodes[0].pins = {"other", "led, red"};
   write(1, batch);
   through(kMessages_csv);
   EXPECT_EQ(contents(file("messages.csv")),
-            "t_s,board,to_board,kind,port,fields\n"
-            "0.001500000,,0,finding,0,\"text=spi1 a \"\"b\"\"\"\n"
-            "0.000000002,,0,unknown,7,\"bytes=AB\"\n");
+            "t_s,board,to_board,kind,port,of,fields\n"
+            "0.001500000,,0,finding,0,,\"text=spi1 a \"\"b\"\"\"\n"
+            "0.000000002,,0,unknown,7,,\"bytes=AB\"\n"
+            "0.000000003,,0,pin_edge,1,\"led, red\",\"level=1\"\n");
+}
+
+// As `whirl export` does over the files of a run: what was there stays until what is new is whole.
+TEST_F(Sinks, AFileThatIsLostLeavesTheOneBeforeIt) {
+  write(3, sent({"hello"}));
+  ASSERT_TRUE(write_text(file("truth.csv"), "of the run"));
+  ASSERT_TRUE(write_text(file("telemetry.tlog"), "of somebody"));
+  fs::create_directory(file("truth.csv.part"));  // in the way
+  const auto done = replay(file("messages.whirl"), folder_.path(), {kTruth_csv, kTelemetry});
+  ASSERT_TRUE(done);
+  ASSERT_EQ(done.value().lost.size(), 1u);
+  EXPECT_EQ(done.value().lost[0].what, "cannot be written: Is a directory");
+  EXPECT_EQ(contents(file("truth.csv")), "of the run");
+  EXPECT_EQ(contents(file("telemetry.tlog")), "of somebody");
+  EXPECT_EQ(contents(file("serial.txt")), "hello");
+  EXPECT_FALSE(fs::exists(file("serial.txt.part")));
+}
+
+TEST_F(Sinks, ARunOfTwoHundredThousandRowsIsKeptWhole) {
+  write(200'000, {});
+  through(kTruth_csv);
+  const std::string csv = contents(file("truth.csv"));
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 200'001);
 }
 
 TEST_F(Sinks, WhatCannotBeWrittenIsSaidAndTheOthersAreThere) {
