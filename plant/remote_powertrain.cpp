@@ -43,12 +43,16 @@ RemoteShaftLoad RemotePowertrain::load(std::size_t motor) const {
 }
 
 void RemotePowertrain::receive(std::size_t motor, const RemoteShaftState& state) {
-  WHIRL_CHECK(std::isfinite(state.speed_radps) && std::isfinite(state.source_current_A), motor);
+  const double all = state.speed_radps + state.source_current_A + state.winding_peak_A +
+                     state.electrical_in_J + state.copper_J + state.diode_J + state.no_load_J +
+                     state.magnetic_J + state.kinetic_J + state.air_J;
+  WHIRL_CHECK(std::isfinite(all), motor);
   WHIRL_CHECK(!received_.at(motor).has_value(), motor);
   received_[motor] = state;
 }
 
 void RemotePowertrain::set_speed(std::size_t motor, double speed_radps) {
+  WHIRL_CHECK(std::isfinite(speed_radps), motor);
   shafts_.at(motor).speed_radps = speed_radps;
 }
 
@@ -63,6 +67,7 @@ void RemotePowertrain::command(std::size_t motor, const MotorCommand& command) {
 void RemotePowertrain::set_loads(std::span<const ShaftLoad> loads) {
   WHIRL_CHECK(loads.size() == count(), loads.size(), count());
   for (std::size_t i = 0; i < count(); ++i) {
+    WHIRL_CHECK(std::isfinite(loads[i].quadratic_Nm_s2) && std::isfinite(loads[i].constant_Nm), i);
     const double w = std::max(kSlow_radps, std::abs(shafts_[i].speed_radps));
     torque_Nm_s2_[i] = loads[i].quadratic_Nm_s2 + loads[i].constant_Nm / (w * w);
   }

@@ -24,14 +24,13 @@ std::string line_of(const lua::Table& entry) {
 }
 
 // Plans speak of it: as "esc1", "NODE/esc1", and of all ESCs as "esc".
-void check_name(const lua::Table& entry, const std::string& name) {
-  refuse_other_bytes(entry, "name", name);
+void check_name(const lua::Table& entry, const char* key, const std::string& name) {
+  refuse_other_bytes(entry, key, name);
   const bool odd = std::any_of(name.begin(), name.end(), [](char c) {
     return c == '/' || std::iscntrl(static_cast<unsigned char>(c)) != 0;
   });
-  if (odd)
-    entry.refuse("name", "has a '/' or what no line shows", "letters, digits and '_' are well");
-  if (name == "esc") entry.refuse("name", "'esc' means every ESC of a board", "call it esc1");
+  if (odd) entry.refuse(key, "has a '/' or what no line shows", "letters, digits and '_' are well");
+  if (name == "esc") entry.refuse(key, "'esc' means every ESC of a board", "call it esc1");
 }
 
 std::vector<BoardPin> read_pins(const lua::Table& file) {
@@ -40,7 +39,7 @@ std::vector<BoardPin> read_pins(const lua::Table& file) {
     BoardPin pin{.name = entry.text("name"), .pin = entry.text("pin")};
     if (entry.has("pull")) pin.pull = entry.choice("pull", {"up", "down"});
     if (entry.has("bus")) pin.bus = entry.text("bus");
-    check_name(entry, pin.name);
+    check_name(entry, "name", pin.name);
     refuse_other_bytes(entry, "pin", pin.pin + pin.bus);
     pin.place = line_of(entry);
     for (const BoardPin& other : pins) {
@@ -56,7 +55,7 @@ void read_devices(const lua::Table& file, const rack::DeviceTypes& types, BoardD
   const std::vector<lua::Table> entries = file.tables("devices");
   for (const lua::Table& entry : entries) {
     board.devices.push_back(read_device(entry, types));
-    check_name(entry, board.devices.back().name);
+    check_name(entry, "name", board.devices.back().name);
     board.devices.back().place = line_of(entry);
   }
   if (const auto wrong = rack::check_sharing(board, types)) {
@@ -94,8 +93,11 @@ Result<BoardDescription> read_board(const std::string& path, const rack::DeviceT
   board.pins = read_pins(t);
   read_devices(t, types, board);
   board.watch = t.texts("watch");
-  for (const std::string& name : board.watch) refuse_other_bytes(t, "watch", name);
-  refuse_other_bytes(t, "board", board.name);
+  for (const std::string& name : board.watch) {
+    refuse_other_bytes(t, "watch", name);
+    if (name.empty()) t.refuse("watch", "has an empty name");
+  }
+  check_name(t, "board", board.name);
   refuse_other_bytes(t, "mcu", board.mcu);
   if (auto good = t.finish(); !good) return good.error();
   return board;

@@ -41,7 +41,12 @@ void read_constants(const lua::Table& t, fw::esc::Calibration& c) {
   if (t.has("file")) read_calibration_file(t, c);
   for (const fw::esc::Parameter& parameter : fw::esc::kParameters) {
     float& value = parameter.in(c);
-    value = static_cast<float>(t.number_or(parameter.name, static_cast<double>(value)));
+    constexpr double kMost = 1e12;  // the image counts in single precision
+    value = static_cast<float>(
+        t.number_or(parameter.name, static_cast<double>(value), lua::between(-kMost, kMost)));
+  }
+  for (const char* name : {"kt", "resistance", "inductance", "inertia"}) {
+    if (t.has(name) && !(t.number(name) > 0.0)) t.refuse(name, "must be above 0");
   }
   c.identified = t.flag_or("identified", c.identified);
 }
@@ -57,9 +62,10 @@ flight::EscParams read_esc(const lua::Table& t) {
   const auto read = [&t](const char* key, Dimension dimension, float& value, lua::Range range) {
     value = static_cast<float>(t.quantity_or(key, dimension, static_cast<double>(value), range));
   };
-  read("max_current", Dimension::current, c.motor.max_current_A, lua::above(0.0));
-  read("brake_current", Dimension::current, c.motor.max_braking_A, lua::at_least(0.0));
-  read("arming_voltage", Dimension::voltage, c.arming_voltage_V, lua::at_least(0.0));
+  read("max_current", Dimension::current, c.motor.max_current_A,
+       {.low = 0.0, .high = 1000.0, .low_open = true});
+  read("brake_current", Dimension::current, c.motor.max_braking_A, lua::between(0.0, 1000.0));
+  read("arming_voltage", Dimension::voltage, c.arming_voltage_V, lua::between(0.0, 1000.0));
   return e;
 }
 

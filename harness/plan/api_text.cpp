@@ -4,6 +4,7 @@
 
 #include "harness/lua/pattern.hpp"
 #include "harness/plan/raise.hpp"
+#include "harness/plan/requests.hpp"
 #include "harness/plan/values.hpp"
 
 namespace whirl::plan {
@@ -65,6 +66,7 @@ int ask(lua_State* L) {
   Script& self = Script::of(L);
   Stage& stage = self.stage();
   const std::string line = check_text(L, kLine, "a line");
+  if (!is_one_line(line)) raise(L, "t:ask: is not one line of ASCII text");
   if (!lua_isnoneornil(L, kPattern)) check_text(L, kPattern, "a pattern");
   lua_settop(L, kLimit);
   if (lua_isnil(L, kLimit)) {

@@ -262,6 +262,10 @@ int bus(lua_State* L) {
   w.bus = numbered_bus(L, *device);
   w.address = w.spi ? board.number(at.rest) : device->address;
   if (!w.spi && w.address < 0) raise(L, name + " has no address on its bus: nobody calls it");
+  for (const char* key : {"direction", "nacks"}) {
+    if (w.spi && given.has(key))
+      given.refuse(key, "SPI goes both ways at once and acknowledges nothing");
+  }
   if (given.has("direction")) {
     w.any_direction = false;
     w.read = given.choice("direction", {"read", "write"}) == "read";

@@ -1,11 +1,18 @@
 #include "harness/plan/requests.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <sstream>
 
 namespace whirl::plan {
 namespace {
+
+std::string typed_line(const lua::Table& t) {
+  std::string line = t.text("line");
+  if (!is_one_line(line)) t.refuse("line", "is not one line of ASCII text");
+  return line;
+}
 
 using lua::above;
 using lua::at_least;
@@ -100,7 +107,7 @@ void read_turning(const Table& t, std::vector<Command>& all) {
         SetPointRate{t.quantity("setpoint_rate", Dimension::frequency, between(1.0, 10e3))});
   }
   if (t.has("pulses")) all.emplace_back(read_pulses(t.table("pulses")));
-  if (t.has("line")) all.emplace_back(Line{t.text("line")});
+  if (t.has("line")) all.emplace_back(Line{typed_line(t)});
   if (t.has("brake")) {
     all.emplace_back(Brake{t.quantity("brake", Dimension::torque, between(0.0, 10.0))});
   }
@@ -131,6 +138,10 @@ Result<Done> placed(const lua::Table& t, Result<Done> done) {
 }
 
 }  // namespace
+
+bool is_one_line(const std::string& text) {
+  return std::all_of(text.begin(), text.end(), [](char c) { return c >= ' ' && c <= '~'; });
+}
 
 Result<std::vector<Command>> read_commands(const Table& t) {
   std::vector<Command> all;

@@ -10,6 +10,9 @@
 
 namespace whirl::plan {
 
+// What a terminal can be typed: no control characters, and ASCII only.
+bool is_one_line(const std::string& text);
+
 // { arm = true }, { thrust = "2 N", silence = true }: in the order in which a world shall take them.
 // Errors   bad_input, with the place of the table: what the table holds is wrong, or nothing
 Result<std::vector<Command>> read_commands(const lua::Table& t);

@@ -190,21 +190,31 @@ Result<Script::State> Script::advance() {
   int results = 0;
   const int status = lua_resume(thread_, L, started_ ? 0 : 1, &results);
   started_ = true;
-  look_at_guarded();                               // also those that begin now
-  if (status == LUA_YIELD) return State::waiting;  // no call of ours yields a value
-  if (status == LUA_OK) return State::done;
-  return lua::Sandbox::raised(thread_, status);
+  look_at_guarded();  // also those that begin now
+  const auto begun =
+      file_.sandbox().protect(0, [this](lua_State* l) { check_guarding_conditions(l); });
+  if (status != LUA_YIELD && status != LUA_OK) return lua::Sandbox::raised(thread_, status);
+  if (!begun) return begun.error();
+  return status == LUA_YIELD ? State::waiting : State::done;  // no call of ours yields a value
 }
 
 void Script::check_conditions(lua_State* L) {
-  const std::int64_t now = stage_.now_ns;
   if (wake_condition_ != -1 && !condition_met_) condition_met_ = condition(L, wake_condition_);
-  for (Guard& guard : guards) {
-    if (guard.condition_ref == -1 || now > guard.to_ns) continue;
-    ++guard.evaluated;
-    if (condition(L, guard.condition_ref)) continue;
-    if (!guard.first_ns) guard.first_ns = now;
-    guard.violated_ns += stage_.rows.step_ns();
+  check_guarding_conditions(L);
+}
+
+void Script::check_guarding_conditions(lua_State* L) {
+  const std::int64_t now = stage_.now_ns;
+  // By number: a condition may set guards.
+  for (std::size_t i = 0; i < guards.size(); ++i) {
+    if (guards[i].condition_ref == -1 || now > guards[i].to_ns || guards[i].evaluated_ns == now) {
+      continue;
+    }
+    guards[i].evaluated_ns = now;
+    ++guards[i].evaluated;
+    if (condition(L, guards[i].condition_ref)) continue;
+    if (!guards[i].first_ns) guards[i].first_ns = now;
+    guards[i].violated_ns += stage_.rows.step_ns();
   }
 }
 

@@ -86,8 +86,9 @@ struct Guard {  // t:always
   std::int64_t from_ns = 0, to_ns = kForever;
   std::optional<How> how;
   std::optional<Limit> low, high;
-  Extremes seen;                 // of a signal
-  std::int64_t evaluated = 0;    // of a condition: how often,
+  Extremes seen;                   // of a signal
+  std::int64_t evaluated_ns = -1;  // of a condition: when last, how often,
+  std::int64_t evaluated = 0;
   std::int64_t violated_ns = 0;  // how long it did not hold, and since when
   std::optional<std::int64_t> first_ns;
 };
@@ -151,6 +152,7 @@ class Script {
   };
   void start(lua_State* L, const Plan& plan);
   void check_conditions(lua_State* L);
+  void check_guarding_conditions(lua_State* L);
   void look_at_guarded();
   void judge_guard(const Guard& guard, bool completed);
   void judge_windows(bool completed);

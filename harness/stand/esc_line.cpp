@@ -22,17 +22,17 @@ EscLine::EscLine(std::uint16_t port) : port_(port) {
 void EscLine::say(const std::string& line) {
   to_send_ += line + "\r\n";
   echo_ = line;
+  open_.push_back(line);
 }
 
 Result<Done> EscLine::ask(const std::string& line) {
-  if (!open_question_.empty()) {
+  if (!open_.empty()) {
     return Error{ErrorKind::bad_input, "",
-                 "'" + open_question_ +
+                 "'" + open_.front() +
                      "' is not answered yet: what it says late could not be told " +
                      "from the answer to '" + line + "'",
                  "give the first one a longer limit"};
   }
-  open_question_ = line;
   say(line);
   return Done{};
 }
@@ -46,7 +46,7 @@ void EscLine::hear(const std::string& line) {
   }
   if (!to_send_.empty()) return;  // it cannot be about what has not been sent
   heard_.push_back(line);
-  open_question_.clear();
+  if (!open_.empty()) open_.erase(open_.begin());
 }
 
 void EscLine::send(std::int64_t t_ns, io::Batch& sensed) {

@@ -21,8 +21,8 @@ class EscLine {
   EscLine& operator=(const EscLine&) = delete;
 
   void say(const std::string& line);
-  // A line whose first line of answer is waited for. Refused while one before it is not answered: the
-  // protocol names no question in its answers.
+  // A line whose first line of answer is waited for. Refused while one before it, however it was said, is
+  // not answered: the protocol names no question in its answers.
   Result<Done> ask(const std::string& line);
   // In order; no echoes, and nothing that came between a line's say() and its sending.
   const std::vector<std::string>& heard() const { return heard_; }
@@ -45,7 +45,7 @@ class EscLine {
   io::EscStreamDecoder decoder_;
   std::vector<std::string> heard_;
   std::string echo_;  // the line that a terminal which echoes would send back next; empty: none
-  std::string open_question_;  // empty: none
+  std::vector<std::string> open_;  // lines of which nothing has been heard yet
   std::optional<io::EscSample> sample_;
   std::int64_t sample_ns_ = 0, period_ns_ = 0, now_ns_ = 0;
 };

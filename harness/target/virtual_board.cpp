@@ -112,8 +112,8 @@ struct Launch {
 Result<Launch> launch_of(const BoardStart& start) {
   const board::Part* part = board::find_part(start.board.mcu);
   if (part == nullptr) {
-    return Error{ErrorKind::bad_input, "board", "unknown mcu '" + start.board.mcu + "'",
-                 "use stm32f405rg or stm32f103cb"};
+    return Error{ErrorKind::bad_input, start.board.file.empty() ? "board" : start.board.file,
+                 "unknown mcu '" + start.board.mcu + "'", "use stm32f405rg or stm32f103cb"};
   }
   const std::int64_t ns = start.board.ns_per_instruction;
   Launch launch{std::string(part->qemu_machine), 0, start.run.gdb_port};

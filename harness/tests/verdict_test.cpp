@@ -62,8 +62,10 @@ TEST(Verdict, AWatchdogsResetFailsByItsNameAndTime) {
 
 TEST(Verdict, WhatWasNotShownIsNoPass) {
   check({
-      {R"(t:always("never true", function() return false end))", "flight", 3,
-       "was never evaluated"},
+      {R"(t:always("always true", function() return true end))", "flight", 3,
+       "was never watched: its time is empty"},
+      {R"(t:always("never true", function() return false end))", "flight", 1,
+       "first violated at 0.000000 s"},
       {R"(t:always("height", "1 s"):at_most "1 m")", "flight", 3, "never watched"},
       {R"(t:always("height"):at_most "1 m")", "flight", 3, "never watched"},
       {R"(t:always("height", "1 s"):at_most "1 m"  t:wait "100 ms")", "flight", 3,

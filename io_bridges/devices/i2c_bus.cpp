@@ -16,7 +16,7 @@ void I2cBus::finish(bool repeated, Nanoseconds now) {
 }
 
 void I2cBus::byte_passed(Nanoseconds now) {
-  current_.passed_ns.push_back(static_cast<std::uint32_t>(now - current_.start_ns));
+  current_.passed_ns.push_back(now);
 }
 
 void I2cBus::start(Nanoseconds now) {

@@ -29,7 +29,7 @@ struct I2cTransaction {
   bool repeated_start = false;  // ended by a repeated START instead of STOP
   bool all_acked = true;        // every written byte was acknowledged
   std::vector<std::uint8_t> bytes;
-  std::vector<std::uint32_t> passed_ns;  // since start_ns: the ninth clock of each
+  std::vector<Nanoseconds> passed_ns;  // the ninth clock of each
 };
 
 // Faults that act on bytes and acknowledge bits on their way. Asked only where a target answers;

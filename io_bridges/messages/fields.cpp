@@ -232,7 +232,8 @@ void add_transfer(std::size_t kept, std::span<const std::uint8_t> tail, std::str
   const auto times = tail.subspan(bytes.size());
   for (std::size_t at = 0; at + 4 <= times.size(); at += 4) {
     text += at == 0 ? ";passed_ns=" : " ";
-    text += std::to_string(value_at<std::uint32_t>(times, at));
+    const auto passed_ns = value_at<std::uint32_t>(times, at);
+    text += passed_ns == kLate ? "late" : std::to_string(passed_ns);
   }
 }
 

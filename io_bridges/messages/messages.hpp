@@ -95,6 +95,13 @@ struct EscSetpoint {
   std::int64_t start_ns = 0;  // START of the write that carried it; Header::t_ns is its STOP
 };
 
+inline constexpr std::uint32_t kLate = UINT32_MAX;
+
+// Since the start of a transaction, as its message keeps it.
+inline std::uint32_t passed_ns(std::int64_t start_ns, std::int64_t now_ns) {
+  return static_cast<std::uint32_t>(std::min<std::int64_t>(now_ns - start_ns, kLate));
+}
+
 struct BusTransaction {
   std::int64_t start_ns = 0;  // START or chip select; Header::t_ns is STOP or deselect
   std::uint16_t address = 0;  // I2C address; SPI: device number
@@ -102,7 +109,7 @@ struct BusTransaction {
   std::uint8_t acked = 1;  // every byte that wanted an acknowledge got one
   std::uint32_t length = 0;
   std::uint32_t kept = 0;  // bytes behind this struct; then, as u32 in ns since start_ns, when each
-                           // one's last clock (I2C: its ninth) had passed
+                           // one's last clock (I2C: its ninth) had passed; kLate: after 4.29 s
   std::uint32_t pad = 0;
 };
 

@@ -220,6 +220,7 @@ TEST(BoardFile, WhatPlansCouldNotSpeakOfIsNoName) {
   EXPECT_NE(said("a\\nb").find("devices[1].name: has a '/' or what no line shows"),
             std::string::npos);
   EXPECT_NE(said("esc").find("'esc' means every ESC of a board"), std::string::npos);
+  EXPECT_NE(complaint("watch = { '' }").find("watch: has an empty name"), std::string::npos);
   EXPECT_NE(complaint("pins = { { name = 'a/b', pin = 'PB8' } }").find("pins[1].name: has a '/'"),
             std::string::npos);
 }

@@ -75,10 +75,10 @@ void add_signal_guard(Scenario& s, Dice& dice, const std::string& id) {
   });
 }
 
-// Evaluated at every step of the script, from the one after the call.
+// Evaluated at every step of the script, from that of the call.
 void add_condition_guard(Scenario& s, Dice& dice, const std::string& id) {
   const int from = s.now_ms;
-  const int bad_from = from + dice.between(1, 120),
+  const int bad_from = from + dice.between(-5, 120),
             bad_for = dice.between(0, 1) * dice.between(1, 30);
   s.signals.push_back({"signal_" + id, Dimension::length, [=](int ms) {
                          return ms >= bad_from && ms < bad_from + bad_for ? 2.0 : 1.0;
@@ -92,7 +92,7 @@ void add_condition_guard(Scenario& s, Dice& dice, const std::string& id) {
   s.judgements.push_back([=](const End& end, std::vector<Told>& told) {
     if (from > end.last_act_ms) return;
     const int last = std::min(span.to(end).value_or(end.last_act_ms), end.last_act_ms);
-    const int bad = std::max(0, std::min(last + 1, bad_from + bad_for) - bad_from);
+    const int bad = std::max(0, std::min(last + 1, bad_from + bad_for) - std::max(from, bad_from));
     Told mine{id + " holds (time violated)", bad == 0 ? Right::pass : Right::fail, bad * 1e-3,
               -bad * 1e-3, 1e-9};
     const bool shown = last > from && whole(span, end);

@@ -22,12 +22,27 @@ TEST(Guards, SayHowMuchOfTheirTimeWasWatched) {
             "was never watched: its time is empty");
   EXPECT_EQ(note("local g = t:always('y'):at_most '9 N' g:stop() t:wait '9 ms'"),
             "was never watched: its time is empty");
-  EXPECT_EQ(note("t:always('c', function() return true end)"), "was never evaluated");
+  EXPECT_EQ(note("t:always('c', function() return true end)"),
+            "was never watched: its time is empty");
   const results::Report cut = report_of(with_two_signals(
       "t:wait '50 ms' t:always('y'):at_most '9 N' t:wait '100 ms' error 'broken'"));
   ASSERT_EQ(cut.expectations.size(), 1u);
   EXPECT_EQ(cut.expectations[0].note, "the run was cut off after 100 ms of watching");
   EXPECT_EQ(cut.expectations[0].verdict, results::Verdict::inconclusive);
+}
+
+// From now on: the step at which it is set counts, of a signal and of a condition.
+TEST(Guards, LookAtTheStepAtWhichTheyAreSet) {
+  const auto violated = [](const std::string& lua) {
+    return only(with_signal(lua, [](int ms) { return ms == 50 ? 2.0 : 1.0; })).verdict ==
+           results::Verdict::fail;
+  };
+  const std::string condition = "t:always('c', function(s) return s.x_m < 1.5 end)";
+  for (const std::string& guard : {std::string("t:always('x'):at_most '1.5 m'"), condition}) {
+    EXPECT_TRUE(violated("t:wait '50 ms' " + guard + " t:wait '9 ms'")) << guard;
+    EXPECT_TRUE(violated("t:wait '50 ms' " + guard)) << guard;
+    EXPECT_FALSE(violated("t:wait '51 ms' " + guard + " t:wait '9 ms'")) << guard;
+  }
 }
 
 TEST(Guards, TellTheWorstValueAndWhenItFirstHappened) {

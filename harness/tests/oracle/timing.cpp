@@ -266,7 +266,8 @@ void add_bus(Scenario& s, Dice& dice, const std::string& id) {
                           }});
   }
   std::string name = "dev_" + id, keys = "device = 'dev_" + id + "'";
-  const bool directed = reads_too || dice.chance(0.5), sized = odd_ones || dice.chance(0.3);
+  const bool directed = !spi && (reads_too || dice.chance(0.5)),
+             sized = odd_ones || dice.chance(0.3);
   if (directed) keys += ", direction = 'write'";
   if (directed) name += " write";
   if (sized) keys += ", bytes = 3";
@@ -291,7 +292,7 @@ void add_bus(Scenario& s, Dice& dice, const std::string& id) {
     keys +=
         ", period = '" + std::to_string(train.period_ns) + " ns', tolerance = " + tolerance->lua;
   }
-  const int allowed = dice.chance(0.4) ? dice.between(0, 3) : 0;
+  const int allowed = !spi && dice.chance(0.4) ? dice.between(0, 3) : 0;
   if (allowed > 0) keys += ", nacks = " + std::to_string(allowed);
   s.say("t:bus { " + keys + window.argument() + " }");
   s.wait(dice.between(5, 150));

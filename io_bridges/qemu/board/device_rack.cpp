@@ -45,6 +45,8 @@ class DeviceRack::Wiring final : public rack::Rack {
 
  private:
   Result<Done> check(const BoardDescription& board) const;
+  Result<Done> check_pins(const BoardDevice& device) const;
+  std::string bus_of(const std::string& pin) const;
   Result<Done> add(const BoardDescription& board, int number);
   Result<Done> subscribe(rack::RackDevice& device, const std::string& place);
   io::SpiBus* spi(int number);
@@ -80,8 +82,33 @@ Result<Done> DeviceRack::Wiring::build(const BoardDescription& board) {
   for (std::size_t i = 0; i < board.devices.size(); ++i) {
     if (auto added = add(board, static_cast<int>(i)); !added) return added.error();
   }
+  for (const BoardDevice& device : board.devices) {
+    if (auto good = check_pins(device); !good) return good.error();
+  }
   const auto used = [this](int bus) { return i2c_buses_.count(bus) != 0; };
   watch_empty_buses(used, site_.chip, site_.finding);
+  return Done{};
+}
+
+// "i2c3" where the pin is a line of that bus; empty: it is none.
+std::string DeviceRack::Wiring::bus_of(const std::string& pin) const {
+  const io::Wire* wire = site_.chip.pin(pin);
+  for (const auto& [number, faults] : i2c_buses_) {
+    io::I2cBus* bus = site_.chip.i2c(number);
+    if (wire == &bus->scl() || wire == &bus->sda()) return "i2c" + std::to_string(number);
+  }
+  return "";
+}
+
+// Only the part knows which pins a bus has that the board file does not name.
+Result<Done> DeviceRack::Wiring::check_pins(const BoardDevice& device) const {
+  for (const rack::DeviceKey& key : rack::find_type(site_.types, device.type)->keys) {
+    const auto value = device.value(key.path);
+    const auto* pin = value ? std::get_if<std::string>(&*value) : nullptr;
+    if (key.kind != rack::KeyKind::pin || pin == nullptr || bus_of(*pin).empty()) continue;
+    return Error{ErrorKind::bad_input, device.place + ": " + device.name + "." + key.path,
+                 *pin + " is a line of " + bus_of(*pin), ""};
+  }
   return Done{};
 }
 
@@ -142,7 +169,7 @@ io::Wire* DeviceRack::Wiring::pin(const std::string& name) {
 
 void DeviceRack::Wiring::run_ends(io::Nanoseconds now) {
   for (const BoardPin& pin : named_pins_) {
-    if (site_.chip.pin(pin.pin)->was_driven()) continue;
+    if (site_.chip.pin(pin.pin)->was_driven() || !bus_of(pin.pin).empty()) continue;
     report_once(now, pin.pin, "the board names it '" + pin.name + "', but nothing ever drove it");
   }
   for (const std::string& pin : analog_) {
@@ -166,8 +193,10 @@ io::I2cBus* DeviceRack::Wiring::i2c(int number) {
     head.read = t.read ? 1 : 0;
     head.acked = t.address_acked && t.all_acked ? 1 : 0;
     head.length = static_cast<std::uint32_t>(t.bytes.size());
+    std::vector<std::uint32_t> passed_ns;
+    for (const io::Nanoseconds at : t.passed_ns) passed_ns.push_back(io::passed_ns(t.start_ns, at));
     io::add_transaction(Kind::i2c_transaction, static_cast<std::uint16_t>(number), t.stop_ns, head,
-                        t.bytes, t.passed_ns, site_.happened);
+                        t.bytes, passed_ns, site_.happened);
   });
   return bus;
 }

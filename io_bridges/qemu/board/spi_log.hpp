@@ -18,7 +18,7 @@ class SpiLog {
   }
   void byte(std::uint8_t mosi, std::uint8_t miso, io::Nanoseconds now) {
     if (length_++ >= kPairs) return;
-    passed_ns_.push_back(static_cast<std::uint32_t>(now - start_ns_));
+    passed_ns_.push_back(io::passed_ns(start_ns_, now));
     pairs_.push_back(mosi);
     pairs_.push_back(miso);
   }

@@ -9,9 +9,11 @@ class JumperDevice final : public RackDevice {
   explicit JumperDevice(DeviceSlot& slot) {
     io::Wire &from = slot.pin("cs"), &to = slot.pin("int");
     const int driver = to.add_driver(slot.name());
-    from.watch([&to, driver](bool level, Nanoseconds now) {
+    const auto copy = [&to, driver](bool level, Nanoseconds now) {
       to.drive(driver, level ? io::Drive::high : io::Drive::low, now);
-    });
+    };
+    copy(from.level(), 0);
+    from.watch(copy);
   }
 };
 

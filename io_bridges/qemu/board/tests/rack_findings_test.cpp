@@ -41,8 +41,8 @@ BoardDevice imu(const std::string& name, const std::string& cs) {
 TEST(RackFindings, ADeviceAndTheChipOnOneWireAreNamedWithTheTime) {
   Bench b;
   b.build({jumper("PC1", "PC2")});
-  b.output(2, false);
   b.output(1, false);
+  b.output(2, false);
   ASSERT_TRUE(b.found.empty()) << b.found[0].what;
   b.chip.run(1234);
   b.output(1, true);  // the jumper drives PC2 high, the chip low
@@ -72,6 +72,26 @@ TEST(RackFindings, TwoSelectedDevicesOnOneBusAreNamedOnce) {
   EXPECT_EQ(b.found[0].t_ns, now + 20);
   EXPECT_EQ(b.found[0].where, "spi1");
   EXPECT_EQ(b.found[0].what, "imu and spare are selected at once");
+}
+
+TEST(RackFindings, AJumperCopiesTheLevelFromTheStart) {
+  Bench b;
+  b.build({jumper("PC1", "PC2")}, {{.name = "low", .pin = "PC1", .pull = "down"},
+                                   {.name = "high", .pin = "PC2", .pull = "up"}});
+  EXPECT_FALSE(b.chip.chip().pin("PC1")->level());
+  EXPECT_FALSE(b.chip.chip().pin("PC2")->level());
+}
+
+// Of I2C3 the part knows its pins, the board file does not name them.
+TEST(RackFindings, ADeviceOnALineOfABusIsRefused) {
+  Bench b;
+  const BoardDevice esc{
+      .name = "esc1", .type = "esc_i2c", .bus = "i2c3", .address = 0x29, .motor = 1};
+  BoardDevice across = jumper("PC5", "PC9");
+  across.place = "b.lua:7";
+  const auto built = b.rack.build({.name = "b", .devices = {across, esc}});
+  ASSERT_FALSE(built);
+  EXPECT_EQ(built.error().message(), "b.lua:7: jumper_PC9.int: PC9 is a line of i2c3");
 }
 
 TEST(RackLog, ASpiTransactionSaysWhenEachPairHadPassed) {

@@ -142,12 +142,12 @@ TEST(I2cSlave, TheLogSaysWhenEachByteHadPassed) {
   bench.finish();
   ASSERT_EQ(logged.bytes, (Bytes{0x12, 0x03, 0xAB}));
   ASSERT_EQ(logged.passed_ns.size(), 3u);
-  EXPECT_GE(logged.passed_ns[0], 45'000u);  // the address before it
+  EXPECT_GE(logged.passed_ns[0], logged.start_ns + 45'000);  // the address before it
   for (int i = 1; i < 3; ++i) {
-    EXPECT_GE(logged.passed_ns[i] - logged.passed_ns[i - 1], 22'500u) << i;
-    EXPECT_LT(logged.passed_ns[i] - logged.passed_ns[i - 1], 24'000u) << i;
+    EXPECT_GE(logged.passed_ns[i] - logged.passed_ns[i - 1], 22'500) << i;
+    EXPECT_LT(logged.passed_ns[i] - logged.passed_ns[i - 1], 24'000) << i;
   }
-  EXPECT_LE(logged.passed_ns[2], logged.stop_ns - logged.start_ns);
+  EXPECT_LE(logged.passed_ns[2], logged.stop_ns);
 }
 
 TEST(I2cSlave, AnswersOnlyItsAddressesAndOnlyWithAck) {
