@@ -29,6 +29,7 @@ constexpr KindName kNames[] = {
     {FaultKind::capture_lost, "capture_lost"},
     {FaultKind::esc_stopped, "esc_stopped"},
     {FaultKind::code_hangs, "code_hangs"},
+    {FaultKind::sensor_late, "sensor_late"},
 };
 
 bool matches(int wanted, int here) {

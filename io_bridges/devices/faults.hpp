@@ -39,6 +39,7 @@ enum class FaultKind : std::uint32_t {
   capture_lost,           // harness: no pose from the capture system
   esc_stopped,            // harness: the ESC of motor `address` stops its motor
   code_hangs,             // board: the watched function number `address` comes no further
+  sensor_late,            // each measurement takes value seconds longer
 };
 
 std::optional<FaultKind> fault_kind(std::string_view name);  // "i2c_nack"
@@ -53,7 +54,8 @@ struct Fault {
   Nanoseconds end_ns = kNever;
   int bus = kAnywhere;      // I2C3: 3, SPI1: 1, USART2: 2
   int address = kAnywhere;  // see above
-  int axis = 0;             // sensors: 0..2 accelerometer x y z, 3..5 gyro x y z
+  int axis = 0;             // inertial: 0..2 accelerometer x y z, 3..5 gyro x y z; barometer: 0
+                            // pressure, 1 temperature
   double value = 0.0;
 };
 

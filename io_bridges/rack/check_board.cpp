@@ -63,6 +63,12 @@ std::optional<BoardComplaint> claim_device(Owners& owners, const BoardDevice& de
                       "share one address on " + device.bus, device.name, number, "address");
 }
 
+// Is the key one of devices on that bus?
+bool belongs(const DeviceKey& key, const BoardDevice& device) {
+  const std::size_t digit = device.bus.find_last_not_of("0123456789") + 1;
+  return key.on_bus.empty() || device.bus.substr(0, digit) == key.on_bus;
+}
+
 // Keys that are good one by one.
 std::optional<BoardComplaint> check_together(const BoardDevice& device, int number,
                                              const DeviceType& type) {
@@ -70,6 +76,11 @@ std::optional<BoardComplaint> check_together(const BoardDevice& device, int numb
   for (const DeviceKey& key : type.keys) {
     const auto value = device.value(key.path);
     if (!value) continue;
+    if (!belongs(key, device)) {
+      return BoardComplaint{number, key.path,
+                            "is for one on " + key.on_bus + ", and this is on " + device.bus,
+                            "leave it out"};
+    }
     if (!key.not_with.empty() && device.value(key.not_with)) {
       return BoardComplaint{number, key.path, "says what " + key.not_with + " says",
                             "one of the two"};
@@ -99,7 +110,7 @@ std::optional<BoardComplaint> check_device(const BoardDevice& device, int number
     if (!wrong.empty()) return BoardComplaint{number, path, wrong, ""};
   }
   for (const DeviceKey& key : type->keys) {
-    if (!key.needed || device.value(key.path)) continue;
+    if (!key.needed || device.value(key.path) || !belongs(key, device)) continue;
     return BoardComplaint{number, key.path, "is missing: a " + type->name + " needs it",
                           key.about + ", " + unit_text(key)};
   }

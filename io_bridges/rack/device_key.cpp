@@ -47,6 +47,27 @@ bool is_bus(const std::string& text, const std::string& kind) {
   return prefix == kind || (kind == "usart" && prefix == "uart");
 }
 
+std::vector<std::string> kinds_of_bus(const DeviceKey& key) {
+  static const std::string kOr = " or ";
+  std::vector<std::string> kinds;
+  std::size_t from = 0;
+  for (auto to = key.unit.find(kOr); to != std::string::npos; to = key.unit.find(kOr, from)) {
+    kinds.push_back(key.unit.substr(from, to - from));
+    from = to + kOr.size();
+  }
+  kinds.push_back(key.unit.substr(from));
+  return kinds;
+}
+
+std::string bus_complaint(const DeviceKey& key, const std::string& text) {
+  std::string examples;
+  for (const std::string& kind : kinds_of_bus(key)) {
+    if (is_bus(text, kind)) return "";
+    examples += (examples.empty() ? "\"" : " or \"") + kind + "1\"";
+  }
+  return "'" + text + "' is no bus for it: write it as " + examples;
+}
+
 bool is_pin(const std::string& text) {
   if (text.size() < 3 || text.size() > 4 || text[0] != 'P' || text[1] < 'A' || text[1] > 'K') {
     return false;
@@ -65,8 +86,7 @@ std::string text_complaint(const DeviceKey& key, const KeyValue& value) {
   if (key.kind == KeyKind::word) {
     return *text == key.unit ? "" : "'" + *text + "' is not \"" + key.unit + "\"";
   }
-  if (is_bus(*text, key.unit)) return "";
-  return "'" + *text + "' is no bus for it: write it as \"" + key.unit + "1\"";
+  return bus_complaint(key, *text);
 }
 
 // One of +x -x +y -y +z -z as a column: which axis, and its sign; 0: none of them.
@@ -125,6 +145,12 @@ DeviceKey DeviceKey::with_text(std::string text) const {
 DeviceKey DeviceKey::instead_of(std::string other) const {
   DeviceKey key = *this;
   key.not_with = std::move(other);
+  return key;
+}
+
+DeviceKey DeviceKey::on(std::string kind_of_bus) const {
+  DeviceKey key = *this;
+  key.on_bus = std::move(kind_of_bus);
   return key;
 }
 
@@ -214,8 +240,13 @@ std::string complaint(const DeviceKey& key, const KeyValue& value) {
 
 std::string unit_text(const DeviceKey& key) {
   switch (key.kind) {
-    case KeyKind::bus:
-      return "bus " + key.unit + "N";
+    case KeyKind::bus: {
+      std::string text;
+      for (const std::string& kind : kinds_of_bus(key)) {
+        text += (text.empty() ? "bus " : " or ") + kind + "N";
+      }
+      return text;
+    }
     case KeyKind::pin:
       return "pin";
     case KeyKind::word:
@@ -241,7 +272,7 @@ std::string range_text(const DeviceKey& key) {
 }
 
 std::string default_text(const DeviceKey& key) {
-  if (key.needed) return "needed";
+  if (key.needed) return key.on_bus.empty() ? "needed" : "needed on " + key.on_bus;
   if (!key.fallback_text.empty()) return key.fallback_text;
   if (!key.fallback) return "none";
   if (const bool* flag = std::get_if<bool>(&*key.fallback)) return *flag ? "true" : "false";

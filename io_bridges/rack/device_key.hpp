@@ -16,7 +16,7 @@
 namespace whirl::rack {
 
 enum class KeyKind : std::uint8_t {
-  bus,       // "i2c3": `unit` is the kind of bus
+  bus,       // "i2c3": `unit` is the kind of bus, or several: "i2c or spi"
   pin,       // "PB0"
   word,      // the one word `unit`
   address,   // on I2C
@@ -48,15 +48,17 @@ struct DeviceKey {
   std::optional<KeyValue> fallback = {};  // what is taken where the key is not given
   std::string fallback_text = {};         // where that is no single value
   std::string not_with = {};              // a key that says the same thing another way
+  std::string on_bus = {};  // "spi": a key of devices on that kind of bus, and of no other
 
   DeviceKey need() const;
   DeviceKey with(KeyValue value) const;
   DeviceKey with_text(std::string text) const;
   DeviceKey own(Sharing how = Sharing::own) const;
   DeviceKey instead_of(std::string other) const;
+  DeviceKey on(std::string kind_of_bus) const;
 };
 
-DeviceKey bus_key(std::string kind, std::string about);
+DeviceKey bus_key(std::string kind, std::string about);  // "i2c", "i2c or spi"
 DeviceKey pin_key(std::string path, std::string about);  // own
 DeviceKey address_key();
 DeviceKey motor_key();  // 1..io::kMostMotors, own in its type

@@ -7,6 +7,7 @@
 // A macro because it names a file's function and calls it, and one line is to do both.
 #define WHIRL_DEVICE_TYPES(TYPE) \
   TYPE(mpu6000)                  \
+  TYPE(ms5611)                   \
   TYPE(esc_i2c)                  \
   TYPE(mavlink_link)             \
   TYPE(serial)                   \

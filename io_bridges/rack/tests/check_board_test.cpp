@@ -28,9 +28,10 @@ std::string of(std::vector<BoardDevice> devices) {
 TEST(CheckBoard, WhatIsWrongWithADeviceIsSaidWithWhatThereIs) {
   EXPECT_EQ(of({serial("t", "usart1")}), "");
   EXPECT_EQ(of({serial("", "usart1")}), "name: is empty (give it one)");
-  EXPECT_EQ(of({{.name = "x", .type = "toaster"}}),
-            "type: unknown type 'toaster' (use one of mpu6000, esc_i2c, mavlink_link, serial, "
-            "i2c_master, power_stage, pulse_source, volts, jumper)");
+  EXPECT_EQ(
+      of({{.name = "x", .type = "toaster"}}),
+      "type: unknown type 'toaster' (use one of mpu6000, ms5611, esc_i2c, mavlink_link, serial, "
+      "i2c_master, power_stage, pulse_source, volts, jumper)");
   BoardDevice device = serial("t", "usart1");
   device.keys["colour"] = "red";
   EXPECT_EQ(of({device}), "colour: is no key of the type serial (it has name, type, bus, baud)");
@@ -43,6 +44,23 @@ TEST(CheckBoard, WhatIsWrongWithADeviceIsSaidWithWhatThereIs) {
   device.keys = {{"baud", "fast"}};
   EXPECT_EQ(of({device}), "baud: is no number ()");
   EXPECT_NE(of({serial("t", "spi1")}).find("bus: 'spi1' is no bus"), std::string::npos);
+}
+
+TEST(CheckBoard, APartOfTwoBusesHasTheKeysOfItsOwn) {
+  BoardDevice baro{.name = "b", .type = "ms5611", .bus = "i2c2", .address = 0x77};
+  EXPECT_EQ(of({baro}), "");
+  baro.keys["cs"] = "PB0";
+  EXPECT_EQ(of({baro}), "cs: is for one on spi, and this is on i2c2 (leave it out)");
+  baro.bus = "spi2";
+  EXPECT_EQ(of({baro}), "address: is for one on i2c, and this is on spi2 (leave it out)");
+  baro.address = -1;
+  EXPECT_EQ(of({baro}), "");
+  baro.keys.clear();
+  EXPECT_EQ(of({baro}), "cs: is missing: a ms5611 needs it (chip select, active low, pin)");
+  baro.bus = "i2c2";
+  EXPECT_NE(of({baro}).find("address: is missing"), std::string::npos);
+  baro.bus = "usart2";
+  EXPECT_EQ(of({baro}), "bus: 'usart2' is no bus for it: write it as \"i2c1\" or \"spi1\" ()");
 }
 
 TEST(CheckBoard, OneThingIsOneDevices) {

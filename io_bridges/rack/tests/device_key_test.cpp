@@ -24,6 +24,16 @@ TEST(DeviceKey, ABusIsItsKindAndANumber) {
   EXPECT_EQ(complaint(i2c, 3.0), "is no text");
 }
 
+TEST(DeviceKey, ABusMayBeOfTwoKinds) {
+  const DeviceKey key = bus_key("i2c or spi", "");
+  for (const char* good : {"i2c1", "spi2"}) EXPECT_EQ(complaint(key, good), "") << good;
+  for (const char* bad : {"usart1", "i2c or spi1", "spi", "i2c0"}) {
+    EXPECT_NE(complaint(key, bad), "") << bad;
+  }
+  EXPECT_EQ(unit_text(key), "bus i2cN or spiN");
+  EXPECT_EQ(default_text(pin_key("cs", "").need().on("spi")), "needed on spi");
+}
+
 TEST(DeviceKey, APinIsAPortAndANumber) {
   const DeviceKey pin = pin_key("cs", "");
   for (const char* good : {"PA0", "PB15", "PK7"}) EXPECT_EQ(complaint(pin, good), "") << good;

@@ -1,0 +1,152 @@
+// MEAS MS5611 on I2C or SPI: the part command by command (io_bridges/devices), what it senses by the
+// plant's barometer. Its white noise is the part's own, by oversampling.
+//
+//   Left out  the rotors' back-pressure: no message tells the board their thrust; self-heating: the
+//             part is as warm as the air
+#include "io_bridges/devices/ms5611.hpp"
+
+#include "io_bridges/rack/devices/table.hpp"
+#include "plant/sensors/barometer.hpp"
+
+namespace whirl::rack {
+namespace {
+
+constexpr double kDryAir_JpkgK = 287.05287;  // [USSA76]
+
+bool on_i2c(const DeviceSlot& slot) {
+  return slot.text("bus").starts_with("i2c");
+}
+
+plant::BarometerParams physics_of(const DeviceSlot& slot) {
+  plant::BarometerParams params;
+  params.noise_density_Pa = 0.0;
+  params.rotor_share = 0.0;
+  params.turn_on_bias_Pa = slot.quantity("params.turn_on_bias");
+  params.drift_Pa = slot.quantity("params.drift");
+  params.drift_time_s = slot.quantity("params.drift_time");
+  params.wind_share = slot.quantity("params.wind_share");
+  params.lag_s = slot.quantity("params.lag");
+  return params;
+}
+
+io::ms5611::Prom prom_of(DeviceSlot& slot) {
+  const std::uint64_t seed = slot.rack().seed();
+  io::ms5611::Coefficients coefficients =
+      io::ms5611::draw_coefficients(slot.quantity("params.spread"), seed, slot.name());
+  for (std::size_t i = 0; i < coefficients.size(); ++i) {
+    const std::string path = "params.c" + std::to_string(i + 1);
+    if (slot.given(path)) coefficients[i] = slot.whole(path);
+  }
+  RandomStream random(seed, slot.name() + ".serial");
+  const auto factory = static_cast<std::uint16_t>(random.bits() & 0xFFFF);
+  const auto serial = static_cast<std::uint16_t>(random.bits() & 0xFFF);
+  return io::ms5611::make_prom(coefficients, factory, serial);
+}
+
+io::Ms5611::Params part_of(DeviceSlot& slot) {
+  io::Ms5611::Params params;
+  params.name = slot.name();
+  params.seed = slot.rack().seed();
+  params.prom = prom_of(slot);
+  params.noise_scale = slot.quantity("params.noise");
+  params.conversion_share = slot.given("params.conversion_share")
+                                ? slot.quantity("params.conversion_share")
+                                : RandomStream(params.seed, slot.name() + ".oscillator").uniform();
+  params.bus = slot.bus_number();
+  params.device = slot.number();
+  if (!on_i2c(slot)) return params;
+  params.i2c_address = static_cast<std::uint8_t>(slot.whole("address"));
+  params.device = params.i2c_address;
+  return params;
+}
+
+class Ms5611Device final : public RackDevice {
+ public:
+  explicit Ms5611Device(DeviceSlot& slot)
+      : barometer_(physics_of(slot), slot.rack().seed(), slot.name()),
+        part_(
+            slot.rack().events(), part_of(slot), [this](Nanoseconds now) { return sense(now); },
+            &slot.rack().faults(), slot.rack().finding()) {
+    if (on_i2c(slot)) {
+      slot.join_i2c(part_);
+    } else {
+      slot.join_spi(part_);
+    }
+  }
+
+  std::vector<Intake> intakes() const override { return {{io::Kind::body_motion}}; }
+  void on_message(const io::Reader& message) override {
+    const auto motion = message.as<io::BodyMotion>();
+    temperature_K_ = motion.air_temperature_K;
+    truth_.static_pressure_Pa = motion.static_pressure_Pa;
+    truth_.air_density_kgpm3 = motion.static_pressure_Pa / (kDryAir_JpkgK * temperature_K_);
+    for (int i = 0; i < 3; ++i) truth_.v_AB_B_mps[i] = motion.v_AB_B_mps[i];
+  }
+
+ private:
+  io::Ms5611::Truth sense(Nanoseconds now) {
+    const double dt_s = static_cast<double>(now - sensed_ns_) * 1e-9;
+    sensed_ns_ = now;
+    return {barometer_.sample_Pa(dt_s, truth_), temperature_K_};
+  }
+
+  plant::Barometer barometer_;
+  plant::Truth truth_;
+  double temperature_K_ = io::BodyMotion{}.air_temperature_K;
+  Nanoseconds sensed_ns_ = 0;
+  io::Ms5611 part_;
+};
+
+DeviceKey number_key(const char* path, Limits limits, const char* about) {
+  return quantity_key(path, Dimension::none, "", limits, about);
+}
+
+void add_part(std::vector<DeviceKey>& keys) {
+  for (int i = 1; i <= 6; ++i) {
+    DeviceKey key = quantity_key("params.c" + std::to_string(i), Dimension::none, "",
+                                 {1.0, 65535.0}, "coefficient of its PROM");
+    key.kind = KeyKind::whole;
+    keys.push_back(key.with_text("drawn"));
+  }
+  keys.push_back(quantity_key("params.spread", Dimension::ratio, "%", {0.0, 0.05},
+                              "of drawn coefficients, evenly about the sheet's typical ones")
+                     .with(0.05));
+  keys.push_back(number_key("params.conversion_share", {0.0, 1.0},
+                            "0: the sheet's shortest conversions, 1: its longest")
+                     .with_text("drawn"));
+  keys.push_back(number_key("params.noise", {0.0, 100.0}, "times the sheet's").with(1.0));
+}
+
+void add_physics(std::vector<DeviceKey>& keys) {
+  const plant::BarometerParams usual;
+  const auto pressure = [](const char* path, const char* about) {
+    return quantity_key(path, Dimension::pressure, "Pa", {0.0, 10000.0}, about);
+  };
+  const auto time = [](const char* path, Limits limits, const char* about) {
+    return quantity_key(path, Dimension::time, "s", limits, about);
+  };
+  keys.push_back(pressure("params.turn_on_bias", "standard deviation").with(usual.turn_on_bias_Pa));
+  keys.push_back(
+      pressure("params.drift", "standard deviation of a slow wander").with(usual.drift_Pa));
+  keys.push_back(time("params.drift_time", {1.0, 1e5}, "how slow it is").with(usual.drift_time_s));
+  keys.push_back(number_key("params.wind_share", {-1.0, 1.0}, "of the dynamic pressure")
+                     .with(usual.wind_share));
+  keys.push_back(time("params.lag", {1e-4, 10.0}, "of the air in the frame").with(usual.lag_s));
+}
+
+}  // namespace
+
+DeviceType ms5611_type() {
+  DeviceKey address = address_key();
+  address.limits = {0x76, 0x77};
+  std::vector<DeviceKey> keys = {
+      bus_key("i2c or spi", "the bus").need(),
+      address.need().on("i2c"),
+      pin_key("cs", "chip select, active low").need().on("spi"),
+  };
+  add_part(keys);
+  add_physics(keys);
+  return {"ms5611", "barometer on I2C or SPI", std::move(keys), make_device<Ms5611Device>};
+}
+
+}  // namespace whirl::rack
