@@ -54,8 +54,8 @@ struct Fault {
   Nanoseconds end_ns = kNever;
   int bus = kAnywhere;      // I2C3: 3, SPI1: 1, USART2: 2
   int address = kAnywhere;  // see above
-  int axis = 0;             // inertial: 0..2 accelerometer x y z, 3..5 gyro x y z; barometer: 0
-                            // pressure, 1 temperature
+  int axis = 0;             // inertial: 0..2 accelerometer x y z, 3..5 gyro x y z; magnetometer:
+                            // 0..2 x y z; barometer: 0 pressure, 1 temperature
   double value = 0.0;
 };
 

@@ -8,6 +8,7 @@
 #define WHIRL_DEVICE_TYPES(TYPE) \
   TYPE(mpu6000)                  \
   TYPE(ms5611)                   \
+  TYPE(hmc5883l)                 \
   TYPE(esc_i2c)                  \
   TYPE(mavlink_link)             \
   TYPE(serial)                   \

@@ -20,11 +20,11 @@ Mounting mounting_of(const std::vector<std::string>& axes) {
   return mounting;
 }
 
-std::array<double, 3> InertialSensor::turned(const Eigen::Vector3d& in_B) const {
+std::array<double, 3> turned(const Mounting& mounting, const Eigen::Vector3d& in_B) {
   std::array<double, 3> out{};
   for (std::size_t i = 0; i < 3; ++i) {
-    const double along = in_B[static_cast<Eigen::Index>(mounting_.axis[i])];
-    out[i] = mounting_.sign[i] > 0 ? along : -along;
+    const double along = in_B[static_cast<Eigen::Index>(mounting.axis[i])];
+    out[i] = mounting.sign[i] > 0 ? along : -along;
   }
   return out;
 }
@@ -40,7 +40,7 @@ io::Mpu6000::Truth InertialSensor::sample(Nanoseconds now) {
   std::copy(std::begin(motion_.rotor_speed_radps), std::end(motion_.rotor_speed_radps),
             motion.rotor_speed_radps.begin());
   const plant::ImuSample sensed = imu_.sample(static_cast<double>(now) * 1e-9, motion);
-  return {turned(sensed.specific_force_S_mps2), turned(sensed.rate_S_radps),
+  return {turned(mounting_, sensed.specific_force_S_mps2), turned(mounting_, sensed.rate_S_radps),
           motion_.air_temperature_K};
 }
 

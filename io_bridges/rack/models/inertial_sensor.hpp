@@ -23,6 +23,8 @@ struct Mounting {
 };
 
 Mounting mounting_of(const std::vector<std::string>& axes);  // {"+x", "-y", "-z"}
+// A vector of the body in the part's axes.
+std::array<double, 3> turned(const Mounting& mounting, const Eigen::Vector3d& in_B);
 
 class InertialSensor {
  public:
@@ -37,8 +39,6 @@ class InertialSensor {
   io::Mpu6000::Truth sample(Nanoseconds now);
 
  private:
-  std::array<double, 3> turned(const Eigen::Vector3d& in_B) const;
-
   plant::Imu imu_;
   Mounting mounting_;
   io::BodyMotion motion_{.specific_force_B_mps2 = {0.0, 0.0, -9.80665}};  // at rest

@@ -1,0 +1,75 @@
+// Honeywell HMC5883L on I2C: the part register by register (io_bridges/devices), the field at the
+// vehicle and what the frame adds to it, soldered as the board file's `axes` say.
+//
+//   Left out  the field of the motors' currents: no message tells the board of them; soft iron
+#include "io_bridges/devices/hmc5883l.hpp"
+
+#include "io_bridges/rack/devices/table.hpp"
+#include "io_bridges/rack/models/inertial_sensor.hpp"
+
+namespace whirl::rack {
+namespace {
+
+constexpr double kMost_T = 1e-3;  // beyond its largest range
+
+io::Hmc5883l::Params part_of(DeviceSlot& slot) {
+  io::Hmc5883l::Params params;
+  params.name = slot.name();
+  params.seed = slot.rack().seed();
+  params.noise_T = slot.quantity("params.noise");
+  params.bus = slot.bus_number();
+  params.device = io::Hmc5883l::kI2c_address;
+  return params;
+}
+
+class Hmc5883lDevice final : public RackDevice {
+ public:
+  explicit Hmc5883lDevice(DeviceSlot& slot)
+      : mounting_(mounting_of(slot.axes("axes"))),
+        hard_iron_B_T_(slot.triple("params.hard_iron").data()),
+        part_(
+            slot.rack().events(), part_of(slot),
+            [this](Nanoseconds) { return turned(mounting_, field_B_T_ + hard_iron_B_T_); },
+            slot.given("drdy") ? &slot.pin("drdy") : nullptr, &slot.rack().faults(),
+            slot.rack().finding()) {
+    slot.join_i2c(part_);
+    if (!slot.given("drdy")) return;
+    slot.pin("drdy").watch(
+        [&happened = slot.rack().happened(), number = slot.number()](bool level, Nanoseconds now) {
+          if (!level) happened.add(io::Kind::data_ready, number, now, nullptr, 0);
+        });
+  }
+
+  std::vector<Intake> intakes() const override { return {{io::Kind::body_motion}}; }
+  void on_message(const io::Reader& message) override {
+    const auto motion = message.as<io::BodyMotion>();
+    field_B_T_ = Eigen::Vector3d(motion.magnetic_field_B_T);
+  }
+
+ private:
+  Mounting mounting_;
+  Eigen::Vector3d hard_iron_B_T_;
+  Eigen::Vector3d field_B_T_ = Eigen::Vector3d::Zero();
+  io::Hmc5883l part_;
+};
+
+}  // namespace
+
+DeviceType hmc5883l_type() {
+  DeviceKey address = address_key();
+  address.limits = {io::Hmc5883l::kI2c_address, io::Hmc5883l::kI2c_address};
+  return {"hmc5883l",
+          "magnetometer on I2C",
+          {bus_key("i2c", "the bus").need(), address.need(),
+           pin_key("drdy", "data ready output, low for 5 us"),
+           axes_key("axes", "where its x, y, z point in the body").need(),
+           quantity_key("params.noise", Dimension::magnetic_field, "uT", {0.0, kMost_T},
+                        "RMS of one measurement")
+               .with(io::Hmc5883l::Params{}.noise_T),
+           triple_key("params.hard_iron", Dimension::magnetic_field, "uT", {-kMost_T, kMost_T},
+                      "that the frame adds, along x, y, z of the body")
+               .with(std::vector<double>{0.0, 0.0, 0.0})},
+          make_device<Hmc5883lDevice>};
+}
+
+}  // namespace whirl::rack
