@@ -13,8 +13,8 @@
 namespace whirl::results {
 namespace {
 
-// Level 1 halves a flight; level 6 takes 3.6 times as long and saves nothing more.
-constexpr int kLevel = 1;
+// A flight shrinks to 56 %; level 1 makes it 49 % in three times the time, level 6 no less.
+constexpr int kLevel = -3;
 // A frame's end carries its checksum, and a reader trusts what is before it.
 constexpr std::size_t kFrame_B = 1u << 20;
 
