@@ -202,22 +202,6 @@ std::string value_text(Field::Type type, std::span<const std::uint8_t> payload, 
   return "";
 }
 
-std::size_t size_of(Field::Type type) {
-  switch (type) {
-    case Field::Type::real:
-    case Field::Type::int64:
-      return 8;
-    case Field::Type::int32:
-    case Field::Type::uint32:
-      return 4;
-    case Field::Type::uint16:
-      return 2;
-    case Field::Type::uint8:
-      return 1;
-  }
-  return 1;
-}
-
 void add_hex(std::span<const std::uint8_t> bytes, std::string& text) {
   static constexpr char kHex[] = "0123456789ABCDEF";
   for (const std::uint8_t byte : bytes) {
@@ -256,6 +240,22 @@ void add_tail(const KindInfo& info, std::span<const std::uint8_t> payload, std::
 }
 
 }  // namespace
+
+std::size_t size_of(Field::Type type) {
+  switch (type) {
+    case Field::Type::real:
+    case Field::Type::int64:
+      return 8;
+    case Field::Type::int32:
+    case Field::Type::uint32:
+      return 4;
+    case Field::Type::uint16:
+      return 2;
+    case Field::Type::uint8:
+      return 1;
+  }
+  return 1;
+}
 
 const KindInfo* kind_info(Kind kind) {
   const auto it = std::find_if(std::begin(kKinds), std::end(kKinds),

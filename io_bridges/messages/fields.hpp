@@ -17,6 +17,8 @@ struct Field {
   std::uint16_t count = 1;   // of an array
 };
 
+std::size_t size_of(Field::Type type);  // bytes
+
 // Behind the fields. Of a transfer: so many bytes as `kept` says, then a u32 for each.
 enum class Tail : std::uint8_t { none, bytes, text, transfer };
 

@@ -52,22 +52,6 @@ TEST(Fields, EveryKindIsListedOnce) {
   }
 }
 
-std::size_t size_of(Field::Type type) {
-  switch (type) {
-    case Field::Type::real:
-    case Field::Type::int64:
-      return 8;
-    case Field::Type::int32:
-    case Field::Type::uint32:
-      return 4;
-    case Field::Type::uint16:
-      return 2;
-    case Field::Type::uint8:
-      return 1;
-  }
-  return 0;
-}
-
 // Between two fields there is padding at most: a member that the table lacks would be a hole.
 TEST(Fields, TheyCoverTheirStruct) {
   for (int number = 0; number < 256; ++number) {
