@@ -78,6 +78,7 @@ int export_command(const ExportOptions& options) {
   for (const Error& lost : done.value().lost) code = complain(lost);
   if (done.value().damage) code = complain(*done.value().damage);
   std::vector<std::string> made;
+  made.reserve(types.size());
   for (const results::SinkType& type : types) made.emplace_back(type.makes);
   std::printf("%s: %.9g s of %s%s\n", shown_path(folder.value()).c_str(),
               static_cast<double>(done.value().end_ns) * 1e-9, word_list(made).c_str(),

@@ -116,6 +116,17 @@ struct RunCommand {
   std::vector<std::string> settings;
 };
 
+CLI::App* add_export(CLI::App& app, ExportOptions& options) {
+  auto* command = app.add_subcommand("export", "a run's messages in other formats");
+  command->add_option("run", options.run, "a run's folder, or its messages.whirl")->required();
+  for (const std::string& format : export_formats()) {
+    command->add_flag_callback("--" + format,
+                               [&options, format] { options.formats.push_back(format); });
+  }
+  command->add_option("--out", options.out, "where the files go (default: the run's folder)");
+  return command;
+}
+
 int run_chosen(int argc, char** argv, Composition composition) {
   CLI::App app{"Whirlstand: a test stand for rotorcraft firmware", "whirl"};
   app.footer(kExamples);
@@ -136,13 +147,7 @@ int run_chosen(int argc, char** argv, Composition composition) {
   past->add_option("--out", options.out, "where the runs went (default: results)");
 
   ExportOptions exported;
-  auto* exports = app.add_subcommand("export", "a run's messages in other formats");
-  exports->add_option("run", exported.run, "a run's folder, or its messages.whirl")->required();
-  for (const std::string& format : export_formats()) {
-    exports->add_flag_callback("--" + format,
-                               [&exported, format] { exported.formats.push_back(format); });
-  }
-  exports->add_option("--out", exported.out, "where the files go (default: the run's folder)");
+  auto* exports = add_export(app, exported);
 
   SweepOptions sweep;
   auto* sweeps = app.add_subcommand(
