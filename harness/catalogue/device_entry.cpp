@@ -62,6 +62,7 @@ BoardDevice read_device(const lua::Table& entry, const rack::DeviceTypes& types)
   device.type = entry.text("type");
   if (const DeviceType* type = rack::find_type(types, device.type)) {
     read_keys(entry, "", *type, device);
+    device.senses = type->senses;
   }
   if (const auto wrong = rack::check_device(device, 0, types)) refuse(entry, *wrong);
   return device;

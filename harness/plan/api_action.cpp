@@ -86,11 +86,17 @@ FaultPlace place_of_fault(lua_State* L, const lua::Table& asked, const std::stri
   return fault_at::Anywhere{};
 }
 
-constexpr const char* kAxes[] = {"accel_x", "accel_y", "accel_z", "gyro_x", "gyro_y", "gyro_z"};
-
-int axis_number(const lua::Table& asked) {
-  const std::string word = asked.choice("axis", {std::begin(kAxes), std::end(kAxes)});
-  return static_cast<int>(std::find(std::begin(kAxes), std::end(kAxes), word) - std::begin(kAxes));
+// Which of the things that the device senses: its number there.
+int axis_number(const lua::Table& asked, const FaultPlace& place, const BoardDescription& board) {
+  const auto* at = std::get_if<fault_at::Device>(&place);
+  const BoardDevice* device = at == nullptr ? nullptr : board.find(at->name);
+  if (device == nullptr || device->senses.empty()) {
+    asked.refuse("axis", "is of a device that senses something");
+    return 0;
+  }
+  const std::string word = asked.choice("axis", device->senses);
+  const auto found = std::find(device->senses.begin(), device->senses.end(), word);
+  return static_cast<int>(found - device->senses.begin());
 }
 
 // t:fault { kind = "i2c_nack", device = "esc2", start = "0 s", duration = "100 ms", value = 1 }
@@ -104,7 +110,9 @@ int fault(lua_State* L) {
   const NodePlace at = node_of_fault(L, asked, nodes);
   fault.board = static_cast<std::uint8_t>(at.node);
   fault.place = place_of_fault(L, asked, at.rest, nodes[at.node].board);
-  if (asked.has("axis")) fault.axis = axis_number(asked);
+  if (asked.has("axis")) {
+    fault.axis = axis_number(asked, fault.place, nodes[at.node].board);
+  }
   fault.start_ns = self.stage().now_ns + asked.duration_ns_or("start", 0);
   if (asked.has("duration")) fault.end_ns = fault.start_ns + asked.duration_ns("duration");
   if (asked.has("value")) fault.value = asked.any_quantity("value").value_SI;

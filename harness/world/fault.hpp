@@ -44,7 +44,7 @@ struct FaultSpec {
   std::string kind;
   FaultPlace place;
   std::uint8_t board = 0;  // the place of the board in the list of nodes; the world's own: 0
-  std::int32_t axis = 0;   // sensors: 0..2 accelerometer x y z, 3..5 gyro x y z
+  std::int32_t axis = 0;   // of what the device senses (BoardDevice::senses)
   std::int64_t start_ns = 0;
   std::int64_t end_ns = INT64_MAX;  // INT64_MAX: for ever
   double value = 0.0;               // SI; its meaning depends on the kind

@@ -24,10 +24,11 @@ struct BoardDevice {
   std::string name = {};  // "imu", "esc1"
   std::string type = {};  // "mpu6000", "esc_i2c"
   // What plans and logs speak of. In a board file they are keys like the others.
-  std::string bus = {};    // "spi1", "i2c3", "usart2"; of some types a pin
-  int address = -1;        // I2C; -1: none
-  int motor = 0;           // 0: none
-  std::string place = {};  // in the board file, "esc32v2.lua:12"; may be empty
+  std::string bus = {};                  // "spi1", "i2c3", "usart2"; of some types a pin
+  int address = -1;                      // I2C; -1: none
+  int motor = 0;                         // 0: none
+  std::string place = {};                // in the board file, "esc32v2.lua:12"; may be empty
+  std::vector<std::string> senses = {};  // of its type: what a fault's `axis` may be, by number
   std::map<std::string, KeyValue, std::less<>> keys = {};  // the others that are given
 
   // Any key, `bus`, `address` and `motor` too; nothing where it is not given.

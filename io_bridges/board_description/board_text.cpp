@@ -120,6 +120,10 @@ BoardDevice read_device(const json& object, const std::string& place, Error& fir
   keys.read("name", device.name);
   keys.read("type", device.type);
   keys.read("place", device.place);
+  for (const json& sense : keys.list("senses")) {
+    if (sense.is_string()) device.senses.push_back(sense.get<std::string>());
+    if (!sense.is_string()) keys.fail("senses", "is not a list of names");
+  }
   if (device.name.empty()) keys.fail("name", "is missing");
   if (device.type.empty()) keys.fail("type", "is missing");
   for (const std::string& path : keys.others()) {
@@ -166,7 +170,10 @@ void check(const BoardStart& start, Keys& keys) {
 }
 
 json json_of(const BoardDevice& device) {
-  json out = {{"name", device.name}, {"type", device.type}, {"place", device.place}};
+  json out = {{"name", device.name},
+              {"type", device.type},
+              {"place", device.place},
+              {"senses", device.senses}};
   for (const std::string& path : device.paths()) {
     std::visit([&](const auto& value) { out[path] = value; }, *device.value(path));
   }

@@ -121,7 +121,7 @@ struct FaultCommand {  // the name follows as text, for messages to people
   std::int32_t bus = 0;
   std::int32_t address = 0;
   double value = 0.0;
-  std::int32_t axis = 0;  // sensors: 0..2 accelerometer x y z, 3..5 gyro x y z
+  std::int32_t axis = 0;  // of what the device senses (BoardDevice::senses)
   std::int32_t pad = 0;
 };
 

@@ -119,6 +119,8 @@ struct DeviceType {
   std::vector<DeviceKey> keys;
   std::unique_ptr<RackDevice> (*make)(DeviceSlot& slot) = nullptr;
   std::vector<std::string> pins = {};  // that it is soldered to whatever the board file says
+  // What it senses, by number (io::Fault::axis): a fault of the plan names one, `axis = "gyro_x"`.
+  std::vector<std::string> senses = {};
 
   const DeviceKey* find(const std::string& path) const;
   std::string key_list() const;  // "bus, cs, int"

@@ -157,6 +157,7 @@ BoardDescription board_of(const Scenario& scenario) {
     BoardDevice device;
     device.name = name;
     device.bus = "spi1";
+    device.senses = {"accel_x", "accel_y", "accel_z", "gyro_x", "gyro_y", "gyro_z"};
     board.devices.push_back(device);
   }
   int address = 0x29;

@@ -33,7 +33,8 @@ BoardStart everything() {
                      .bus = "spi1",
                      .address = 0x29,
                      .motor = 4,
-                     .place = "b.lua:7"};
+                     .place = "b.lua:7",
+                     .senses = {"field_x", "field_y"}};
   device.keys = {{"cs", "PB0"},
                  {"on", true},
                  {"tenth", 0.1},

@@ -69,7 +69,9 @@ DeviceType hmc5883l_type() {
            triple_key("params.hard_iron", Dimension::magnetic_field, "uT", {-kMost_T, kMost_T},
                       "that the frame adds, along x, y, z of the body")
                .with(std::vector<double>{0.0, 0.0, 0.0})},
-          make_device<Hmc5883lDevice>};
+          make_device<Hmc5883lDevice>,
+          {},
+          {"field_x", "field_y", "field_z"}};
 }
 
 }  // namespace whirl::rack

@@ -106,7 +106,12 @@ DeviceType mpu6000_type() {
   };
   add_triad(keys, "accelerometer", "m/s2", Dimension::acceleration, usual.accelerometer);
   add_triad(keys, "gyroscope", "rad/s", Dimension::angular_rate, usual.gyroscope);
-  return {"mpu6000", "accelerometer and gyroscope on SPI", std::move(keys), make};
+  return {"mpu6000",
+          "accelerometer and gyroscope on SPI",
+          std::move(keys),
+          make,
+          {},
+          {"accel_x", "accel_y", "accel_z", "gyro_x", "gyro_y", "gyro_z"}};
 }
 
 }  // namespace whirl::rack

@@ -146,7 +146,8 @@ DeviceType ms5611_type() {
   };
   add_part(keys);
   add_physics(keys);
-  return {"ms5611", "barometer on I2C or SPI", std::move(keys), make_device<Ms5611Device>};
+  return {"ms5611", "barometer on I2C or SPI",  std::move(keys), make_device<Ms5611Device>,
+          {},       {"pressure", "temperature"}};
 }
 
 }  // namespace whirl::rack
