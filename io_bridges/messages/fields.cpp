@@ -22,8 +22,9 @@ constexpr Field::Type type_of() {
 template <typename Member>
 constexpr Field field(std::string_view name, std::size_t offset) {
   using T = std::remove_all_extents_t<Member>;
+  const std::size_t count = std::is_array_v<Member> ? std::extent_v<Member> : 1;
   return {name, type_of<T>(), static_cast<std::uint16_t>(offset),
-          static_cast<std::uint16_t>(sizeof(Member) / sizeof(T))};
+          static_cast<std::uint16_t>(count)};
 }
 
 #define WHIRL_FIELD(s, member) field<decltype(s::member)>(#member, offsetof(s, member))
