@@ -31,6 +31,8 @@ TESTS = [
     (("harness/lockstep/",), ["harness/lockstep/lockstep_test"]),
     (("harness/world/",), ["harness/world/world_test"]),
     (("harness/plan/",), ["harness/plan/signal_rows_test"]),
+    (("harness/plan/requests",), ["harness/stand/stand_test"]),
+    (("harness/plan/requests",), ["harness/flight/flight_test"]),
     (("harness/executive/",), ["harness/executive/executive_test"]),
     (JUDGING, ["harness/tests/oracle/judging_test"]),
     (JUDGING, ["harness/tests/oracle/plan_oracle", "--count", "400"]),

@@ -67,6 +67,41 @@ TEST(PlanFile, WhatIsSaidIsTaken) {
   EXPECT_NE(loaded.plans[0].run_ref, loaded.plans[1].run_ref);
 }
 
+std::string nodes(const std::string& wires) {
+  return "plan 'p' { vehicle = 'v', nodes = { { name = 'a', image = 'i', may_reset = true },"
+         " { name = 'b', image = 'j', board = 'c', watch = { 'f' } } }, " +
+         wires + " run = function(t) end }";
+}
+
+TEST(PlanFile, NodesAndTheirWiresAreTaken) {
+  const Loaded loaded = load(nodes("wires = { { from = 'b.usart1', to = 'a.uart12' } },"));
+  ASSERT_EQ(loaded.plans.size(), 1u) << loaded.error;
+  const Plan& plan = loaded.plans[0];
+  ASSERT_EQ(plan.nodes.size(), 2u);
+  EXPECT_EQ(plan.nodes[0].name, "a");
+  EXPECT_EQ(plan.nodes[1].image, "j");
+  EXPECT_EQ(plan.nodes[1].board, "c");
+  EXPECT_EQ(plan.nodes[1].watch, std::vector<std::string>{"f"});
+  EXPECT_TRUE(plan.nodes[0].may_reset);
+  EXPECT_FALSE(plan.nodes[1].may_reset);
+  ASSERT_EQ(plan.wires.size(), 1u);
+  EXPECT_EQ(plan.wires[0].a.node, 1u);
+  EXPECT_EQ(plan.wires[0].a.uart, 1);
+  EXPECT_EQ(plan.wires[0].b.node, 0u);
+  EXPECT_EQ(plan.wires[0].b.uart, 12);
+}
+
+TEST(PlanFile, RefusesNodesAndWiresThatLeadNowhere) {
+  const auto refused = [](const std::string& from, const std::string& to) {
+    return load(nodes("wires = { { from = '" + from + "', to = '" + to + "' } },")).error;
+  };
+  EXPECT_NE(refused("a.usart1", "a.usart2").find("wires[1].to: a wire joins two boards"),
+            std::string::npos);
+  for (const char* end : {"c.usart1", "a.spi1", "a", "a.usart"}) {
+    EXPECT_NE(refused("b.usart1", end).find("is no UART of a node"), std::string::npos) << end;
+  }
+}
+
 TEST(PlanFile, NamesHaveUpToTwoHundredBytes) {
   const std::string longest(200, 'x');
   ASSERT_EQ(load(with("vehicle = 'v'", longest)).plans.size(), 1u);
