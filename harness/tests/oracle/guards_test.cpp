@@ -43,6 +43,9 @@ TEST(Guards, LookAtTheStepAtWhichTheyAreSet) {
     EXPECT_TRUE(violated("t:wait '50 ms' " + guard)) << guard;
     EXPECT_FALSE(violated("t:wait '51 ms' " + guard + " t:wait '9 ms'")) << guard;
   }
+  const results::Expectation first = only(with_signal("t:always('x'):at_most '9 m' t:wait '9 ms'",
+                                                      [](int ms) { return ms == 0 ? 2.0 : 1.0; }));
+  EXPECT_EQ(first.measured, 2.0);  // of the very first step
 }
 
 TEST(Guards, TellTheWorstValueAndWhenItFirstHappened) {

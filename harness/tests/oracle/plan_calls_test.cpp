@@ -82,6 +82,11 @@ TEST(PlanCalls, RefuseWhatTheyCannotUse) {
        "axis: 'field_x' is not known"},
       {"t:fault { kind = 'code_hangs', ['function'] = 'fw::nobody' }",
        "'fw::nobody' is not watched"},
+      {"t:command { brake = '10.05 N m' }", "brake"},
+      {"t:command { brake = '-0.005 N m' }", "brake"},
+      {"t:command { pulses = { width = '1 ms', period = '20 ms', glitch = '1 us', glitch_after = "
+       "'21 ms' } }",
+       "glitch_after: beyond the period"},
       {"t:ask(1)", "a line is wanted"},
       {"t:ask 'get kt\\nget mode'", "is not one line of ASCII text"},
       {"t:ask 'caf\xC3\xA9'", "is not one line of ASCII text"},
