@@ -272,10 +272,8 @@ void VirtualBoard::run(std::int64_t until_ns, const io::Batch& sensed) {
 Result<TargetState> VirtualBoard::arrive(io::Batch& happened) {
   auto arrived = await(happened);
   if (!arrived || at_start_.empty()) return arrived;
-  io::Batch all;
-  std::swap(all, at_start_);
-  for (io::Reader r(happened.bytes()); r.next();) all.add(r.header(), r.payload());
-  happened = std::move(all);
+  at_start_.add(happened);
+  happened = std::exchange(at_start_, {});
   return arrived;
 }
 

@@ -11,6 +11,7 @@
 #include <array>
 #include <cstdint>
 #include <cstring>
+#include <initializer_list>
 #include <span>
 #include <type_traits>
 #include <vector>
@@ -219,6 +220,14 @@ class Batch {
     append(&header, sizeof header);
     append(payload.data(), payload.size());
   }
+  // The same with a payload in pieces; header.size is counted here.
+  void add(Header header, std::initializer_list<std::span<const std::uint8_t>> pieces) {
+    header.size = 0;
+    for (const auto& piece : pieces) header.size += static_cast<std::uint32_t>(piece.size());
+    append(&header, sizeof header);
+    for (const auto& piece : pieces) append(piece.data(), piece.size());
+  }
+  void add(const Batch& other) { append(other.bytes_.data(), other.bytes_.size()); }
   void add(Kind kind, std::uint16_t port, std::int64_t t_ns, const void* payload,
            std::uint32_t size) {
     const Header header{t_ns, kind, 0, port, size};
@@ -253,11 +262,10 @@ inline void add_transaction(Kind kind, std::uint16_t bus, std::int64_t stop_ns, 
                             std::span<const std::uint8_t> bytes,
                             std::span<const std::uint32_t> times_ns, Batch& batch) {
   head.kept = static_cast<std::uint32_t>(bytes.size());
-  std::vector<std::uint8_t> tail(bytes.begin(), bytes.end());
-  tail.resize(bytes.size() + times_ns.size_bytes());
-  std::copy_n(reinterpret_cast<const std::uint8_t*>(times_ns.data()), times_ns.size_bytes(),
-              tail.begin() + static_cast<std::ptrdiff_t>(bytes.size()));
-  batch.add(kind, bus, stop_ns, head, tail.data(), static_cast<std::uint32_t>(tail.size()));
+  batch.add(Header{stop_ns, kind, 0, bus, 0},
+            {{reinterpret_cast<const std::uint8_t*>(&head), sizeof head},
+             bytes,
+             {reinterpret_cast<const std::uint8_t*>(times_ns.data()), times_ns.size_bytes()}});
 }
 
 // Walks a batch: for (Reader r(bytes); r.next();) switch (r.header().kind) ...
