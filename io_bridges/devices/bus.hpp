@@ -7,6 +7,7 @@
 #pragma once
 #include <cstdint>
 #include <functional>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -96,5 +97,18 @@ struct Finding {
   std::string what;
 };
 using FindingSink = std::function<void(const Finding&)>;
+
+// What happens again and again is told once for each place and text.
+class OnceFindings {
+ public:
+  explicit OnceFindings(FindingSink sink) : sink_(std::move(sink)) {}  // may be null
+  void report(const Finding& finding) {
+    if (reported_.insert(finding.where + finding.what).second && sink_) sink_(finding);
+  }
+
+ private:
+  FindingSink sink_;
+  std::set<std::string> reported_;
+};
 
 }  // namespace whirl::io

@@ -76,9 +76,10 @@ void FaultBook::applied(const Fault& fault, Nanoseconds now) {
   }
 }
 
-const Fault* FaultBook::apply(FaultKind kind, int bus, int address, Nanoseconds now) {
+const Fault* FaultBook::apply(FaultKind kind, int bus, int address, Nanoseconds now, int axis) {
   const Fault* fault = find(kind, bus, address, now);
-  if (fault != nullptr) applied(*fault, now);
+  if (fault == nullptr || (axis != kAnywhere && fault->axis != axis)) return nullptr;
+  applied(*fault, now);
   return fault;
 }
 

@@ -71,8 +71,8 @@ class FaultBook {
   const Fault* find(FaultKind kind, int bus, int address, Nanoseconds now) const;
   // It really acted: told to the sink once per fault.
   void applied(const Fault& fault, Nanoseconds now);
-  // find() and, when there is one, applied().
-  const Fault* apply(FaultKind kind, int bus, int address, Nanoseconds now);
+  // find() and, when there is one (of that axis), applied().
+  const Fault* apply(FaultKind kind, int bus, int address, Nanoseconds now, int axis = kAnywhere);
 
   std::vector<std::uint32_t> pending() const;  // numbers of faults that nobody applied
 
@@ -85,5 +85,11 @@ class FaultBook {
   Applied sink_;
   std::vector<std::function<void(const Fault&)>> added_;
 };
+
+// The same of a part that may have no book.
+inline const Fault* apply(FaultBook* book, FaultKind kind, int bus, int address, Nanoseconds now,
+                          int axis = kAnywhere) {
+  return book == nullptr ? nullptr : book->apply(kind, bus, address, now, axis);
+}
 
 }  // namespace whirl::io

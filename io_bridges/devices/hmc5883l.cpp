@@ -71,14 +71,6 @@ Hmc5883l::Hmc5883l(EventQueue& queue, const Params& params, Sense sense, Wire* d
   set_mode(queue_.now());
 }
 
-const Fault* Hmc5883l::fault(FaultKind kind, Nanoseconds now, int axis) {
-  if (faults_ == nullptr) return nullptr;
-  const Fault* found = faults_->find(kind, params_.bus, params_.device, now);
-  if (found == nullptr || (axis != kAnywhere && found->axis != axis)) return nullptr;
-  faults_->applied(*found, now);
-  return found;
-}
-
 // ---- Measuring
 
 void Hmc5883l::set_mode(Nanoseconds now) {

@@ -95,7 +95,9 @@ class Hmc5883l : public I2cTarget {
   void set_status(std::uint8_t bit, bool on);
   void unlock();
   void drive_drdy(bool high, Nanoseconds now);
-  const Fault* fault(FaultKind kind, Nanoseconds now, int axis = kAnywhere);
+  const Fault* fault(FaultKind kind, Nanoseconds now, int axis = kAnywhere) {
+    return apply(faults_, kind, params_.bus, params_.device, now, axis);
+  }
 
   EventQueue& queue_;
   Params params_;

@@ -117,18 +117,8 @@ void Mpu6000::take_sample() {
 }
 
 double Mpu6000::faulted(int axis, double value, Nanoseconds now) {
-  if (faults_ == nullptr) return value;
-  const Fault* offset = faults_->find(FaultKind::sensor_offset, params_.bus, params_.device, now);
-  if (offset != nullptr && offset->axis == axis) {
-    faults_->applied(*offset, now);
-    value += offset->value;
-  }
-  const Fault* rail = faults_->find(FaultKind::sensor_saturated, params_.bus, params_.device, now);
-  if (rail != nullptr && rail->axis == axis) {
-    faults_->applied(*rail, now);
-    value = 1e9;
-  }
-  return value;
+  if (const Fault* offset = fault(FaultKind::sensor_offset, now, axis)) value += offset->value;
+  return fault(FaultKind::sensor_saturated, now, axis) != nullptr ? 1e9 : value;
 }
 
 void Mpu6000::store(std::uint8_t address, long counts) {
@@ -139,10 +129,7 @@ void Mpu6000::store(std::uint8_t address, long counts) {
 }
 
 void Mpu6000::encode_sample(Nanoseconds now) {
-  if (faults_ != nullptr &&
-      faults_->apply(FaultKind::sensor_frozen, params_.bus, params_.device, now) != nullptr) {
-    return;
-  }
+  if (fault(FaultKind::sensor_frozen, now) != nullptr) return;
   const double per_mps2 = kAccel_counts_per_g[registers_.peek(ACCEL_CONFIG) >> 3 & 3] / kG_mps2;
   const double per_radps =
       kGyro_counts_per_degps[registers_.peek(GYRO_CONFIG) >> 3 & 3] * kDeg_per_rad;

@@ -93,6 +93,9 @@ class Mpu6000 : public SpiTarget, public I2cTarget {
   void run_ticks(std::int64_t until);
   void take_sample();
   void encode_sample(Nanoseconds now);
+  const Fault* fault(FaultKind kind, Nanoseconds now, int axis = kAnywhere) {
+    return apply(faults_, kind, params_.bus, params_.device, now, axis);
+  }
   double faulted(int axis, double value, Nanoseconds now);
   void store(std::uint8_t address, long counts);
 

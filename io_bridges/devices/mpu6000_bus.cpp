@@ -60,9 +60,8 @@ std::uint8_t Mpu6000::read_register(std::uint8_t address, Nanoseconds now) {
   }
   if (address == FIFO_R_W) return pop_fifo();
   std::uint8_t value = registers_.read(address, now);
-  if (address == WHO_AM_I && faults_ != nullptr) {
-    const Fault* wrong =
-        faults_->apply(FaultKind::sensor_wrong_identity, params_.bus, params_.device, now);
+  if (address == WHO_AM_I) {
+    const Fault* wrong = fault(FaultKind::sensor_wrong_identity, now);
     if (wrong != nullptr) value = static_cast<std::uint8_t>(wrong->value);
   }
   const bool any_read = (registers_.peek(INT_PIN_CFG) & kINT_RD_CLEAR) != 0;

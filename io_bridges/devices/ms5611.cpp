@@ -46,15 +46,7 @@ Ms5611::Ms5611(EventQueue& queue, const Params& params, Sense sense, FaultBook* 
 }
 
 void Ms5611::report(Nanoseconds now, const std::string& what) {
-  if (reported_.insert(what).second && findings_) findings_({now, params_.name, what});
-}
-
-const Fault* Ms5611::fault(FaultKind kind, Nanoseconds now, int axis) {
-  if (faults_ == nullptr) return nullptr;
-  const Fault* found = faults_->find(kind, params_.bus, params_.device, now);
-  if (found == nullptr || (axis != kAnywhere && found->axis != axis)) return nullptr;
-  faults_->applied(*found, now);
-  return found;
+  findings_.report({now, params_.name, what});
 }
 
 // ---- Commands

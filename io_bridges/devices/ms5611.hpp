@@ -92,7 +92,9 @@ class Ms5611 : public SpiTarget, public I2cTarget {
   void read_adc(Nanoseconds now);
   void read_prom(std::size_t word, Nanoseconds now);
   std::uint8_t next_byte();  // of the answer; pre: there is one
-  const Fault* fault(FaultKind kind, Nanoseconds now, int axis = kAnywhere);
+  const Fault* fault(FaultKind kind, Nanoseconds now, int axis = kAnywhere) {
+    return apply(faults_, kind, params_.bus, params_.device, now, axis);
+  }
   bool busy(Nanoseconds now) const { return now < ready_ns_ || conversion_.pending(); }
   void report(Nanoseconds now, const std::string& what);  // once per text
 
@@ -100,8 +102,7 @@ class Ms5611 : public SpiTarget, public I2cTarget {
   Params params_;
   Sense sense_;
   FaultBook* faults_;
-  FindingSink findings_;
-  std::set<std::string> reported_;
+  OnceFindings findings_;
   RandomStream noise_, garbage_;
   Event conversion_;  // its end
 

@@ -23,10 +23,10 @@ const RegisterSpec* RegisterFile::spec(std::uint8_t address) const {
 }
 
 void RegisterFile::report(Nanoseconds now, const std::string& what) {
-  if (told_.insert(what).second && findings_) findings_({now, where_, what});
+  findings_.report({now, where_, what});
 }
 
-void RegisterFile::find_at(Nanoseconds now, std::uint8_t address, const char* what) {
+void RegisterFile::report_at(Nanoseconds now, std::uint8_t address, const char* what) {
   char text[120];
   const RegisterSpec* r = spec(address);
   std::snprintf(text, sizeof text, "register 0x%02X %s: %s", address, r == nullptr ? "" : r->name,
@@ -36,19 +36,19 @@ void RegisterFile::find_at(Nanoseconds now, std::uint8_t address, const char* wh
 
 std::uint8_t RegisterFile::read(std::uint8_t address, Nanoseconds now) {
   const RegisterSpec* r = spec(address);
-  if (r == nullptr) find_at(now, address, "read of a reserved address");
+  if (r == nullptr) report_at(now, address, "read of a reserved address");
   return r == nullptr || r->access == Access::write_only ? 0 : bytes_[address];
 }
 
 bool RegisterFile::write(std::uint8_t address, std::uint8_t value, Nanoseconds now) {
   const RegisterSpec* r = spec(address);
   if (r == nullptr || r->access == Access::read_only) {
-    find_at(now, address,
-            r == nullptr ? "write to a reserved address" : "write to a read-only one");
+    report_at(now, address,
+              r == nullptr ? "write to a reserved address" : "write to a read-only one");
     return false;
   }
   if (r->depth == Depth::stored_only && value != r->reset) {
-    find_at(now, address, "setting stored, but this model does not act on it");
+    report_at(now, address, "setting stored, but this model does not act on it");
   }
   bytes_[address] = value;
   return true;

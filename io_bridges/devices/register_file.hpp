@@ -41,13 +41,12 @@ class RegisterFile {
 
  private:
   const RegisterSpec* spec(std::uint8_t address) const;
-  void find_at(Nanoseconds now, std::uint8_t address, const char* what);
+  void report_at(Nanoseconds now, std::uint8_t address, const char* what);
 
   std::span<const RegisterSpec> specs_;
   std::array<std::uint8_t, 256> bytes_{};
   std::string where_;
-  FindingSink findings_;
-  std::set<std::string> told_;
+  OnceFindings findings_;
 };
 
 }  // namespace whirl::io

@@ -54,8 +54,8 @@ class DeviceRack::Wiring final : public rack::Rack {
   void report_once(io::Nanoseconds now, const std::string& where, const std::string& what);
 
   Site site_;
+  io::OnceFindings once_{site_.finding};
   io::FaultBook faults_;
-  std::set<std::string> reported_;                // findings
   std::map<const io::Wire*, std::string> names_;  // of devices by their chip select
   std::vector<BoardPin> named_pins_;              // with neither resistor nor bus
   std::vector<std::string> analog_;               // pins that a device puts a voltage on
@@ -152,7 +152,7 @@ Result<Done> DeviceRack::Wiring::subscribe(rack::RackDevice& device, const std::
 
 void DeviceRack::Wiring::report_once(io::Nanoseconds now, const std::string& where,
                                      const std::string& what) {
-  if (reported_.insert(where + what).second) site_.finding({now, where, what});
+  once_.report({now, where, what});
 }
 
 void DeviceRack::Wiring::report_fights(io::Wire& wire, const std::string& name) {
