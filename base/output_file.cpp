@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <utility>
 
 namespace whirl {
 
@@ -11,6 +12,16 @@ OutputFile::OutputFile(std::string path) : path_(std::move(path)) {
   errno = 0;
   out_.open(part(), std::ios::binary);
   if (!out_) why_not_ = errno;
+}
+
+OutputFile::OutputFile(OutputFile&& other) noexcept
+    : path_(std::move(other.path_)),
+      out_(std::move(other.out_)),
+      pending_(std::exchange(other.pending_, false)),
+      why_not_(other.why_not_) {}
+
+OutputFile::~OutputFile() {
+  if (pending_) discard();
 }
 
 void OutputFile::write(std::string_view text) {
@@ -24,7 +35,10 @@ Result<Done> OutputFile::close() {
   const bool open = static_cast<bool>(out_);
   errno = 0;
   out_.close();
-  if (open && out_ && std::rename(part().c_str(), path_.c_str()) == 0) return Done{};
+  if (open && out_ && std::rename(part().c_str(), path_.c_str()) == 0) {
+    pending_ = false;
+    return Done{};
+  }
   if (why_not_ == 0) why_not_ = errno;
   discard();
   const std::string why = why_not_ != 0 ? std::string(": ") + std::strerror(why_not_) : "";
@@ -33,6 +47,7 @@ Result<Done> OutputFile::close() {
 }
 
 void OutputFile::discard() {
+  pending_ = false;
   out_.close();
   std::error_code ignored;
   std::filesystem::remove(part(), ignored);

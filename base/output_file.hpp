@@ -1,5 +1,5 @@
 // A file that is written whole or not at all: as NAME.part until it is closed. What bore the name before
-// stays until then.
+// stays until then; who never closes it leaves nothing.
 #pragma once
 #include <fstream>
 #include <string>
@@ -12,19 +12,23 @@ namespace whirl {
 class OutputFile {
  public:
   explicit OutputFile(std::string path);
+  ~OutputFile();
+  OutputFile(OutputFile&& other) noexcept;
+  OutputFile& operator=(OutputFile&&) = delete;
 
   void write(std::string_view text);
   // Errors  host: it could not be written whole; nothing of it remains
   Result<Done> close();
-  void discard();  // instead: it is not wanted after all
   const std::string& path() const { return path_; }
 
  private:
   std::string part() const { return path_ + ".part"; }
+  void discard();
 
   std::string path_;
   std::ofstream out_;
-  int why_not_ = 0;  // errno of what failed first
+  bool pending_ = true;  // neither closed nor discarded
+  int why_not_ = 0;      // errno of what failed first
 };
 
 // Nothing is left of a file that could not be written whole.

@@ -35,13 +35,14 @@ Character decode(std::string_view bytes) {
   return {code, size};
 }
 
+constexpr char kHex[] = "0123456789ABCDEF";
+
 bool is_control(std::uint32_t code) {
   return code < 0x20 || (code >= 0x7F && code < 0xA0);
 }
 
 template <typename Allowed>
 std::string shown(std::string_view bytes, Allowed allowed) {
-  constexpr char kHex[] = "0123456789ABCDEF";
   std::string out;
   out.reserve(bytes.size());
   while (!bytes.empty()) {
@@ -82,6 +83,13 @@ std::string hex(std::uint32_t value) {
   char text[16];
   std::snprintf(text, sizeof text, "0x%08x", value);
   return text;
+}
+
+void add_hex(std::span<const std::uint8_t> bytes, std::string& text) {
+  for (const std::uint8_t byte : bytes) {
+    text += kHex[byte >> 4];
+    text += kHex[byte & 15];
+  }
 }
 
 }  // namespace whirl

@@ -5,6 +5,7 @@
 //   Else    each byte that is not part of such a character is shown as \xNN
 #pragma once
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -13,6 +14,7 @@ namespace whirl {
 std::string legal_text(std::string_view bytes);      // for files
 std::string printable_line(std::string_view bytes);  // for terminals: no control character at all
 
-std::string hex(std::uint32_t value);  // "0x0800012c"
+std::string hex(std::uint32_t value);                                  // "0x0800012c"
+void add_hex(std::span<const std::uint8_t> bytes, std::string& text);  // "6A00", behind it
 
 }  // namespace whirl

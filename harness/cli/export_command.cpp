@@ -61,19 +61,17 @@ int export_command(const ExportOptions& options) {
   const std::string messages = fs::is_directory(options.run, ignored)
                                    ? (fs::path(options.run) / "messages.whirl").string()
                                    : options.run;
-  const auto seen = results::look_through(messages);
-  if (!seen) return complain(seen.error());
-  // What the run itself has made of it is better than what damage has left.
-  if (seen.value().damage && options.out.empty()) {
-    Error damage = *seen.value().damage;
-    damage.cure = "nothing was written; --out FOLDER takes what is before that";
-    return complain(damage);
-  }
   const auto folder = folder_for(options.out, messages);
   if (!folder) return complain(folder.error());
   const std::vector<results::SinkType> types = wanted(options.formats);
-  const auto done = results::replay(messages, folder.value(), types);
+  // What the run itself has made of it is better than what damage has left.
+  const auto damaged = options.out.empty() ? results::Damaged::drop : results::Damaged::keep;
+  auto done = results::replay(messages, folder.value(), types, {}, damaged);
   if (!done) return complain(done.error());
+  if (done.value().damage && damaged == results::Damaged::drop) {
+    done.value().damage->cure = "nothing was written; --out FOLDER takes what is before that";
+    return complain(*done.value().damage);
+  }
   int code = 0;
   for (const Error& lost : done.value().lost) code = complain(lost);
   if (done.value().damage) code = complain(*done.value().damage);

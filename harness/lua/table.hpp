@@ -88,7 +88,7 @@ class Table {
   std::vector<Table> tables(std::string_view key) const;  // a list of tables; empty where missing
   std::vector<Table> items() const;                       // this table's own list of tables
 
-  // A value of any kind, for what is only passed on: what quantity() would read without a asked.
+  // A value of any kind, for what is only passed on: what quantity() would read, of any dimension.
   Quantity any_quantity(std::string_view key) const;
 
   // Puts a value where a path of this table says, in place of what stands there or as a new key; see

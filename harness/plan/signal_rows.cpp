@@ -19,8 +19,8 @@ void SignalRows::append(std::span<const double> row) {
   std::copy(row.begin(), row.end(),
             past_.begin() + static_cast<std::ptrdiff_t>(rows_ % kept_ * columns_.size()));
   ++rows_;
-  for (Recording& record : records_) {
-    if (!record.open) continue;
+  for (const std::size_t number : open_) {
+    Recording& record = records_[number];
     for (std::size_t i = 0; i < record.columns.size(); ++i) {
       record.values[i].push_back(row[record.columns[i]]);
     }
@@ -40,11 +40,12 @@ std::size_t SignalRows::open_record(std::vector<std::size_t> columns) {
     }
   }
   records_.push_back(std::move(record));
+  open_.push_back(records_.size() - 1);
   return records_.size() - 1;
 }
 
 void SignalRows::close_record(std::size_t number) {
-  records_[number].open = false;
+  std::erase(open_, number);
 }
 
 metrics::Record SignalRows::record(std::size_t number, std::size_t column) const {

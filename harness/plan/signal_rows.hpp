@@ -31,7 +31,6 @@ class SignalRows {
     std::vector<std::size_t> columns;
     std::vector<std::vector<double>> values;  // of each
     std::size_t command = 0;
-    bool open = true;
   };
 
   std::vector<results::Column> columns_;
@@ -40,6 +39,7 @@ class SignalRows {
   std::vector<double> past_;  // a ring of them
   std::size_t rows_ = 0;      // ever
   std::vector<Recording> records_;
+  std::vector<std::size_t> open_;  // of the records
 };
 
 }  // namespace whirl::plan

@@ -2,7 +2,7 @@
 //
 //   Start    set-point 0 from power-up on: the zeros that arm
 //   Wire     a set-point has passed when the reply to its write says that it was acknowledged
-//   Reported     status of the last read whose CRC is right; NaN before
+//   Reported status of the last read whose CRC is right; NaN before
 //   Raw      any bytes and lengths beside them: what a careless master might send
 #pragma once
 #include <cmath>

@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <type_traits>
 
+#include "base/text.hpp"
+
 namespace whirl::io {
 namespace {
 
@@ -201,14 +203,6 @@ std::string value_text(Field::Type type, std::span<const std::uint8_t> payload, 
       return std::to_string(value_at<std::uint8_t>(payload, at));
   }
   return "";
-}
-
-void add_hex(std::span<const std::uint8_t> bytes, std::string& text) {
-  static constexpr char kHex[] = "0123456789ABCDEF";
-  for (const std::uint8_t byte : bytes) {
-    text += kHex[byte >> 4];
-    text += kHex[byte & 15];
-  }
 }
 
 void add_transfer(std::size_t kept, std::span<const std::uint8_t> tail, std::string& text) {

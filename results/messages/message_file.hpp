@@ -34,7 +34,6 @@ class MessageWriter {
   //         that was cut off; of a file that could not even begin nothing is.
   Result<Done> finish();
 
-  const std::string& path() const;
   const RunHead& head() const;
   std::uint64_t rows() const;  // so far
 

@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <fstream>
 
-#include "base/check.hpp"
 #include "results/messages/file_format.hpp"
 #include "results/messages/message_file.hpp"
 #include "results/messages/row_code.hpp"
@@ -110,9 +109,6 @@ void MessageWriter::add_row(std::int64_t t_ns, std::span<const double> values) {
   ++inner_->rows;
 }
 
-const std::string& MessageWriter::path() const {
-  return inner_->path;
-}
 const RunHead& MessageWriter::head() const {
   return inner_->head;
 }

@@ -1,7 +1,7 @@
 // bus.csv of each board: every transfer on I2C and SPI with its bytes and times.
 #include <cstdio>
 
-#include "base/output_file.hpp"
+#include "base/text.hpp"
 #include "results/sinks/sink_types.hpp"
 
 namespace whirl::results {
@@ -27,20 +27,14 @@ class BusCsv : public Sink {
                   spi ? "spi" : "i2c", header.port, t.address,
                   spi ? "both" : (t.read != 0 ? "read" : "write"), t.acked != 0 ? 1 : 0, t.length);
     line_ = text;
-    for (const std::uint8_t byte : message.transferred()) {
-      static constexpr char kHex[] = "0123456789ABCDEF";
-      line_ += kHex[byte >> 4];
-      line_ += kHex[byte & 15];
-    }
+    add_hex(message.transferred(), line_);
     line_ += '\n';
     files_[header.board].write(line_);
   }
 
   std::vector<Error> finish() override {
     std::vector<Error> lost;
-    for (OutputFile& file : files_) {
-      if (const auto closed = file.close(); !closed) lost.push_back(closed.error());
-    }
+    for (OutputFile& file : files_) close(file, lost);
     return lost;
   }
 
@@ -51,9 +45,6 @@ class BusCsv : public Sink {
 
 }  // namespace
 
-const SinkType kBus_csv{"csv", "bus.csv", true,
-                        [](const SinkSetup& setup) -> std::unique_ptr<Sink> {
-                          return std::make_unique<BusCsv>(setup);
-                        }};
+const SinkType kBus_csv{"csv", "bus.csv", true, make_sink<BusCsv>};
 
 }  // namespace whirl::results

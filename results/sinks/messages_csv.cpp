@@ -1,7 +1,6 @@
 // messages.csv: everything that crossed, a line each, with the names of its fields.
 #include <cstdio>
 
-#include "base/output_file.hpp"
 #include "io_bridges/messages/fields.hpp"
 #include "results/sinks/sink_types.hpp"
 
@@ -65,8 +64,9 @@ class MessagesCsv : public Sink {
   }
 
   std::vector<Error> finish() override {
-    if (const auto closed = out_.close(); !closed) return {closed.error()};
-    return {};
+    std::vector<Error> lost;
+    close(out_, lost);
+    return lost;
   }
 
  private:
@@ -77,9 +77,6 @@ class MessagesCsv : public Sink {
 
 }  // namespace
 
-const SinkType kMessages_csv{"csv", "messages.csv", false,
-                             [](const SinkSetup& setup) -> std::unique_ptr<Sink> {
-                               return std::make_unique<MessagesCsv>(setup);
-                             }};
+const SinkType kMessages_csv{"csv", "messages.csv", false, make_sink<MessagesCsv>};
 
 }  // namespace whirl::results

@@ -28,38 +28,35 @@ void pour(MessageReader& reader, const std::vector<Sink*>& sinks, Replayed& done
   }
 }
 
-}  // namespace
-
-Result<Replayed> look_through(const std::string& messages) {
+// Of a run that was cut off nobody wrote down how many rows there are.
+Result<std::uint64_t> count_rows(const std::string& messages) {
   auto reader = MessageReader::open(messages);
   if (!reader) return reader.error();
   Replayed done;
   pour(reader.value(), {}, done);
-  done.whole = reader.value().rows().has_value() && !done.damage;
-  return done;
+  return done.rows;
 }
 
+}  // namespace
+
 Result<Replayed> replay(const std::string& messages, const std::string& folder,
-                        const std::vector<SinkType>& types, const std::vector<Sink*>& others) {
+                        const std::vector<SinkType>& types, const std::vector<Sink*>& others,
+                        Damaged damaged) {
   auto reader = MessageReader::open(messages);
   if (!reader) return reader.error();
   Replayed done;
   const std::optional<std::uint64_t> stated = reader.value().rows();
-  // Of a run that was cut off nobody wrote down how many rows there are.
-  std::uint64_t rows = stated.value_or(0);
-  if (!stated) {
-    const auto counted = look_through(messages);
-    if (!counted) return counted.error();
-    rows = counted.value().rows;
-  }
+  const auto rows = stated ? Result<std::uint64_t>(*stated) : count_rows(messages);
+  if (!rows) return rows.error();
   std::vector<std::unique_ptr<Sink>> made;
   std::vector<Sink*> sinks = others;
   for (const SinkType& type : types) {
-    made.push_back(type.make({reader.value().head(), folder, rows}));
+    made.push_back(type.make({reader.value().head(), folder, rows.value()}));
     sinks.push_back(made.back().get());
   }
   pour(reader.value(), sinks, done);
   done.whole = stated.has_value() && !done.damage;
+  if (done.damage && damaged == Damaged::drop) return done;
   for (Sink* sink : sinks) {
     for (Error& lost : sink->finish()) done.lost.push_back(std::move(lost));
   }

@@ -18,13 +18,13 @@ struct Replayed {
   std::optional<Error> damage;  // what follows could not be read
 };
 
-// How much is in it, and in which state.
-// Errors  bad_input: no such file, or no file of messages
-Result<Replayed> look_through(const std::string& messages);
+// Of a damaged file what is before the damage, or no files at all.
+enum class Damaged { keep, drop };
 
 // The sinks are given what is in the file, up to its damage.
-// Errors  as above; then no sink has been made
+// Errors  bad_input: no such file, or no file of messages; then no sink has been made
 Result<Replayed> replay(const std::string& messages, const std::string& folder,
-                        const std::vector<SinkType>& types, const std::vector<Sink*>& others = {});
+                        const std::vector<SinkType>& types, const std::vector<Sink*>& others = {},
+                        Damaged damaged = Damaged::keep);
 
 }  // namespace whirl::results

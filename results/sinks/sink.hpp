@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/output_file.hpp"
 #include "base/result.hpp"
 #include "io_bridges/messages/messages.hpp"
 #include "results/messages/run_head.hpp"
@@ -42,6 +43,15 @@ struct SinkType {
   bool in_each_run = false;
   std::unique_ptr<Sink> (*make)(const SinkSetup& setup) = nullptr;
 };
+
+template <typename T>
+std::unique_ptr<Sink> make_sink(const SinkSetup& setup) {
+  return std::make_unique<T>(setup);
+}
+
+inline void close(OutputFile& file, std::vector<Error>& lost) {
+  if (const auto closed = file.close(); !closed) lost.push_back(closed.error());
+}
 
 // "FOLDER/bus.csv"; of a board with a name FOLDER/bus_NAME.csv.
 inline std::string file_of_node(const SinkSetup& setup, std::size_t node, const std::string& stem,

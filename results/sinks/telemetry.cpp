@@ -1,7 +1,6 @@
 // What a board sent on its UARTs. MAVLink is telemetry.tlog, framed as it came: time in us (big-endian
 // u64) before each chunk of one message, as ground stations keep their logs. Anything else is serial.txt,
 // byte for byte. Which of the two it is shows at the end only: both are written, one stays.
-#include "base/output_file.hpp"
 #include "results/sinks/sink_types.hpp"
 
 namespace whirl::results {
@@ -38,9 +37,7 @@ class Telemetry : public Sink {
   std::vector<Error> finish() override {
     std::vector<Error> lost;
     for (Files& files : files_) {
-      OutputFile& kept = files.mavlink ? files.tlog : files.serial;
-      (files.mavlink ? files.serial : files.tlog).discard();
-      if (const auto closed = kept.close(); !closed) lost.push_back(closed.error());
+      close(files.mavlink ? files.tlog : files.serial, lost);
     }
     return lost;
   }
@@ -55,9 +52,6 @@ class Telemetry : public Sink {
 
 }  // namespace
 
-const SinkType kTelemetry{"csv", "telemetry.tlog or serial.txt", true,
-                          [](const SinkSetup& setup) -> std::unique_ptr<Sink> {
-                            return std::make_unique<Telemetry>(setup);
-                          }};
+const SinkType kTelemetry{"csv", "telemetry.tlog or serial.txt", true, make_sink<Telemetry>};
 
 }  // namespace whirl::results

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <charconv>
 
-#include "base/output_file.hpp"
 #include "results/sinks/sink_types.hpp"
 
 namespace whirl::results {
@@ -37,8 +36,9 @@ class TruthCsv : public Sink {
 
   std::vector<Error> finish() override {
     flush();
-    if (const auto closed = out_.close(); !closed) return {closed.error()};
-    return {};
+    std::vector<Error> lost;
+    close(out_, lost);
+    return lost;
   }
 
  private:
@@ -60,9 +60,6 @@ class TruthCsv : public Sink {
 
 }  // namespace
 
-const SinkType kTruth_csv{"csv", "truth.csv", true,
-                          [](const SinkSetup& setup) -> std::unique_ptr<Sink> {
-                            return std::make_unique<TruthCsv>(setup);
-                          }};
+const SinkType kTruth_csv{"csv", "truth.csv", true, make_sink<TruthCsv>};
 
 }  // namespace whirl::results

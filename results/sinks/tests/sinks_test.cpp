@@ -225,8 +225,9 @@ class Counts : public Sink {
     for (const auto& [board, count] : messages_) {
       out_.write(std::to_string(board) + " " + std::to_string(count) + "\n");
     }
-    if (const auto closed = out_.close(); !closed) return {closed.error()};
-    return {};
+    std::vector<Error> lost;
+    close(out_, lost);
+    return lost;
   }
 
  private:
@@ -234,10 +235,7 @@ class Counts : public Sink {
   std::map<int, int> messages_;
 };
 
-const SinkType kCounts{"counts", "counts.txt", false,
-                       [](const SinkSetup& setup) -> std::unique_ptr<Sink> {
-                         return std::make_unique<Counts>(setup);
-                       }};
+const SinkType kCounts{"counts", "counts.txt", false, make_sink<Counts>};
 
 TEST_F(Sinks, AToyIsOneFileAndOneLine) {
   head_.nodes = {{"left", {}, {}, {}}, {"right", {}, {}, {}}};
