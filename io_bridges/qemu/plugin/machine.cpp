@@ -56,6 +56,7 @@ Result<Done> Machine::build(const std::string& versions) {
   if (core_memory_ == nullptr || registers == nullptr) {
     return whirl::Error{ErrorKind::internal, "QEMU", "the core has no NVIC where 7.2 has it", ""};
   }
+  init_timers();  // a part may set its first event as it is made
   const auto devices = board_.build_devices();
   if (!devices) return devices.error();
   cpu_ = api_.qemu_get_cpu(0);
@@ -75,7 +76,6 @@ Result<Done> Machine::build(const std::string& versions) {
       api_, board_, reinterpret_cast<MemoryRegion*>(registers),
       [this] { reset_core(stm32::ResetCause::software); },
       [this](std::uint32_t address) { accessed(address); });
-  init_timers();
   map_memories();
   load_image();
   board_.power_on(versions);
