@@ -144,6 +144,18 @@ struct Statustext {
   std::string string() const { return {text.data(), strnlen(text.data(), text.size())}; }
 };
 
+struct DebugFloatArray {
+  static constexpr std::uint32_t kId = 350;
+  std::uint64_t time_usec = 0;
+  std::uint16_t array_id = 0;
+  std::array<char, 10> name{};
+  std::array<float, 58> data{};
+  template <typename V>
+  void fields(V& v) {
+    v(time_usec, array_id, name, data);
+  }
+};
+
 namespace detail {
 
 struct Packer {

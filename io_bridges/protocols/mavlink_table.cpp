@@ -63,6 +63,7 @@ constexpr MavlinkInfo kMessages[] = {
     {290, "ESC_INFO", 46, 46, 251},
     {291, "ESC_STATUS", 57, 57, 10},
     {331, "ODOMETRY", 233, 230, 91},
+    {350, "DEBUG_FLOAT_ARRAY", 252, 20, 232},
     {375, "ACTUATOR_OUTPUT_STATUS", 140, 140, 251},
     {11030, "ESC_TELEMETRY_1_TO_4", 44, 44, 144},
     {11031, "ESC_TELEMETRY_5_TO_8", 44, 44, 133},
