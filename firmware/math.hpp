@@ -47,6 +47,12 @@ inline Quaternion turned(const Quaternion& q_WB, const Vector3& w_B_radps, float
   return (q_WB * step).normalized();
 }
 
+// Of the rotation that q stands for, R: the vector of (R - R')/2, thus its axis times the sine of its
+// angle, whatever the sign of q.
+inline Vector3 antisymmetric_part(const Quaternion& q) {
+  return 2.0f * q.w() * q.vec();
+}
+
 // Cosine of the angle between the body's z axis and down.
 inline float tilt_cosine(const Quaternion& q_WB) {
   return 1.0f - 2.0f * (q_WB.x() * q_WB.x() + q_WB.y() * q_WB.y());

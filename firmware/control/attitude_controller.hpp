@@ -1,8 +1,11 @@
 // Torque that turns the vehicle into the attitude asked for.
 //
 //   Source  [Bangura 2017, 6.4]: qe = qd^-1 q, tau = tau_d - KW (W~ + Kq qe_vec), with a trim by an
-//           integral of the angle; tau_d is the gyroscopic term W x I W
+//           integral of the angle; tau_d = I Wd' + W x I W - tau_D (6.18), tau_D what the rotors' drag
+//           makes about the centre of mass by their height above it. The rotors' own spin is left out:
+//           two turn each way, in hover it cancels
 #pragma once
+#include "firmware/control/desired_attitude.hpp"
 #include "firmware/math.hpp"
 
 namespace fw {
@@ -11,7 +14,7 @@ class AttitudeController {
  public:
   void reset() { trim_B_Nm_.setZero(); }
   Vector3 torque(const Quaternion& q_WB, const Vector3& w_WB_B_radps,
-                 const Quaternion& q_WB_desired, float dt_s, bool trim);
+                 const ThrustAndAttitude& wanted, float dt_s, bool trim);
 
  private:
   Vector3 trim_B_Nm_ = Vector3::Zero();

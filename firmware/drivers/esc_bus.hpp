@@ -6,20 +6,14 @@
 #pragma once
 #include <algorithm>
 #include <array>
-#include <concepts>
 #include <cstdint>
 #include <span>
 
+#include "firmware/drivers/i2c_queue.hpp"
 #include "firmware/esc/core/protocol.hpp"
-#include "firmware/hal/i2c_job.hpp"
 #include "firmware/status.hpp"
 
 namespace fw {
-
-template <typename B>
-concept I2cQueue = requires(B bus, const hal::I2cJob& job) {
-  { bus.submit(job) } -> std::same_as<Status>;
-};
 
 template <I2cQueue Bus>
 class EscBus {

@@ -6,14 +6,13 @@ namespace fw {
 namespace {
 
 constexpr float kAttitudeStep_s = 0.005f, kPositionStep_s = 0.025f;
-// On the ground the accelerometer may set roll and pitch fast; in flight it is a slow reference.
-constexpr float kAccelGainGround_radps = 2.0f, kAccelGainFlight_radps = 0.2f;
-constexpr float kHeadingShareGround = 1.0f, kHeadingShareFlight = 0.1f;
 constexpr float kSpinUp_s = 1.5f, kLiftTime_s = 0.8f, kAirborne_m = 0.06f;
 constexpr float kTipped_cos = 0.5f;       // 60 degrees
 constexpr float kTiltToArm_cos = 0.985f;  // 10 degrees
 constexpr float kHighest_m = 10.0f;       // of a take-off
 constexpr float kAboveGround_m = 0.3f;    // a target below that does not mean flight
+constexpr float kJoin_m = 0.3f;           // a trajectory is joined from so near
+constexpr float kTargetDelay_s = 0.014f;  // 65 bytes at 57600 baud, and half a poll
 constexpr std::uint16_t kIdle = 1;        // the lowest set-point that turns a rotor
 
 }  // namespace
@@ -57,7 +56,7 @@ const char* text_of(Reason reason) {
 }
 
 void Flight::tick() {
-  ++fix_age_ms_;
+  estimator_.tick();
   ++target_age_ms_;
   for (std::uint32_t& age : esc_silent_ms_) ++age;
 }
@@ -65,10 +64,7 @@ void Flight::tick() {
 void Flight::on_imu(const ImuSample& sample) {
   tick();
   imu_missing_ms_ = 0;
-  sample_ = sample;
-  a_sum_ += sample.a_B_mps2;
-  w_sum_ += sample.w_B_radps;
-  ++sum_count_;
+  estimator_.on_imu(sample);
 }
 
 void Flight::on_imu_missing() {
@@ -77,28 +73,52 @@ void Flight::on_imu_missing() {
 }
 
 void Flight::on_fix(const CaptureFix& fix) {
-  const bool first = fix_age_ms_ >= kCaptureLost_ms && !in_air();
-  const float since_last_s = 1e-3f * static_cast<float>(fix_age_ms_);
-  fix_ = fix;
-  fix_age_ms_ = 0;
-  attitude_.correct_heading(fix.yaw_rad, in_air() ? kHeadingShareFlight : kHeadingShareGround);
-  if (first) return position_.start(fix.p_WB_W_m);
-  position_.correct(fix.p_WB_W_m, since_last_s);
-  // In the air an innovation is flight; standing still it tells whether the filter has settled.
-  still_fixes_ = position_.innovation_W_m().norm() < 0.03f ? still_fixes_ + 1 : 0;
+  estimator_.on_fix(fix);
 }
 
-void Flight::on_target(const Vector3& p_W_m, float yaw_rad) {
+// False: it asks to land, or for nothing that can be flown to now.
+bool Flight::accept_target(const Vector3& p_W_m, float yaw_rad) {
   target_age_ms_ = 0;
   const bool on_ground = p_W_m.z() > ground_W_m_.z() - kAboveGround_m;
   if (state_ == FlightState::flying) {
     if (on_ground && target_W_m_.z() <= ground_W_m_.z() - kAboveGround_m && airborne_) {
-      return enter(FlightState::landing, Reason::commanded);
+      enter(FlightState::landing, Reason::commanded);
+      return false;
     }
-    if (on_ground) return;
+    if (on_ground) return false;
   }
   target_W_m_ = p_W_m;
   target_yaw_rad_ = yaw_rad;
+  return true;
+}
+
+void Flight::on_target(const Vector3& p_W_m, float yaw_rad) {
+  if (accept_target(p_W_m, yaw_rad)) aim_ = Aim::place;
+}
+
+void Flight::on_trajectory(const TrajectoryPoint& point) {
+  const float since_last_s = 1e-3f * static_cast<float>(target_age_ms_);
+  const bool goes_on = aim_ == Aim::trajectory && target_age_ms_ < kTargetFresh_ms;
+  if (!accept_target(point.p_W_m, point.yaw_rad)) return;
+  const bool near = (point.p_W_m - reference_.p_W_m()).norm() < kJoin_m;
+  if (aim_ != Aim::trajectory && !near) {
+    aim_ = Aim::place;
+    return;
+  }
+  // Two points that came together are no time apart.
+  jerk_W_mps3_ = goes_on && since_last_s > 0.02f
+                     ? Vector3((point.a_W_mps2 - point_.a_W_mps2) / since_last_s)
+                     : Vector3::Zero();
+  point_ = point;
+  aim_ = Aim::trajectory;
+}
+
+void Flight::on_velocity(const Vector3& v_W_mps, float z_m, float yaw_rad) {
+  const Vector3& p_W = estimator_.p_WB_W_m();
+  if (!accept_target({p_W.x(), p_W.y(), z_m}, yaw_rad)) return;
+  target_v_W_mps_ = {v_W_mps.x(), v_W_mps.y(), 0.0f};
+  if (aim_ != Aim::velocity) velocity_control_.reset();
+  aim_ = Aim::velocity;
 }
 
 Reason Flight::first_esc_problem() const {
@@ -117,10 +137,10 @@ Reason Flight::ready_to_arm() const {
   constexpr std::uint32_t kSettled = 20;  // fixes in a row, half a second
   if (imu_missing_ms_ > kImuLost_ms) return Reason::imu_not_running;
   if (imu_frozen_) return Reason::imu_frozen;
-  if (fix_age_ms_ > kCaptureFresh_ms) return Reason::no_capture;
-  if (!calibrated_) return Reason::imu_not_calibrated;
-  if (still_fixes_ < kSettled) return Reason::estimate_not_converged;
-  if (tilt_cosine(attitude_.q_WB()) < kTiltToArm_cos) return Reason::tilted;
+  if (estimator_.fix_age_ms() > Estimator::kFixFresh_ms) return Reason::no_capture;
+  if (!estimator_.calibrated()) return Reason::imu_not_calibrated;
+  if (estimator_.still_fixes() < kSettled) return Reason::estimate_not_converged;
+  if (tilt_cosine(estimator_.q_WB()) < kTiltToArm_cos) return Reason::tilted;
   return first_esc_problem();
 }
 
@@ -129,7 +149,7 @@ Reason Flight::arm() {
   if (state_ != FlightState::disarmed) return Reason::wrong_state;
   if (const Reason why_not = ready_to_arm(); why_not != Reason::none) return why_not;
   emergency_ = false;
-  ground_W_m_ = position_.p_WB_W_m();
+  ground_W_m_ = estimator_.p_WB_W_m();
   enter(FlightState::armed, Reason::commanded);
   return Reason::none;
 }
@@ -145,7 +165,7 @@ Reason Flight::take_off(float height_m) {
   if (!(height_m > kAboveGround_m && height_m < kHighest_m)) return Reason::height_out_of_range;
   if (state_ == FlightState::armed) {
     target_W_m_ = ground_W_m_;
-    target_yaw_rad_ = yaw_of(attitude_.q_WB());
+    target_yaw_rad_ = yaw_of(estimator_.q_WB());
     enter(FlightState::flying, Reason::commanded);
   }
   target_W_m_.z() = -height_m;
@@ -160,9 +180,11 @@ Reason Flight::land() {
 
 void Flight::enter(FlightState state, Reason reason) {
   if (state == FlightState::flying) {
-    reference_.start(position_.p_WB_W_m(), yaw_of(attitude_.q_WB()));
+    reference_.start(estimator_.p_WB_W_m(), yaw_of(estimator_.q_WB()));
     attitude_control_.reset();
     position_control_.reset();
+    velocity_control_.reset();
+    aim_ = Aim::place;
     lift_ = 0.36f;  // what the rotors carry at idle
     airborne_ = false;
   }
@@ -177,48 +199,20 @@ void Flight::stop_motors(Reason reason, bool emergency) {
   emergency_ = emergency;
   airborne_ = false;
   setpoints_.fill(0);
-  calibration_.restart();
 }
 
 void Flight::attitude_step() {
   estimate();
-  if (state_ == FlightState::disarmed) calibrate_on_ground();
   supervise();
   control();
 }
 
 void Flight::estimate() {
-  if (sum_count_ > 0) {
-    const float scale = 1.0f / static_cast<float>(sum_count_);
-    a_B_mps2_ = scale * a_sum_ - accel_bias_B_mps2_;
-    const Vector3 w_B = scale * w_sum_;
-    a_sum_.setZero();
-    w_sum_.setZero();
-    sum_count_ = 0;
-    if (!started_) attitude_.start(a_B_mps2_, fix_.yaw_rad);
-    started_ = true;
-    const float gain =
-        state_ == FlightState::disarmed ? kAccelGainGround_radps : kAccelGainFlight_radps;
-    attitude_.update(w_B, a_B_mps2_, kAttitudeStep_s, gain);
-  }
-  position_.predict(attitude_.q_WB(), a_B_mps2_, kAttitudeStep_s);
-}
-
-void Flight::calibrate_on_ground() {
   const bool turning = std::any_of(
       esc_status_.begin(), esc_status_.end(),
       [](const esc::protocol::Status& s) { return (s.flags & esc::flag_turning) != 0; });
-  if (turning || imu_frozen_ || fix_age_ms_ > kCaptureFresh_ms) return calibration_.restart();
-  const Quaternion q_WB = from_euler(fix_.roll_rad, fix_.pitch_rad, fix_.yaw_rad);
-  const Vector3 raw_w = attitude_.w_WB_B_radps() + attitude_.gyro_bias_B_radps();
-  if (!calibration_.add(raw_w, a_B_mps2_ + accel_bias_B_mps2_, q_WB)) return;
-  attitude_.set_gyro_bias(calibration_.gyro_bias_B_radps());
-  accel_bias_B_mps2_ = calibration_.accel_bias_B_mps2();
-  if (!calibrated_) {
-    attitude_.start(q_WB.conjugate() * Vector3(0.0f, 0.0f, -config::kGravity_mps2), fix_.yaw_rad);
-    position_.start(fix_.p_WB_W_m);
-  }
-  calibrated_ = true;
+  const bool resting = state_ == FlightState::disarmed && !turning && !imu_frozen_;
+  estimator_.step({.in_flight = in_air(), .airborne = in_air() && airborne_, .resting = resting});
 }
 
 void Flight::supervise() {
@@ -226,14 +220,14 @@ void Flight::supervise() {
   if (state_ == FlightState::disarmed) return;
   if (imu_missing_ms_ > kImuLost_ms) return stop_motors(Reason::imu_not_running, true);
   if (imu_frozen_) return stop_motors(Reason::imu_frozen, true);
-  tipped_s_ = tilt_cosine(attitude_.q_WB()) < kTipped_cos ? tipped_s_ + kAttitudeStep_s : 0.0f;
+  tipped_s_ = tilt_cosine(estimator_.q_WB()) < kTipped_cos ? tipped_s_ + kAttitudeStep_s : 0.0f;
   if (tipped_s_ > 0.1f) return stop_motors(Reason::tipped_over, true);
   watch_flight();
 }
 
 // What ends a flight, or begins it: from here on the vehicle can still be controlled.
 void Flight::watch_flight() {
-  const bool capture_lost = fix_age_ms_ > kCaptureLost_ms;
+  const bool capture_lost = !capture_fresh();
   const bool esc_silent =
       *std::max_element(esc_silent_ms_.begin(), esc_silent_ms_.end()) > kEscSilent_ms;
   if (state_ == FlightState::failsafe) return;
@@ -247,7 +241,7 @@ void Flight::watch_flight() {
     return enter(FlightState::landing, Reason::no_setpoints);
   }
   const bool target_in_air = target_W_m_.z() < ground_W_m_.z() - kAboveGround_m;
-  if (state_ == FlightState::armed && state_s_ > kSpinUp_s && target_age_ms_ < kCaptureLost_ms &&
+  if (state_ == FlightState::armed && state_s_ > kSpinUp_s && target_age_ms_ < kTargetFresh_ms &&
       target_in_air) {
     enter(FlightState::flying, Reason::commanded);
   }
@@ -258,25 +252,46 @@ void Flight::position_step() {
   if (state_ != FlightState::flying) detect_touchdown();
   if (!in_air()) return;
   if (capture_fresh()) return follow_reference();
-  wanted_ = position_control_.sink(config::kDescent_mps, position_.v_WB_W_mps(), attitude_.q_WB(),
+  wanted_ = position_control_.sink(config::kDescent_mps, estimator_.v_WB_W_mps(), estimator_.q_WB(),
                                    reference_.yaw_rad(), lift_);
   // If the capture comes back, go on from where it finds us.
-  reference_.start(position_.p_WB_W_m(), reference_.yaw_rad());
+  reference_.start(estimator_.p_WB_W_m(), reference_.yaw_rad());
 }
 
 void Flight::follow_reference() {
-  const Vector3& p_W = position_.p_WB_W_m();
+  const Vector3& p_W = estimator_.p_WB_W_m();
   if (state_ == FlightState::flying) {
     lift_ = std::min(1.0f, lift_ + kPositionStep_s / kLiftTime_s);
     airborne_ = airborne_ || p_W.z() < ground_W_m_.z() - kAirborne_m;
-    if (lift_ >= 1.0f) reference_.step(target_W_m_, target_yaw_rad_, kPositionStep_s);
+    if (lift_ >= 1.0f) advance_reference();
   } else {
     const bool near = p_W.z() > ground_W_m_.z() - config::kTouchdownHeight_m;
     reference_.descend(near ? config::kTouchdown_mps : config::kDescent_mps, kPositionStep_s);
   }
   const bool integrate = lift_ >= 1.0f && contact_s_ < 0.1f;
-  wanted_ = position_control_.step(p_W, position_.v_WB_W_mps(), attitude_.q_WB(), reference_, lift_,
-                                   kPositionStep_s, integrate);
+  const Vector3& v_W = estimator_.v_WB_W_mps();
+  if (aim_ == Aim::velocity && state_ == FlightState::flying && lift_ >= 1.0f) {
+    const float f =
+        position_control_.height_force(p_W, v_W, reference_, lift_, kPositionStep_s, integrate);
+    wanted_ = velocity_control_.step(v_W, estimator_.q_WB(), reference_, f, kPositionStep_s);
+    return;
+  }
+  wanted_ = position_control_.step(p_W, estimator_.v_WB_W_mps(), estimator_.q_WB(), reference_,
+                                   lift_, kPositionStep_s, integrate);
+}
+
+void Flight::advance_reference() {
+  switch (aim_) {
+    case Aim::place:
+      return reference_.step(target_W_m_, target_yaw_rad_, kPositionStep_s);
+    case Aim::trajectory:
+      return reference_.follow(
+          point_, jerk_W_mps3_,
+          kTargetDelay_s + 1e-3f * static_cast<float>(std::min(target_age_ms_, kTargetFresh_ms)));
+    case Aim::velocity:
+      return reference_.cruise(estimator_.p_WB_W_m(), target_v_W_mps_, target_W_m_.z(),
+                               target_yaw_rad_, kPositionStep_s);
+  }
 }
 
 // Asked to sink and not sinking: that is the ground. The rotors let go by and by; if it was not the
@@ -284,7 +299,7 @@ void Flight::follow_reference() {
 void Flight::detect_touchdown() {
   constexpr float kEstablished_s = 1.2f, kStanding_mps = 0.12f, kSure_s = 0.25f;
   constexpr float kLetGo_s = 0.5f, kTakeUp_s = 0.3f, kLongest_s = 12.0f;
-  const bool standing = std::abs(position_.v_WB_W_mps().z()) < kStanding_mps;
+  const bool standing = std::abs(estimator_.v_WB_W_mps().z()) < kStanding_mps;
   const bool counts = standing && state_s_ > kEstablished_s;
   contact_s_ = counts ? contact_s_ + kPositionStep_s : 0.0f;
   if (contact_s_ > kSure_s) {
@@ -302,8 +317,10 @@ void Flight::detect_touchdown() {
 void Flight::control() {
   if (!in_air()) return setpoints_.fill(state_ == FlightState::armed ? kIdle : 0);
   const bool trim = airborne_ && contact_s_ < 0.1f;
-  const Vector3 tau_B = attitude_control_.torque(attitude_.q_WB(), attitude_.w_WB_B_radps(),
-                                                 wanted_.q_WB, kAttitudeStep_s, trim);
+  const Vector3 tau_B = attitude_control_.torque(estimator_.q_WB(), estimator_.w_WB_B_radps(),
+                                                 wanted_, kAttitudeStep_s, trim);
+  // Until the next position step the wanted attitude goes on turning.
+  wanted_.q_WB = turned(wanted_.q_WB, wanted_.w_B_radps, kAttitudeStep_s);
   const RotorThrusts thrusts = mix(wanted_.thrust_N, tau_B);
   for (unsigned i = 0; i < 4; ++i) setpoints_[i] = setpoint_for(thrusts[i]);
 }

@@ -12,10 +12,9 @@
 #include "firmware/control/mixer.hpp"
 #include "firmware/control/position_controller.hpp"
 #include "firmware/control/reference.hpp"
+#include "firmware/control/velocity_controller.hpp"
 #include "firmware/esc/core/protocol.hpp"
-#include "firmware/estimation/attitude_filter.hpp"
-#include "firmware/estimation/ground_calibration.hpp"
-#include "firmware/estimation/position_filter.hpp"
+#include "firmware/estimation/estimator.hpp"
 #include "firmware/math.hpp"
 
 namespace fw {
@@ -42,16 +41,6 @@ enum class Reason : std::uint8_t {  // why a command was refused, or a flight en
 };
 const char* text_of(Reason reason);
 
-struct ImuSample {
-  Vector3 a_B_mps2 = Vector3::Zero(), w_B_radps = Vector3::Zero();
-  float temperature_degC = 0.0f;
-};
-
-struct CaptureFix {
-  Vector3 p_WB_W_m = Vector3::Zero();
-  float roll_rad = 0.0f, pitch_rad = 0.0f, yaw_rad = 0.0f;
-};
-
 class Flight {
  public:
   // Inputs.
@@ -59,7 +48,13 @@ class Flight {
   void on_imu_missing();                                      // a tick without a sample
   void set_imu_frozen(bool frozen) { imu_frozen_ = frozen; }  // samples that stopped changing
   void on_fix(const CaptureFix& fix);
+  void on_pressure(float pressure_Pa) { estimator_.on_pressure(pressure_Pa); }
+  void on_field(const Vector3& field_B_uT) { estimator_.on_field(field_B_uT); }
   void on_target(const Vector3& p_W_m, float yaw_rad);
+  // A point of a trajectory; far from where the reference is, it is a target to go to first.
+  void on_trajectory(const TrajectoryPoint& point);
+  // A horizontal velocity to hold, at a height.
+  void on_velocity(const Vector3& v_W_mps, float z_m, float yaw_rad);
   void on_esc_answered(unsigned motor) { esc_silent_ms_[motor] = 0; }
   void on_esc_status(unsigned motor, const esc::protocol::Status& status) {
     esc_status_[motor] = status;
@@ -81,22 +76,19 @@ class Flight {
   std::uint32_t reason_count() const { return reason_count_; }  // steps with each new reason
   bool emergency() const { return emergency_; }
   Reason ready_to_arm() const;
-  const AttitudeFilter& attitude() const { return attitude_; }
-  const PositionFilter& position() const { return position_; }
+  const Estimator& estimator() const { return estimator_; }
+  Estimator& estimator() { return estimator_; }
   const Reference& reference() const { return reference_; }
-  const ImuSample& imu() const { return sample_; }
   const esc::protocol::Status& esc_status(unsigned motor) const { return esc_status_[motor]; }
-  bool capture_fresh() const { return fix_age_ms_ < kCaptureLost_ms; }
+  bool capture_fresh() const { return estimator_.fix_fresh(); }
 
  private:
-  static constexpr std::uint32_t kNever = 1'000'000;
-  static constexpr std::uint32_t kCaptureFresh_ms = 200, kCaptureLost_ms = 500;
-  static constexpr std::uint32_t kEscSilent_ms = 500, kTargetsLost_ms = 3000;
+  static constexpr std::uint32_t kNever = Estimator::kNever;
+  static constexpr std::uint32_t kEscSilent_ms = 500, kTargetFresh_ms = 500, kTargetsLost_ms = 3000;
   static constexpr std::uint32_t kImuLost_ms = 20;
 
   void tick();
   void estimate();
-  void calibrate_on_ground();
   void supervise();
   void watch_flight();
   void detect_touchdown();
@@ -105,13 +97,14 @@ class Flight {
   void stop_motors(Reason reason, bool emergency);
   Reason first_esc_problem() const;
   bool in_air() const { return state_ >= FlightState::flying; }
+  bool accept_target(const Vector3& p_W_m, float yaw_rad);
+  void advance_reference();
   void follow_reference();
 
-  AttitudeFilter attitude_;
-  PositionFilter position_;
-  GroundCalibration calibration_;
+  Estimator estimator_;
   AttitudeController attitude_control_;
   PositionController position_control_;
+  VelocityController velocity_control_;
   Reference reference_;
 
   FlightState state_ = FlightState::disarmed;
@@ -119,17 +112,14 @@ class Flight {
   std::uint32_t reason_count_ = 0;
   bool emergency_ = false;
 
-  ImuSample sample_;
-  Vector3 a_sum_ = Vector3::Zero(), w_sum_ = Vector3::Zero();
-  int sum_count_ = 0;
-  Vector3 a_B_mps2_ = Vector3::Zero(), accel_bias_B_mps2_ = Vector3::Zero();
-  bool started_ = false, calibrated_ = false, imu_frozen_ = false;
+  bool imu_frozen_ = false;
   std::uint32_t imu_missing_ms_ = kNever;
 
-  CaptureFix fix_;
-  std::uint32_t fix_age_ms_ = kNever, still_fixes_ = 0;
   Vector3 target_W_m_ = Vector3::Zero();
   float target_yaw_rad_ = 0.0f;
+  enum class Aim : std::uint8_t { place, trajectory, velocity } aim_ = Aim::place;
+  TrajectoryPoint point_;
+  Vector3 jerk_W_mps3_ = Vector3::Zero(), target_v_W_mps_ = Vector3::Zero();
   std::uint32_t target_age_ms_ = kNever;
   std::array<esc::protocol::Status, 4> esc_status_{};
   std::array<std::uint32_t, 4> esc_silent_ms_{kNever, kNever, kNever, kNever};

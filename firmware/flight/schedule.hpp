@@ -9,8 +9,8 @@
 namespace fw::schedule {
 
 inline constexpr std::uint32_t kAttitudePeriod = 5, kPositionPeriod = 25, kSetpointPeriod = 20,
-                               kStatusPeriod = 50, kTelemetryPeriod = 5;
-inline constexpr std::uint32_t kPositionTick = 3, kTelemetryTick = 2;
+                               kStatusPeriod = 50, kTelemetryPeriod = 5, kSensorPeriod = 10;
+inline constexpr std::uint32_t kPositionTick = 3, kTelemetryTick = 2, kSensorTick = 9;
 
 constexpr bool attitude(std::uint32_t tick) {
   return tick % kAttitudePeriod == 0;
@@ -23,6 +23,10 @@ constexpr bool setpoints(std::uint32_t tick) {
 }
 constexpr bool telemetry(std::uint32_t tick) {
   return tick % kTelemetryPeriod == kTelemetryTick;
+}
+
+constexpr bool sensors(std::uint32_t tick) {
+  return tick % kSensorPeriod == kSensorTick;
 }
 
 // The motor (0..3) whose status is read in this tick, or -1.

@@ -1,7 +1,9 @@
-// I2C3 as master at 400 kHz: a queue of short transactions, driven by interrupts from start to end.
+// An I2C as master at 400 kHz: a queue of short transactions, driven by interrupts from start to end.
 //
+//   Buses    i2c3 to the ESCs (PA8, PC9), i2c2 to the sensors on the board (PB10, PB11)
 //   Writes   by TXE and BTF; reads by DMA with LAST, so that the NACK comes with the last byte
-//   Time     TIM7 times out a transaction, keeps the gap after a STOP and paces the recovery
+//   Time     a timer of its own times out a transaction, keeps the gap after a STOP and paces the
+//            recovery: TIM7 that of i2c3, TIM6 that of i2c2
 //   Errors   NACK: tried again `retries` times. Time-out, bus error or a bus that stays busy: nine
 //            clocks by GPIO, STOP, and the block is reset
 //   Owner    tasks submit; everything else runs at one interrupt priority and never preempts itself
@@ -19,6 +21,8 @@ struct I2cCounters {
   std::uint32_t not_acknowledged = 0, timeouts = 0, bus_errors = 0, recoveries = 0;
 };
 
+// Bus: which block, pins, DMA stream and timer (i2c_master.cpp).
+template <typename Bus>
 class I2cMaster {
  public:
   void init();
@@ -53,11 +57,15 @@ class I2cMaster {
   I2cCounters counters_;
 };
 
-extern I2cMaster i2c3;
+struct EscI2c;
+struct SensorI2c;
+extern I2cMaster<EscI2c> i2c3;
+extern I2cMaster<SensorI2c> i2c2;
 
 }  // namespace fw::hal
 
 namespace fw {
 // Supplied by the application; called from interrupts. A read's bytes are in the job.
-void i2c_job_done(const hal::I2cJob& job, Status status);
+void esc_job_done(const hal::I2cJob& job, Status status);
+void sensor_job_done(const hal::I2cJob& job, Status status);
 }  // namespace fw

@@ -37,14 +37,16 @@ struct Pin {
   }
 };
 
-// PX4FMU v1 as wired here.
+// PX4FMU v1; the ESCs hang on the expansion header.
 using SpiSck = Pin<hw::GPIOA, 5>;
 using SpiMiso = Pin<hw::GPIOA, 6>;
 using SpiMosi = Pin<hw::GPIOA, 7>;
 using ImuSelect = Pin<hw::GPIOB, 0>;
-using ImuReady = Pin<hw::GPIOC, 5>;
-using I2cScl = Pin<hw::GPIOA, 8>;
-using I2cSda = Pin<hw::GPIOC, 9>;
+using ImuReady = Pin<hw::GPIOC, 3>;  // by the jumper JP6
+using EscScl = Pin<hw::GPIOA, 8>;
+using EscSda = Pin<hw::GPIOC, 9>;
+using SensorScl = Pin<hw::GPIOB, 10>;
+using SensorSda = Pin<hw::GPIOB, 11>;
 using RadioTx = Pin<hw::GPIOA, 2>;
 using RadioRx = Pin<hw::GPIOA, 3>;
 using LedAmber = Pin<hw::GPIOB, 14>;  // lit when low

@@ -26,8 +26,9 @@ struct RCC {
   static constexpr std::uint32_t PPRE1_DIV4 = 5u << 10, PPRE2_DIV2 = 4u << 13;
   static constexpr std::uint32_t GPIOAEN = bit(0), GPIOBEN = bit(1), GPIOCEN = bit(2),
                                  CCMDATARAMEN = bit(20), DMA1EN = bit(21), DMA2EN = bit(22);
-  static constexpr std::uint32_t TIM2EN = bit(0), TIM5EN = bit(3), TIM7EN = bit(5),
-                                 USART2EN = bit(17), I2C3EN = bit(23), PWREN = bit(28);
+  static constexpr std::uint32_t TIM2EN = bit(0), TIM5EN = bit(3), TIM6EN = bit(4), TIM7EN = bit(5),
+                                 USART2EN = bit(17), I2C2EN = bit(22), I2C3EN = bit(23),
+                                 PWREN = bit(28);
   static constexpr std::uint32_t SPI1EN = bit(12), SYSCFGEN = bit(14);
   static constexpr std::uint32_t RMVF = bit(24), BORRSTF = bit(25), PADRSTF = bit(26),
                                  PORRSTF = bit(27), SFTRSTF = bit(28), WDGRSTF = bit(29),
@@ -60,7 +61,7 @@ using GPIOB = Gpio<0x4002'0400>;
 using GPIOC = Gpio<0x4002'0800>;
 
 struct SYSCFG {
-  using EXTICR2 = Reg32<0x4001'380C>;  // lines 4..7, four bits each
+  using EXTICR1 = Reg32<0x4001'3808>;  // lines 0..3, four bits each
 };
 
 struct EXTI {
@@ -83,8 +84,8 @@ struct SPI1 {
   static constexpr std::uint32_t BSY = bit(7);
 };
 
-struct I2C3 {
-  static constexpr std::uint32_t base = 0x4000'5C00;
+template <std::uint32_t base>
+struct I2c {
   using CR1 = Reg32<base + 0x00>;
   using CR2 = Reg32<base + 0x04>;
   using DR = Reg32<base + 0x10>;
@@ -101,6 +102,8 @@ struct I2C3 {
   static constexpr std::uint32_t BUSY = bit(1);
   static constexpr std::uint32_t FS = bit(15);
 };
+using I2C2 = I2c<0x4000'5800>;
+using I2C3 = I2c<0x4000'5C00>;
 
 struct USART2 {
   static constexpr std::uint32_t base = 0x4000'4400;
@@ -127,6 +130,7 @@ struct Timer {
 };
 using TIM2 = Timer<0x4000'0000>;  // 32 bits
 using TIM5 = Timer<0x4000'0C00>;  // 32 bits
+using TIM6 = Timer<0x4000'1000>;  // 16 bits
 using TIM7 = Timer<0x4000'1400>;  // 16 bits
 
 template <std::uint32_t kBase, unsigned kStream>
@@ -148,6 +152,7 @@ struct DmaStream {
 };
 inline constexpr std::uint32_t kDma1 = 0x4002'6000, kDma2 = 0x4002'6400;
 using I2c3RxDma = DmaStream<kDma1, 2>;    // channel 3
+using I2c2RxDma = DmaStream<kDma1, 3>;    // channel 7
 using Usart2RxDma = DmaStream<kDma1, 5>;  // channel 4
 using Usart2TxDma = DmaStream<kDma1, 6>;  // channel 4
 using Spi1RxDma = DmaStream<kDma2, 0>;    // channel 3
@@ -155,10 +160,14 @@ using Spi1TxDma = DmaStream<kDma2, 3>;    // channel 3
 
 // Interrupt numbers, RM0090 table 61.
 enum class Irq : std::uint8_t {
+  EXTI3 = 9,
   DMA1_Stream2 = 13,
+  DMA1_Stream3 = 14,
   DMA1_Stream6 = 17,
-  EXTI9_5 = 23,
+  I2C2_EV = 33,
+  I2C2_ER = 34,
   TIM5_Global = 50,
+  TIM6_DAC = 54,
   TIM7_Global = 55,
   DMA2_Stream0 = 56,
   I2C3_EV = 72,

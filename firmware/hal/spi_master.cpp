@@ -16,7 +16,7 @@ constinit SpiMaster spi1;
 
 namespace {
 
-constexpr std::uint32_t kAfSpi1 = 5, kDmaChannel = 3, kImuReadyLine = 5;
+constexpr std::uint32_t kAfSpi1 = 5, kDmaChannel = 3, kImuReadyLine = 3;
 
 void init_pins() {
   RCC::AHB1ENR::set(RCC::GPIOAEN | RCC::GPIOBEN | RCC::GPIOCEN | RCC::DMA2EN);
@@ -29,11 +29,11 @@ void init_pins() {
 }
 
 void init_data_ready() {
-  SYSCFG::EXTICR2::replace(0xFu << 4, 2u << 4);  // line 5 from port C
+  SYSCFG::EXTICR1::replace(0xFu << 12, 2u << 12);  // line 3 from port C
   EXTI::RTSR::set(bit(kImuReadyLine));
   EXTI::PR::write(bit(kImuReadyLine));
   EXTI::IMR::set(bit(kImuReadyLine));
-  Nvic<Irq::EXTI9_5>::enable(kPriorityImu);
+  Nvic<Irq::EXTI3>::enable(kPriorityImu);
 }
 
 }  // namespace
@@ -83,7 +83,7 @@ extern "C" void dma2_stream0_handler() {
   fw::imu_transfer_done();
 }
 
-extern "C" void exti9_5_handler() {
+extern "C" void exti3_handler() {
   fw::hw::EXTI::PR::write(fw::hw::bit(fw::hal::kImuReadyLine));
   fw::hal::restart_tick_guard();
   fw::imu_data_ready();

@@ -6,10 +6,14 @@
 extern "C" {
 // Overridden where a driver needs the line.
 #define FW_WEAK __attribute__((weak, nothrow, alias("unexpected_interrupt")))
+FW_WEAK void exti3_handler();
 FW_WEAK void dma1_stream2_handler();
+FW_WEAK void dma1_stream3_handler();
 FW_WEAK void dma1_stream6_handler();
-FW_WEAK void exti9_5_handler();
+FW_WEAK void i2c2_ev_handler();
+FW_WEAK void i2c2_er_handler();
 FW_WEAK void tim5_handler();
+FW_WEAK void tim6_dac_handler();
 FW_WEAK void tim7_handler();
 FW_WEAK void dma2_stream0_handler();
 FW_WEAK void i2c3_ev_handler();
@@ -25,10 +29,14 @@ constexpr auto make_vectors() {
     table.irq[static_cast<unsigned>(irq)] = handler;
   };
   using fw::hw::Irq;
+  on(Irq::EXTI3, exti3_handler);
   on(Irq::DMA1_Stream2, dma1_stream2_handler);
+  on(Irq::DMA1_Stream3, dma1_stream3_handler);
   on(Irq::DMA1_Stream6, dma1_stream6_handler);
-  on(Irq::EXTI9_5, exti9_5_handler);
+  on(Irq::I2C2_EV, i2c2_ev_handler);
+  on(Irq::I2C2_ER, i2c2_er_handler);
   on(Irq::TIM5_Global, tim5_handler);
+  on(Irq::TIM6_DAC, tim6_dac_handler);
   on(Irq::TIM7_Global, tim7_handler);
   on(Irq::DMA2_Stream0, dma2_stream0_handler);
   on(Irq::I2C3_EV, i2c3_ev_handler);

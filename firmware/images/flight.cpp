@@ -8,7 +8,9 @@
 
 #include "firmware/config/vehicle.hpp"
 #include "firmware/drivers/esc_bus.hpp"
+#include "firmware/drivers/hmc5883l.hpp"
 #include "firmware/drivers/mpu6000.hpp"
+#include "firmware/drivers/ms5611.hpp"
 #include "firmware/flight/flight.hpp"
 #include "firmware/flight/schedule.hpp"
 #include "firmware/hal/clock.hpp"
@@ -30,7 +32,9 @@ constinit Health health;
 namespace {
 
 constinit Mpu6000<hal::SpiMaster> imu(hal::spi1);
-constinit EscBus<hal::I2cMaster> escs(hal::i2c3);
+constinit EscBus<hal::I2cMaster<hal::EscI2c>> escs(hal::i2c3);
+constinit Ms5611<hal::I2cMaster<hal::SensorI2c>> barometer(hal::i2c2);
+constinit Hmc5883l<hal::I2cMaster<hal::SensorI2c>> magnetometer(hal::i2c2);
 volatile std::uint32_t ticks_due = 0;
 volatile bool sample_ready = false;
 
@@ -40,7 +44,8 @@ enum Ran : std::uint8_t {
   kPosition = 4,
   kEsc = 8,
   kTelemetry = 16,
-  kAll = 31
+  kSensors = 32,
+  kAll = 63
 };
 
 Flight& flight() {  // built at the first call: Eigen's vectors have no constant initialisers
@@ -70,8 +75,13 @@ void fallback_tick() {
   ticks_due = ticks_due + 1;
 }
 
-void i2c_job_done(const hal::I2cJob& job, Status status) {
+void esc_job_done(const hal::I2cJob& job, Status status) {
   escs.job_done(job, status);
+}
+
+void sensor_job_done(const hal::I2cJob& job, Status status) {
+  if (job.address == barometer.kAddress) barometer.job_done(job, status);
+  if (job.address == magnetometer.kAddress) magnetometer.job_done(job, status);
 }
 
 // From the sensor's axes to the body's.
@@ -105,6 +115,24 @@ __attribute__((noinline)) void attitude_task() {
   flight().attitude_step();
 }
 
+// What came since the last time goes to the filters, then the sensors are asked anew.
+__attribute__((noinline)) void sensor_task() {
+  BaroSample pressure;
+  MagSample field;
+  barometer.step();
+  magnetometer.step();
+  if (barometer.take(pressure)) flight().on_pressure(pressure.pressure_Pa);
+  if (magnetometer.take(field)) {
+    const auto& f = field.field_uT;
+    flight().on_field({config::kMagSign[0] * f[config::kMagAxis[0]],
+                       config::kMagSign[1] * f[config::kMagAxis[1]],
+                       config::kMagSign[2] * f[config::kMagAxis[2]]});
+  }
+  faults.baro_failures = barometer.failures();
+  faults.mag_failures = magnetometer.failures();
+  faults.sensor_reconfigured = barometer.restarts() + magnetometer.reconfigured();
+}
+
 __attribute__((noinline)) void position_task() {
   flight().position_step();
 }
@@ -124,12 +152,21 @@ __attribute__((noinline)) void esc_task(std::uint32_t tick) {
   faults.i2c_timeouts = hal::i2c3.counters().timeouts;
 }
 
-__attribute__((noinline)) void telemetry_task(std::uint32_t tick) {
+// By the crystal: ticks come from the IMU's oscillator, which may be a percent off.
+static std::uint32_t uptime_ms() {
+  static constinit std::uint32_t ms = 0, counted_us = 0;
+  const std::uint32_t passed_ms = (hal::now_us() - counted_us) / 1000u;
+  ms += passed_ms;
+  counted_us += passed_ms * 1000u;
+  return ms;
+}
+
+__attribute__((noinline)) void telemetry_task() {
   std::array<std::uint8_t, 64> bytes;
   const std::size_t n = hal::radio.read(bytes);
   telemetry().receive({bytes.data(), n});
   faults.link_bad_frames = telemetry().bad_frames();
-  const std::span<const std::uint8_t> frame = telemetry().next(tick, faults, health);
+  const std::span<const std::uint8_t> frame = telemetry().next(uptime_ms(), faults, health);
   if (!frame.empty() && hal::radio.send(frame) != Status::ok) ++faults.link_overruns;
 }
 
@@ -151,8 +188,12 @@ std::uint8_t run_tick(std::uint32_t tick) {
     position_task();
     ran |= kPosition;
   }
+  if (schedule::sensors(tick)) {
+    sensor_task();
+    ran |= kSensors;
+  }
   if (schedule::telemetry(tick)) {
-    telemetry_task(tick);
+    telemetry_task();
     ran |= kTelemetry;
   }
   return ran;
@@ -242,6 +283,7 @@ extern "C" void fw_main() {
   hal::spi1.init();  // switches on the clocks of all ports in use
   start_leds();
   hal::i2c3.init();
+  hal::i2c2.init();
   hal::radio.init();
   hal::start_watchdog();
   run();

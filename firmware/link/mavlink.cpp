@@ -30,6 +30,8 @@ int crc_extra(std::uint32_t id) {
       return 93;
     case kStatustext:
       return 83;
+    case kDebugFloatArray:
+      return 232;
   }
   return -1;
 }

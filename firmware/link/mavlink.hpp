@@ -27,6 +27,7 @@ enum MessageId : std::uint32_t {
   kViconPositionEstimate = 104,
   kHighresImu = 105,
   kStatustext = 253,
+  kDebugFloatArray = 350,
 };
 
 // CRC_EXTRA, or -1 for a message we do not know.

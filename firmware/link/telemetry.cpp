@@ -61,14 +61,28 @@ void Telemetry::on_vicon(const Frame& frame) {
   if (std::isfinite(sum)) flight_.on_fix(fix);
 }
 
+// By what its mask leaves in: a velocity without a place; a place with velocity and acceleration, thus
+// a trajectory's point; a place.
 void Telemetry::on_target(const Frame& frame) {
-  constexpr std::uint16_t kIgnorePosition = 0x0007;
+  constexpr std::uint16_t kNoLevelPosition = 0x0003, kNoHeight = 0x0004, kNoVelocity = 0x0038,
+                          kNoAcceleration = 0x01C0;
   constexpr std::uint8_t kLocalNed = 1;
   if (frame.get<std::uint8_t>(50) != kSystem || frame.get<std::uint8_t>(52) != kLocalNed) return;
-  if ((frame.get<std::uint16_t>(48) & kIgnorePosition) != 0) return;
-  const Vector3 p_W = get_vector(frame, 4);
+  const auto mask = frame.get<std::uint16_t>(48);
+  if ((mask & kNoHeight) != 0) return;
+  const Vector3 p_W = get_vector(frame, 4), v_W = get_vector(frame, 16),
+                a_W = get_vector(frame, 28);
   const float yaw = frame.get<float>(40);
-  if (std::isfinite(p_W.sum() + yaw)) flight_.on_target(p_W, wrap_pi(yaw));
+  if (!std::isfinite(p_W.sum() + v_W.sum() + a_W.sum() + yaw)) return;
+  const float heading = wrap_pi(yaw);
+  if ((mask & kNoLevelPosition) == kNoLevelPosition) {
+    if ((mask & kNoVelocity) == 0) flight_.on_velocity(v_W, p_W.z(), heading);
+  } else if ((mask & kNoLevelPosition) == 0) {
+    if ((mask & (kNoVelocity | kNoAcceleration)) == 0) {
+      return flight_.on_trajectory({p_W, v_W, a_W, heading});
+    }
+    flight_.on_target(p_W, heading);
+  }
 }
 
 void Telemetry::on_command(const Frame& frame) {
@@ -101,7 +115,9 @@ std::span<const std::uint8_t> Telemetry::next(std::uint32_t time_ms, const Fault
   const std::uint32_t slot = slot_++ % kSlotsPerSecond;
   if (slot % 10 == 0) return send(attitude(time_ms));
   if (slot % 20 == 3) return send(position(time_ms));
-  if (slot % 20 == 13) return send(highres_imu(time_ms));
+  if (slot % 100 == 17) return send(highres_imu(time_ms));
+  if (slot % 40 == 15) return send(filter_attitudes(time_ms));
+  if (slot % 40 == 33) return send(filters(time_ms));
   if (slot == 6) return send(heartbeat());
   if (slot == 106) return send(sys_status(faults, health));
   if (ack_due_) return send(ack());
@@ -156,28 +172,71 @@ Message Telemetry::sys_status(const Faults& faults, const Health& health) const 
 }
 
 Message Telemetry::attitude(std::uint32_t time_ms) const {
-  const Quaternion& q = flight_.attitude().q_WB();
+  const Quaternion& q = flight_.estimator().q_WB();
   Message m(mavlink::kAttitudeQuaternion, 32);
   m.put(0, time_ms).put(4, q.w()).put(8, q.x()).put(12, q.y()).put(16, q.z());
-  put_vector(m, 20, flight_.attitude().w_WB_B_radps());
+  put_vector(m, 20, flight_.estimator().w_WB_B_radps());
   return m;
 }
 
 Message Telemetry::position(std::uint32_t time_ms) const {
   Message m(mavlink::kLocalPositionNed, 28);
   m.put(0, time_ms);
-  put_vector(m, 4, flight_.position().p_WB_W_m());
-  put_vector(m, 16, flight_.position().v_WB_W_mps());
+  put_vector(m, 4, flight_.estimator().p_WB_W_m());
+  put_vector(m, 16, flight_.estimator().v_WB_W_mps());
   return m;
 }
 
 Message Telemetry::highres_imu(std::uint32_t time_ms) const {
-  constexpr std::uint16_t kAccelGyroTemperature = 0x103F;
+  constexpr std::uint16_t kAccelGyroTemperature = 0x103F, kField = 0x01C0, kPressure = 0x0200;
+  const Estimator& seen = flight_.estimator();
+  std::uint16_t fields = kAccelGyroTemperature;
   Message m(mavlink::kHighresImu, 62);
   m.put(0, std::uint64_t{time_ms} * 1000u);
-  put_vector(m, 8, flight_.imu().a_B_mps2);
-  put_vector(m, 20, flight_.imu().w_B_radps);
-  m.put(56, flight_.imu().temperature_degC).put(60, kAccelGyroTemperature);
+  put_vector(m, 8, seen.imu().a_B_mps2);
+  put_vector(m, 20, seen.imu().w_B_radps);
+  if (seen.field_fresh()) {
+    put_vector(m, 32, 0.01f * seen.field_B_uT());  // Gauss
+    fields |= kField;
+  }
+  if (seen.pressure_fresh()) {
+    m.put(44, 0.01f * seen.pressure_Pa());  // hPa
+    fields |= kPressure;
+  }
+  m.put(56, seen.imu().temperature_degC).put(60, fields);
+  return m;
+}
+
+// Array 1: scales of filters 1 and 2, velocity through the air, wind, height and its rate by the
+// barometer.
+Message Telemetry::filters(std::uint32_t time_ms) const {
+  const Estimator& e = flight_.estimator();
+  Message m = float_array(time_ms, 1, "filters", 10);
+  m.put(20, e.body().scale()).put(24, e.inertial().scale());
+  put_vector(m, 28, e.body().v_AB_B_mps());
+  put_vector(m, 40, e.inertial().wind_W_mps());
+  return m.put(52, -e.baro_z_m()).put(56, -e.baro_vz_mps());
+}
+
+// Array 2: attitudes of filters 1 and 2, w x y z.
+Message Telemetry::filter_attitudes(std::uint32_t time_ms) const {
+  Message m = float_array(time_ms, 2, "attitudes", 8);
+  std::size_t at = 20;
+  for (const Quaternion& q :
+       {flight_.estimator().body().q_WB(), flight_.estimator().inertial().q_WB()}) {
+    for (const float part : {q.w(), q.x(), q.y(), q.z()}) {
+      m.put(at, part);
+      at += 4;
+    }
+  }
+  return m;
+}
+
+Message Telemetry::float_array(std::uint32_t time_ms, std::uint16_t id, const char* name,
+                               std::uint8_t count) {
+  Message m(mavlink::kDebugFloatArray, static_cast<std::uint8_t>(20 + 4 * count));
+  m.put(0, std::uint64_t{time_ms} * 1000u).put(8, id);
+  for (std::size_t i = 0; i < 10 && name[i] != '\0'; ++i) m.put(10 + i, name[i]);
   return m;
 }
 

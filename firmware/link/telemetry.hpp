@@ -2,7 +2,7 @@
 // that the 57600 baud of a half-duplex radio are filled evenly.
 //
 //   Down    HEARTBEAT 1 Hz, SYS_STATUS 1 Hz, ATTITUDE_QUATERNION 20 Hz, LOCAL_POSITION_NED 10 Hz,
-//           HIGHRES_IMU 10 Hz; COMMAND_ACK and STATUSTEXT in free slots
+//           HIGHRES_IMU 2 Hz, DEBUG_FLOAT_ARRAY of the filters 5 Hz each; COMMAND_ACK and STATUSTEXT in free slots
 //   Up      VICON_POSITION_ESTIMATE, SET_POSITION_TARGET_LOCAL_NED, COMMAND_LONG (400 arm, disarm;
 //           22 take off to param 7; 21 land)
 //   State   HEARTBEAT.custom_mode is the FlightState; system_status 2 not ready, 3 ready, 4 active,
@@ -43,6 +43,10 @@ class Telemetry {
   mavlink::Message attitude(std::uint32_t time_ms) const;
   mavlink::Message position(std::uint32_t time_ms) const;
   mavlink::Message highres_imu(std::uint32_t time_ms) const;
+  mavlink::Message filters(std::uint32_t time_ms) const;
+  mavlink::Message filter_attitudes(std::uint32_t time_ms) const;
+  static mavlink::Message float_array(std::uint32_t time_ms, std::uint16_t id, const char* name,
+                                      std::uint8_t count);
   mavlink::Message ack();
   static mavlink::Message status_text(const char* text, bool bad);
   std::span<const std::uint8_t> send(const mavlink::Message& message);

@@ -87,20 +87,18 @@ TEST(AttitudeController, TurnsBackTheShortWay) {
   const Quaternion rolled = from_euler(0.2f, 0, 0);
   Quaternion same = rolled;
   same.coeffs() = -same.coeffs();  // the same attitude by the other quaternion
-  const Vector3 tau = controller.torque(rolled, Vector3::Zero(), Quaternion::Identity(), 0, false);
+  const Vector3 tau = controller.torque(rolled, Vector3::Zero(), ThrustAndAttitude{}, 0, false);
   EXPECT_LT(tau.x(), 0.0f);
-  EXPECT_LT(
-      (controller.torque(same, Vector3::Zero(), Quaternion::Identity(), 0, false) - tau).norm(),
-      1e-6f);
+  EXPECT_LT((controller.torque(same, Vector3::Zero(), ThrustAndAttitude{}, 0, false) - tau).norm(),
+            1e-6f);
 }
 
 TEST(AttitudeController, DampsAndBalancesTheGyroscopicTorque) {
   AttitudeController controller;
   const Vector3 w(1.0f, 2.0f, 3.0f);
-  const Vector3 with =
-      controller.torque(Quaternion::Identity(), w, Quaternion::Identity(), 0, false);
+  const Vector3 with = controller.torque(Quaternion::Identity(), w, ThrustAndAttitude{}, 0, false);
   const Vector3 against =
-      controller.torque(Quaternion::Identity(), -w, Quaternion::Identity(), 0, false);
+      controller.torque(Quaternion::Identity(), -w, ThrustAndAttitude{}, 0, false);
   // Damping is odd in the rate, w x I w is even: half the sum is (Izz - Iyy) wy wz and so on.
   const Vector3 even = 0.5f * (with + against);
   EXPECT_TRUE(near(even.x(), (0.0235 - 0.0125) * 2 * 3, stated(1e-5, "float round-off")));

@@ -35,15 +35,17 @@ TEST(Schedule, EachEscIsReadEvery50msAndNeverNearAWrite) {
 }
 
 TEST(Schedule, RatesAreThoseOfTheDesign) {
-  int attitudes = 0, positions = 0, writes = 0;
+  int attitudes = 0, positions = 0, writes = 0, asked = 0;
   for (std::uint32_t tick = 0; tick < 1000; ++tick) {
     attitudes += attitude(tick) ? 1 : 0;
     positions += position(tick) ? 1 : 0;
     writes += setpoints(tick) ? 1 : 0;
+    asked += sensors(tick) ? 1 : 0;
   }
   EXPECT_EQ(attitudes, 200);
   EXPECT_EQ(positions, 40);
   EXPECT_EQ(writes, 50);
+  EXPECT_EQ(asked, 100);
 }
 
 }  // namespace

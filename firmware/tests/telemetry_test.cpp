@@ -1,10 +1,12 @@
 #include "firmware/link/telemetry.hpp"
+#include "base/near.hpp"
 
 #include <gtest/gtest.h>
 
 #include <map>
 #include <vector>
 
+#include "base/near.hpp"
 #include "firmware/tests/vehicle_model.hpp"
 
 namespace fw {
@@ -48,7 +50,8 @@ TEST(Telemetry, KeepsTheRatesOfTheRadioPlan) {
   EXPECT_EQ(down.frames.at(mavlink::kSysStatus), 10);
   EXPECT_EQ(down.frames.at(mavlink::kAttitudeQuaternion), 200);
   EXPECT_EQ(down.frames.at(mavlink::kLocalPositionNed), 100);
-  EXPECT_EQ(down.frames.at(mavlink::kHighresImu), 100);
+  EXPECT_EQ(down.frames.at(mavlink::kHighresImu), 20);
+  EXPECT_EQ(down.frames.at(mavlink::kDebugFloatArray), 100);
 }
 
 // 57600 baud carry 5760 B/s both ways together. Up: 40 poses of 44 bytes and 10 targets of 65 are
@@ -114,8 +117,62 @@ TEST(Telemetry, PosesOverTheRadioReachTheEstimate) {
   Message m(mavlink::kViconPositionEstimate, 32);
   m.put(8, 1.0f).put(12, -2.0f).put(16, -0.5f).put(28, 0.7f);
   telemetry.receive(m.frame(255, 190, 0));
-  EXPECT_EQ(flight.position().p_WB_W_m(), Vector3(1.0f, -2.0f, -0.5f));
+  EXPECT_EQ(flight.estimator().p_WB_W_m(), Vector3(1.0f, -2.0f, -0.5f));
   EXPECT_TRUE(flight.capture_fresh());
+}
+
+// Bits of the mask: 0 to 2 place, 3 to 5 velocity, 6 to 8 acceleration are to be ignored.
+void send_target(Telemetry& telemetry, std::uint16_t mask, float x, float vx) {
+  Message m(mavlink::kSetPositionTargetLocalNed, 53);
+  m.put(4, x).put(12, -1.1f).put(16, vx).put(48, mask);
+  m.put<std::uint8_t>(50, 1).put<std::uint8_t>(52, 1);
+  telemetry.receive(m.frame(255, 190, 0));
+}
+
+TEST(Telemetry, ATargetIsAPlaceAVelocityOrAPointOfATrajectoryByItsMask) {
+  Flight flight;
+  Telemetry telemetry(flight);
+  test::VehicleModel vehicle({});
+  vehicle.run(flight, 3.0);
+  ASSERT_EQ(flight.arm(), Reason::none);
+  ASSERT_EQ(flight.take_off(1.1f), Reason::none);
+  const auto fly = [&](std::uint16_t mask, float x, float vx) {
+    for (int i = 0; i < 10; ++i) {
+      send_target(telemetry, mask, x, vx);
+      vehicle.run(flight, 0.1);
+    }
+  };
+  vehicle.run(flight, 6.0);
+  fly(0x09C3, 5.0f, 0.5f);  // velocity: the place along the floor counts for nothing
+  EXPECT_TRUE(
+      whirl::near(flight.reference().v_W_mps().x(), 0.5, whirl::stated(0.02, "1 s of 1.2 m/s2")));
+  EXPECT_FALSE(flight.reference().tracking());
+  fly(0x09F8, 0.5f, 0.5f);  // a place: the velocity counts for nothing
+  vehicle.run(flight, 2.0);
+  EXPECT_TRUE(
+      whirl::near(flight.reference().p_W_m().x(), 0.5, whirl::stated(0.05, "the approach's end")));
+  fly(0x0800, 0.5f, 0.0f);
+  EXPECT_TRUE(flight.reference().tracking());
+  fly(0x0800, 3.0f, 0.0f);  // a trajectory may jump once it is flown; nothing else can be told
+  EXPECT_TRUE(flight.reference().tracking());
+}
+
+TEST(Telemetry, ATrajectoryFarAwayIsAPlaceToGoToFirst) {
+  Flight flight;
+  Telemetry telemetry(flight);
+  test::VehicleModel vehicle({});
+  vehicle.run(flight, 3.0);
+  ASSERT_EQ(flight.arm(), Reason::none);
+  ASSERT_EQ(flight.take_off(1.1f), Reason::none);
+  vehicle.run(flight, 6.0);
+  send_target(telemetry, 0x0800, 1.0f, 0.0f);
+  vehicle.run(flight, 0.1);
+  EXPECT_FALSE(flight.reference().tracking());
+  for (int i = 0; i < 40; ++i) {
+    send_target(telemetry, 0x0800, 1.0f, 0.0f);
+    vehicle.run(flight, 0.1);
+  }
+  EXPECT_TRUE(flight.reference().tracking());
 }
 
 TEST(Telemetry, ANonFinitePoseIsNotFlown) {

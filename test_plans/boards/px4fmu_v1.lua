@@ -1,11 +1,14 @@
--- PX4FMU v1: STM32F405RG, 24 MHz crystal, MPU6000 on SPI1, ESCs on I2C3, radio on USART2.
--- The data-ready pin is our choice; what is not listed here is not on the bus.
+-- PX4FMU v1, wired as its schematics say: STM32F405RG, 24 MHz crystal. The IMU's interrupt reaches PC3
+-- through the jumper JP6. The ESCs hang on the expansion header's I2C3, as in the thesis (PX4 used I2C1).
+-- Not on it: L3GD20, BMA180, EEPROM, micro-SD, GPS, PPM, battery voltage, buzzer.
 return {
   board = "px4fmu_v1",
   mcu = "stm32f405rg",
   hse = "24 MHz",
   devices = {
-    { name = "imu", type = "mpu6000", bus = "spi1", cs = "PB0", int = "PC5" },
+    { name = "imu", type = "mpu6000", bus = "spi1", cs = "PB0", int = "PC3" },
+    { name = "baro", type = "ms5611", bus = "i2c2", address = 0x76 },
+    { name = "mag", type = "hmc5883l", bus = "i2c2", address = 0x1E, drdy = "PB1", axes = { "+y", "-x", "+z" } },
     { name = "esc1", type = "esc_i2c", bus = "i2c3", address = 0x29, motor = 1 },
     { name = "esc2", type = "esc_i2c", bus = "i2c3", address = 0x2A, motor = 2 },
     { name = "esc3", type = "esc_i2c", bus = "i2c3", address = 0x2B, motor = 3 },
@@ -14,5 +17,6 @@ return {
       params = { uplink_loss = "5 %" } },
   },
   pins = { { name = "led_amber", pin = "PB14" }, { name = "led_blue", pin = "PB15" } },
-  watch = { "fw::imu_task", "fw::attitude_task", "fw::position_task", "fw::esc_task", "fw::telemetry_task" },
+  watch = { "fw::imu_task", "fw::attitude_task", "fw::position_task", "fw::esc_task", "fw::sensor_task", "fw::telemetry_task",
+            "fw::Estimator::step_explicit", "fw::Estimator::step_aided" },
 }

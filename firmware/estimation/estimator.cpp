@@ -1,0 +1,172 @@
+#include "firmware/estimation/estimator.hpp"
+
+#include "firmware/config/vehicle.hpp"
+
+namespace fw {
+namespace {
+
+// On the ground the accelerometer may set roll and pitch fast; in flight it is a slow reference.
+constexpr float kAccelGainGround_radps = 2.0f, kAccelGainFlight_radps = 0.2f;
+constexpr float kHeadingShareGround = 1.0f, kHeadingShareFlight = 0.1f;
+// Cameras, radio and a poll 15 ms, half a period of differences 12 ms, their filter 25 ms.
+constexpr float kCaptureVelocityDelay_s = 0.050f;
+constexpr float kLeastThrust_mps2 = 3.0f;  // below, drag says little about speed
+constexpr float kSteepest_cos = 0.3f;
+
+float seconds(std::uint32_t ms) {
+  return 1e-3f * static_cast<float>(ms);
+}
+
+}  // namespace
+
+Estimator::Estimator() : declination_rad_(config::kDeclination_rad) {
+  body_.start(Quaternion::Identity(), 1.0f);
+  inertial_.start(Quaternion::Identity(), Vector3::Zero(), 1.0f);
+}
+
+void Estimator::tick() {
+  ++fix_age_ms_;
+  ++pressure_age_ms_;
+  ++field_age_ms_;
+}
+
+void Estimator::on_imu(const ImuSample& sample) {
+  sample_ = sample;
+  a_sum_ += sample.a_B_mps2;
+  w_sum_ += sample.w_B_radps;
+  ++sum_count_;
+}
+
+const Quaternion& Estimator::q_WB() const {
+  if (source_ == AttitudeSource::explicit_filter) return explicit_.q_WB();
+  return fix_fresh() ? inertial_.q_WB() : body_.q_WB();
+}
+
+void Estimator::on_fix(const CaptureFix& fix) {
+  const bool first = fix_age_ms_ >= kFixLost_ms && !situation_.in_flight;
+  const float since_last_s = seconds(fix_age_ms_);
+  explicit_.correct_heading(fix.yaw_rad,
+                            situation_.in_flight ? kHeadingShareFlight : kHeadingShareGround);
+  correct_velocity(fix, since_last_s);
+  fix_ = fix;
+  fix_age_ms_ = 0;
+  if (first) return position_.start(fix.p_WB_W_m);
+  position_.correct(fix.p_WB_W_m, since_last_s);
+  // In the air an innovation is flight; standing still it tells whether the filter has settled.
+  still_fixes_ = position_.innovation_W_m().norm() < 0.03f ? still_fixes_ + 1 : 0;
+}
+
+// v = 0.5 V + 0.5 dp/dt [Bangura 2017, 6.9, 6.10]. After a gap the difference is too old a velocity.
+void Estimator::correct_velocity(const CaptureFix& fix, float since_last_s) {
+  constexpr float kLongest_s = 0.2f;
+  if (since_last_s > kLongest_s) return;
+  capture_v_W_mps_ = 0.5f * capture_v_W_mps_ + 0.5f / since_last_s * (fix.p_WB_W_m - fix_.p_WB_W_m);
+  inertial_.correct(capture_v_W_mps_, kCaptureVelocityDelay_s, since_last_s);
+  inertial_.correct_heading(fix.yaw_rad, since_last_s);
+}
+
+void Estimator::on_pressure(float pressure_Pa) {
+  const float since_last_s = seconds(pressure_age_ms_);
+  pressure_age_ms_ = 0;
+  pressure_Pa_ = pressure_Pa;
+  if (situation_.resting || !height_.ready()) {
+    resting_Pa_ =
+        resting_Pa_ > 0.0f ? resting_Pa_ + 0.02f * (pressure_Pa - resting_Pa_) : pressure_Pa;
+    height_.zero(resting_Pa_);
+    height_offset_m_ = -fix_.p_WB_W_m.z();
+    return;
+  }
+  height_.correct(pressure_Pa, since_last_s);
+  // The rotors' wash and the weather, by which the pressure is off.
+  if (fix_fresh() && situation_.airborne) {
+    height_offset_m_ += 0.5f * std::min(since_last_s, 0.1f) *
+                        (height_.z_m() - height_offset_m_ - position_.p_WB_W_m().z());
+  }
+}
+
+void Estimator::on_field(const Vector3& field_B_uT) {
+  body_.correct_heading(field_B_uT, declination_rad_, seconds(field_age_ms_));
+  field_age_ms_ = 0;
+  field_B_uT_ = field_B_uT;
+}
+
+void Estimator::restart_aided(float scale, float tilt_rad) {
+  const Quaternion q_WB = this->q_WB() * from_euler(tilt_rad, 0.0f, 0.0f);
+  body_.start(q_WB, scale);
+  inertial_.start(q_WB, position_.v_WB_W_mps(), scale);
+}
+
+void Estimator::step(const Situation& situation) {
+  situation_ = situation;
+  if (sum_count_ > 0) {
+    const float scale = 1.0f / static_cast<float>(sum_count_);
+    a_B_mps2_ = scale * a_sum_ - accel_zero_B_mps2_;
+    raw_w_B_radps_ = scale * w_sum_;
+    a_sum_.setZero();
+    w_sum_.setZero();
+    sum_count_ = 0;
+    step_explicit(raw_w_B_radps_);
+    step_aided(raw_w_B_radps_ - gyro_zero_B_radps_);
+  }
+  position_.predict(q_WB(), a_B_mps2_, kStep_s);
+  if (situation.resting && fix_age_ms_ <= kFixFresh_ms) {
+    calibrate();
+  } else {
+    calibration_.restart();
+  }
+}
+
+__attribute__((noinline)) void Estimator::step_explicit(const Vector3& w_B) {
+  if (!started_) {
+    explicit_.start(a_B_mps2_, fix_.yaw_rad);
+    restart_aided(1.0f, 0.0f);
+  }
+  started_ = true;
+  const float gain = !situation_.resting ? kAccelGainFlight_radps : kAccelGainGround_radps;
+  explicit_.update(w_B, a_B_mps2_, kStep_s, gain);
+}
+
+__attribute__((noinline)) void Estimator::step_aided(const Vector3& w_B) {
+  const FromInertialFilter to_body{fix_fresh(), inertial_.q_WB(),
+                                   inertial_.v_WB_W_mps() - inertial_.wind_W_mps(),
+                                   inertial_.accel_bias_B_mps2()};
+  const FromBodyFilter to_inertial{body_.q_WB(), body_.q_WB() * body_.v_AB_B_mps(),
+                                   body_.accel_bias_B_mps2()};
+  if (height_.ready()) {
+    const Vector3 a_W = body_.q_WB() * a_B_mps2_;
+    height_.predict(a_W.z() + config::kGravity_mps2, kStep_s);
+  }
+  body_.step(w_B, a_B_mps2_, velocity_measured_B(), to_body, kStep_s);
+  inertial_.predict(w_B, a_B_mps2_, to_inertial, kStep_s);
+}
+
+// Where a component is not measured, the filter's own stands for it: no innovation.
+Vector3 Estimator::velocity_measured_B() const {
+  if (!situation_.airborne) return Vector3::Zero();
+  Vector3 v_B = body_.v_AB_B_mps();
+  const Vector3 a_B = a_B_mps2_ - body_.accel_bias_B_mps2();
+  if (a_B.z() < -kLeastThrust_mps2) {
+    v_B.head<2>() = a_B.head<2>() / (config::kDrag_spm * a_B.z());
+  }
+  const Vector3 down_B = body_.q_WB().conjugate() * Vector3::UnitZ();
+  if (pressure_fresh() && down_B.z() > kSteepest_cos) {
+    v_B.z() = (height_.vz_mps() - down_B.head<2>().dot(v_B.head<2>())) / down_B.z();
+  }
+  return v_B;
+}
+
+void Estimator::calibrate() {
+  const Quaternion q_WB = from_euler(fix_.roll_rad, fix_.pitch_rad, fix_.yaw_rad);
+  if (!calibration_.add(raw_w_B_radps_, a_B_mps2_ + accel_zero_B_mps2_, q_WB)) return;
+  gyro_zero_B_radps_ = calibration_.gyro_bias_B_radps();
+  explicit_.set_gyro_bias(gyro_zero_B_radps_);
+  accel_zero_B_mps2_ = calibration_.accel_bias_B_mps2();
+  if (!calibrated_) {
+    explicit_.start(q_WB.conjugate() * Vector3(0.0f, 0.0f, -config::kGravity_mps2), fix_.yaw_rad);
+    position_.start(fix_.p_WB_W_m);
+    restart_aided(1.0f, 0.0f);
+  }
+  calibrated_ = true;
+}
+
+}  // namespace fw

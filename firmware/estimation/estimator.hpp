@@ -1,0 +1,119 @@
+// All that is estimated of the vehicle's motion, from what its sensors say.
+//
+//   Rates    on_imu 1 kHz, step 200 Hz, pressures 75 Hz, fields 75 Hz, fixes as they come
+//   Filters  all run all the time; choose() says whose attitude is flown by:
+//            explicit  quaternion filter (attitude_filter.hpp), heading from the capture system
+//            aided     velocity-aided filters 1 and 2 (body_filter.hpp, inertial_filter.hpp): the
+//                      attitude of filter 2 while it has a velocity over ground, else that of filter 1
+//   Ground   while it rests, with the capture system's attitude, the IMU's zero points are found
+//            anew each second; the barometer's zero follows the pressure
+#pragma once
+#include <cstdint>
+
+#include "firmware/estimation/attitude_filter.hpp"
+#include "firmware/estimation/body_filter.hpp"
+#include "firmware/estimation/ground_calibration.hpp"
+#include "firmware/estimation/height_filter.hpp"
+#include "firmware/estimation/inertial_filter.hpp"
+#include "firmware/estimation/position_filter.hpp"
+#include "firmware/math.hpp"
+
+namespace fw {
+
+struct ImuSample {
+  Vector3 a_B_mps2 = Vector3::Zero(), w_B_radps = Vector3::Zero();
+  float temperature_degC = 0.0f;
+};
+
+struct CaptureFix {
+  Vector3 p_WB_W_m = Vector3::Zero();
+  float roll_rad = 0.0f, pitch_rad = 0.0f, yaw_rad = 0.0f;
+};
+
+enum class AttitudeSource : std::uint8_t { explicit_filter = 0, velocity_aided = 1 };
+
+// What the flight logic knows of the moment.
+struct Situation {
+  bool in_flight = false;  // the rotors carry, or shall
+  bool airborne = false;   // off the ground
+  bool resting = true;     // disarmed, no rotor turns, samples change
+};
+
+class Estimator {
+ public:
+  static constexpr float kStep_s = 0.005f;
+  static constexpr std::uint32_t kNever = 1'000'000;
+  static constexpr std::uint32_t kFixFresh_ms = 200, kFixLost_ms = 500;
+
+  Estimator();
+
+  void tick();  // each millisecond, before what came in it
+  void on_imu(const ImuSample& sample);
+  void on_fix(const CaptureFix& fix);
+  void on_pressure(float pressure_Pa);
+  void on_field(const Vector3& field_B_uT);
+  void step(const Situation& situation);
+
+  void choose(AttitudeSource source) { source_ = source; }
+  void set_declination(float declination_rad) { declination_rad_ = declination_rad; }
+  // Filters 1 and 2 begin anew: with this scale, tilted by this much about the nose from the attitude
+  // that is flown by.
+  void restart_aided(float scale, float tilt_rad);
+
+  const Quaternion& q_WB() const;
+  const Vector3& w_WB_B_radps() const { return explicit_.w_WB_B_radps(); }
+  const Vector3& p_WB_W_m() const { return position_.p_WB_W_m(); }
+  const Vector3& v_WB_W_mps() const { return position_.v_WB_W_mps(); }
+
+  bool fix_fresh() const { return fix_age_ms_ < kFixLost_ms; }
+  std::uint32_t fix_age_ms() const { return fix_age_ms_; }
+  bool calibrated() const { return calibrated_; }
+  std::uint32_t still_fixes() const { return still_fixes_; }
+  bool pressure_fresh() const { return pressure_age_ms_ < kSlowSensorLost_ms; }
+  bool field_fresh() const { return field_age_ms_ < kSlowSensorLost_ms; }
+  float pressure_Pa() const { return pressure_Pa_; }
+  const Vector3& field_B_uT() const { return field_B_uT_; }
+  const ImuSample& imu() const { return sample_; }
+
+  const AttitudeFilter& explicit_filter() const { return explicit_; }
+  const BodyFilter& body() const { return body_; }
+  const InertialFilter& inertial() const { return inertial_; }
+  // Down from where the flight began; offset by what the capture system has taught.
+  float baro_z_m() const { return height_.z_m() - height_offset_m_; }
+  float baro_vz_mps() const { return height_.vz_mps(); }
+
+ private:
+  static constexpr std::uint32_t kSlowSensorLost_ms = 200;
+
+  void step_explicit(const Vector3& w_B);
+  void step_aided(const Vector3& w_B);
+  void calibrate();
+  Vector3 velocity_measured_B() const;
+  void correct_velocity(const CaptureFix& fix, float since_last_s);
+
+  AttitudeFilter explicit_;
+  PositionFilter position_;
+  GroundCalibration calibration_;
+  HeightFilter height_;
+  BodyFilter body_;
+  InertialFilter inertial_;
+  AttitudeSource source_ = AttitudeSource::explicit_filter;
+  Situation situation_;
+
+  ImuSample sample_;
+  Vector3 a_sum_ = Vector3::Zero(), w_sum_ = Vector3::Zero();
+  int sum_count_ = 0;
+  Vector3 a_B_mps2_ = Vector3::Zero(), raw_w_B_radps_ = Vector3::Zero();
+  Vector3 accel_zero_B_mps2_ = Vector3::Zero(), gyro_zero_B_radps_ = Vector3::Zero();
+  bool started_ = false, calibrated_ = false;
+
+  CaptureFix fix_;
+  std::uint32_t fix_age_ms_ = kNever, still_fixes_ = 0;
+  Vector3 capture_v_W_mps_ = Vector3::Zero();
+  float pressure_Pa_ = 0.0f, resting_Pa_ = 0.0f, height_offset_m_ = 0.0f;
+  std::uint32_t pressure_age_ms_ = kNever, field_age_ms_ = kNever;
+  Vector3 field_B_uT_ = Vector3::Zero();
+  float declination_rad_;
+};
+
+}  // namespace fw

@@ -1,0 +1,38 @@
+#include "firmware/estimation/height_filter.hpp"
+
+namespace fw {
+namespace {
+
+constexpr float kPole_radps = 0.8f;
+constexpr float kK4 = 3.0f * kPole_radps, kK5 = 3.0f * kPole_radps * kPole_radps,
+                kK6 = kPole_radps * kPole_radps * kPole_radps;
+constexpr float kLongest_s = 0.1f;  // after a gap the old error is not its length
+
+// International standard atmosphere, troposphere: h = 44330.8 m (1 - (p / 101325 Pa)^0.190263).
+float altitude_m(float pressure_Pa) {
+  return 44330.8f * (1.0f - std::pow(pressure_Pa / 101325.0f, 0.190263f));
+}
+
+}  // namespace
+
+void HeightFilter::zero(float pressure_Pa) {
+  zero_Pa_ = pressure_Pa;
+  z_m_ = vz_mps_ = 0.0f;
+}
+
+void HeightFilter::predict(float a_down_mps2, float dt_s) {
+  const float a = a_down_mps2 - bias_mps2_;
+  z_m_ += dt_s * vz_mps_ + 0.5f * dt_s * dt_s * a;
+  vz_mps_ += dt_s * a;
+}
+
+void HeightFilter::correct(float pressure_Pa, float since_last_s) {
+  const float dt_s = std::min(since_last_s, kLongest_s);
+  const float measured_m = altitude_m(zero_Pa_) - altitude_m(pressure_Pa);
+  const float error_m = z_m_ - measured_m;
+  z_m_ -= dt_s * kK4 * error_m;
+  vz_mps_ -= dt_s * kK5 * error_m;
+  bias_mps2_ += dt_s * kK6 * error_m;
+}
+
+}  // namespace fw
