@@ -39,6 +39,11 @@ void FlightWorld::name_signals() {
   add_signal("rate_z", D::angular_rate, "", [=] { return state().w_WB_B_radps.z(); });
   add_signal("offset", D::length, "horizontal distance from the commanded position",
              [this] { return offset_from_target_m(); });
+  add_signal("path_error", D::length, "distance from the commanded place, which may move",
+             [this, state] {
+               const auto& target = station_.target();
+               return target ? (state().p_WB_W_m - target->p_W_m).norm() : 0.0;
+             });
   add_signal("bus_voltage", D::voltage, "at the ESCs", [=] { return state().bus_voltage_V; });
   add_signal("battery_current", D::current, "", [=] { return state().battery_current_A; });
   add_signal("charge_used", D::charge, "", [=] { return state().charge_used_C; });
@@ -49,6 +54,7 @@ void FlightWorld::name_signals() {
              [=] { return state().on_ground ? 1.0 : 0.0; });
   name_motor_signals();
   name_telemetry_signals();
+  name_estimate_signals();
 }
 
 void FlightWorld::name_motor_signals() {
@@ -93,6 +99,37 @@ void FlightWorld::name_telemetry_signals() {
              [this] { return static_cast<double>(station_.last_result()); });
   add_signal("command_pending", D::none, "1: a command waits for its answer",
              [this] { return station_.command_pending() ? 1.0 : 0.0; });
+}
+
+void FlightWorld::name_estimate_signals() {
+  using D = Dimension;
+  const auto told = [this]() -> const Told& { return estimates_.told(); };
+  add_signal("attitude_error", D::angle, "of the attitude that is flown by",
+             [=] { return told().attitude_error_rad; });
+  for (std::size_t i = 0; i < 2; ++i) {
+    const std::string n = "_" + std::to_string(i + 1);
+    add_signal("attitude_error" + n, D::angle, "of the velocity-aided filter" + n,
+               [=] { return told().filter_error_rad[i]; });
+    add_signal("told_scale" + n, D::none, "latent scale of the filter" + n,
+               [=] { return told().scale[i]; });
+  }
+  const char* axes[] = {"x", "y", "z"};
+  const char* ways[] = {"north", "east", "down"};
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    add_signal(std::string("told_air_velocity_") + axes[i], D::speed, "through the air, in B",
+               [=] { return told().v_AB_B_mps[i]; });
+    add_signal(std::string("air_velocity_error_") + axes[i], D::speed, "",
+               [=] { return told().v_AB_error_B_mps[i]; });
+    add_signal(std::string("told_wind_") + ways[i], D::speed, "",
+               [=] { return told().wind_W_mps[i]; });
+    add_signal(std::string("wind_error_") + ways[i], D::speed, "",
+               [=] { return told().wind_error_W_mps[i]; });
+  }
+  add_signal("told_baro_height", D::length, "by the barometer",
+             [=] { return told().baro_height_m; });
+  add_signal("baro_height_error", D::length, "", [=] { return told().baro_height_error_m; });
+  add_signal("told_baro_climb", D::speed, "", [=] { return told().baro_climb_mps; });
+  add_signal("baro_climb_error", D::speed, "", [=] { return told().baro_climb_error_mps; });
 }
 
 }  // namespace whirl::flight

@@ -45,6 +45,8 @@ FlightWorld::FlightWorld(const FlightParams& params, plant::RotorSet rotors, std
   for (int motor = 1; motor <= motors; ++motor) {
     controllers_.push_back(type->make(params, seed, motor));
   }
+  station_.on_frame(
+      [this](const io::MavlinkFrame& frame, std::int64_t at_ns) { estimates_.hear(frame, at_ns); });
   name_signals();
 }
 
@@ -56,6 +58,7 @@ void FlightWorld::read(std::span<double> values) const {
 void FlightWorld::step(std::int64_t t_ns, const io::Batch& happened, io::Batch& sensed) {
   on_messages(happened);
   if (t_ns > 0) move(t_ns);
+  estimates_.remember(t_ns, vehicle_.state());
   now_ns_ = t_ns;
   send(t_ns, sensed);
 }
@@ -133,6 +136,8 @@ Result<Done> FlightWorld::command(const Command& command, std::int64_t /*now_ns*
             [this](const request::TakeOff& c) -> Result<Done> { return take_off(c), Done{}; },
             [this](const request::GoTo& c) -> Result<Done> { return go_to(c), Done{}; },
             [this](const request::Land&) -> Result<Done> { return land(), Done{}; },
+            [this](const request::Figure8& c) -> Result<Done> { return fly_figure_8(c), Done{}; },
+            [this](const request::Cruise& c) -> Result<Done> { return cruise(c), Done{}; },
             [&](const auto&) -> Result<Done> { return not_understood("a flight", word(command)); }},
       command);
 }
@@ -162,6 +167,27 @@ void FlightWorld::go_to(const request::GoTo& command) {
                   -command.height_m.value_or(-target.p_W_m.z())};
   if (!command.speed_mps) return station_.set_target(target);
   station_.move_target(target, *command.speed_mps);
+}
+
+void FlightWorld::fly_figure_8(const request::Figure8& figure) {
+  const double w = 2.0 * M_PI / figure.period_s;
+  const double yaw_rad = station_.target() ? station_.target()->yaw_rad : 0.0;
+  station_.follow(
+      [figure, w](double t_s) -> PathPoint {
+        const double c = std::cos(w * t_s), s = std::sin(w * t_s);
+        const double c2 = std::cos(2.0 * w * t_s), s2 = std::sin(2.0 * w * t_s);
+        const double n = figure.north_m, e = figure.east_m;
+        return {{n * c, e * s2, -figure.height_m},
+                {-n * w * s, 2.0 * e * w * c2, 0.0},
+                {-n * w * w * c, -4.0 * e * w * w * s2, 0.0}};
+      },
+      yaw_rad);
+}
+
+void FlightWorld::cruise(const request::Cruise& command) {
+  Target at = station_.target().value_or(Target{vehicle_.state().p_WB_W_m, 0.0});
+  at.p_W_m.z() = -command.height_m.value_or(-at.p_W_m.z());
+  station_.cruise({command.north_mps, command.east_mps, 0.0}, at);
 }
 
 Result<Done> FlightWorld::disturb(const Disturbance& disturbance, std::int64_t now_ns) {

@@ -2,7 +2,7 @@
 //
 //   Step     controllers and station take what the target did; then everything moves 1 ms; then what is
 //            sensed goes out: body_motion, esc_state of each motor, uart_frame to the radio
-//   Command  Arm, TakeOff, GoTo, Land. Take-off also streams the point above where the vehicle stands
+//   Command  Arm, TakeOff, GoTo, Figure8, Cruise, Land. Take-off also streams the point above where the vehicle stands
 //            as its target; land and disarm end the stream
 //   Air      Wind with a duration, Jet
 //   Faults   capture_lost; supply_dip (value: volts below); esc_stopped (of a motor, or of the device that is its ESC)
@@ -14,6 +14,7 @@
 
 #include "harness/flight/capture.hpp"
 #include "harness/flight/controllers.hpp"
+#include "harness/flight/estimates.hpp"
 #include "harness/flight/flight_params.hpp"
 #include "harness/flight/station.hpp"
 #include "harness/world/world.hpp"
@@ -52,10 +53,13 @@ class FlightWorld : public World {
   void name_signals();
   void name_motor_signals();
   void name_telemetry_signals();
+  void name_estimate_signals();
   void arm(const request::Arm& command);
   void take_off(const request::TakeOff& command);
   void go_to(const request::GoTo& command);
   void land();
+  void fly_figure_8(const request::Figure8& figure);
+  void cruise(const request::Cruise& command);
   Result<Done> blow(const request::Wind& wind, std::int64_t now_ns);
   Result<Done> add_jet(const request::Jet& wanted);
   double offset_from_target_m() const;
@@ -64,6 +68,7 @@ class FlightWorld : public World {
   std::vector<std::unique_ptr<MotorController>> controllers_;  // index: motor number - 1
   Capture capture_;
   Station station_;
+  Estimates estimates_;
   TimedFaults faults_;
   std::vector<Signal> signals_;
   std::vector<std::function<double()>> values_;

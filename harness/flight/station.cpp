@@ -10,7 +10,8 @@ constexpr std::uint8_t kVehicle = 1;
 constexpr std::int64_t kRetry_ns = 300'000'000;
 constexpr int kTries = 20;
 constexpr std::int64_t kTargetPeriod_ns = 100'000'000;
-constexpr std::uint16_t kPositionAndYaw = 0x09F8;  // type_mask: ignore all else
+// type_mask: ignore all else.
+constexpr std::uint16_t kPositionAndYaw = 0x09F8, kPathPoint = 0x0800, kVelocityAtHeight = 0x09C3;
 constexpr std::uint8_t kLocalNed = 1;
 
 }  // namespace
@@ -58,11 +59,25 @@ void Station::set_target(const std::optional<Target>& target) {
   await(target ? Awaited::target : Awaited::nothing);
   target_ = target;
   goal_speed_mps_ = 0.0;
+  path_ = nullptr;
+  cruise_W_mps_.reset();
+}
+
+void Station::follow(const Path& path, double yaw_rad) {
+  set_target(Target{path(0.0).p_W_m, yaw_rad});
+  path_ = path;
+  path_start_ns_ = last_step_ns_;
+}
+
+void Station::cruise(const Eigen::Vector3d& v_W_mps, const Target& at_height) {
+  set_target(at_height);
+  cruise_W_mps_ = v_W_mps;
 }
 
 void Station::move_target(const Target& goal, double speed_mps) {
   await(Awaited::target);
-  if (!target_) target_ = goal;
+  const Target from = target_.value_or(goal);
+  set_target(from);
   target_->yaw_rad = goal.yaw_rad;
   goal_W_m_ = goal.p_W_m;
   goal_speed_mps_ = speed_mps;
@@ -85,6 +100,7 @@ void Station::step(std::int64_t t_ns, const Send& send) {
     const double reach_m = goal_speed_mps_ * static_cast<double>(t_ns - last_step_ns_) * 1e-9;
     target_->p_W_m += left_m.norm() <= reach_m ? left_m : left_m.normalized() * reach_m;
   }
+  if (path_) target_->p_W_m = path_(static_cast<double>(t_ns - path_start_ns_) * 1e-9).p_W_m;
   last_step_ns_ = t_ns;
   if (target_ && t_ns >= next_target_ns_) send_target(t_ns, send);
   if (!commands_.empty() && t_ns >= commands_.front().next_ns) send_command(t_ns, send);
@@ -98,6 +114,20 @@ void Station::send_target(std::int64_t t_ns, const Send& send) {
   message.z = static_cast<float>(target_->p_W_m.z());
   message.yaw = static_cast<float>(target_->yaw_rad);
   message.type_mask = kPositionAndYaw;
+  const auto put = [](const Eigen::Vector3d& from, float& x, float& y, float& z) {
+    x = static_cast<float>(from.x());
+    y = static_cast<float>(from.y());
+    z = static_cast<float>(from.z());
+  };
+  if (path_) {
+    const PathPoint point = path_(static_cast<double>(t_ns - path_start_ns_) * 1e-9);
+    put(point.v_W_mps, message.vx, message.vy, message.vz);
+    put(point.a_W_mps2, message.afx, message.afy, message.afz);
+    message.type_mask = kPathPoint;
+  } else if (cruise_W_mps_) {
+    put(*cruise_W_mps_, message.vx, message.vy, message.vz);
+    message.type_mask = kVelocityAtHeight;
+  }
   message.target_system = message.target_component = kVehicle;
   message.coordinate_frame = kLocalNed;
   const io::MavlinkFrame frame = io::pack(message, sender_);
@@ -133,6 +163,7 @@ void Station::acknowledged(const io::CommandAck& ack) {
 
 void Station::hear(const io::MavlinkFrame& frame) {
   ++telemetry_.frames;
+  if (on_frame_) on_frame_(frame, heard_ns_);
   if (const auto beat = io::unpack<io::Heartbeat>(frame)) {
     telemetry_.state = beat->custom_mode;
     telemetry_.armed = (beat->base_mode & 0x80) != 0 ? 1.0 : 0.0;

@@ -1,7 +1,8 @@
 // The ground station: what a pilot's computer does on the radio, and what it knows of the vehicle.
 //
-//   Up    captured poses as VICON_POSITION_ESTIMATE; the target at 10 Hz once there is one, moving
-//         straight to a new one where a speed is given; commands, repeated every 300 ms with a
+//   Up    captured poses as VICON_POSITION_ESTIMATE; the target at 10 Hz once there is one: a place,
+//         moving straight to a new one where a speed is given; a point of a path with its velocity and
+//         acceleration; a velocity at a height. Commands, repeated every 300 ms with a
 //         rising confirmation until COMMAND_ACK
 //   Wire  a command has passed when the first frame that carries it has reached the vehicle's UART
 //   Down  the vehicle's telemetry, last value of each; nothing is known before it was heard
@@ -27,6 +28,11 @@ struct Target {  // where the vehicle shall be, frame W
   double yaw_rad = 0.0;
 };
 
+struct PathPoint {
+  Eigen::Vector3d p_W_m, v_W_mps, a_W_mps2;
+};
+using Path = std::function<PathPoint(double t_s)>;  // t from when it was begun
+
 // What telemetry has told, NaN until it did.
 struct Telemetry {
   double state = std::nan("");  // HEARTBEAT custom_mode
@@ -40,13 +46,17 @@ struct Telemetry {
 
 class Station {
  public:
+  using OnFrame = std::function<void(const io::MavlinkFrame& frame, std::int64_t t_ns)>;
   using Send = std::function<void(std::int64_t t_ns, std::span<const std::uint8_t> frame)>;
 
   Station();
+  void on_frame(OnFrame hear) { on_frame_ = std::move(hear); }  // each that comes down, besides
 
   void send_pose(const CapturedPose& pose, const Send& send);
   void set_target(const std::optional<Target>& target);
   void move_target(const Target& goal, double speed_mps);  // from the present target on
+  void follow(const Path& path, double yaw_rad);           // from now on
+  void cruise(const Eigen::Vector3d& v_W_mps, const Target& at_height);
   const std::optional<Target>& target() const { return target_; }
   // COMMAND_LONG; waits its turn behind an earlier one that is not yet acknowledged.
   void command(std::uint16_t command, const std::array<float, 7>& param);
@@ -84,6 +94,9 @@ class Station {
   std::optional<Target> target_;
   Eigen::Vector3d goal_W_m_ = Eigen::Vector3d::Zero();
   double goal_speed_mps_ = 0.0;
+  Path path_;
+  std::int64_t path_start_ns_ = 0;
+  std::optional<Eigen::Vector3d> cruise_W_mps_;
   std::int64_t next_target_ns_ = 0, last_step_ns_ = 0;
   Awaited awaited_ = Awaited::nothing;
   std::vector<std::vector<std::uint8_t>> carriers_;  // frames that carry what is awaited
@@ -92,6 +105,7 @@ class Station {
   int last_result_ = kWaiting;
   Telemetry telemetry_;
   std::string last_text_;
+  OnFrame on_frame_;
   std::int64_t heard_ns_ = 0, heartbeat_ns_ = -1;
 };
 

@@ -38,6 +38,22 @@ GoTo read_go_to(const Table& t) {
   return go;
 }
 
+// {} is the thesis's: 1 m, 1 m, 1.1 m, 20 s.
+Figure8 read_figure_8(const Table& t) {
+  Figure8 figure;
+  figure.north_m = t.quantity_or("north", Dimension::length, figure.north_m);
+  figure.east_m = t.quantity_or("east", Dimension::length, figure.east_m);
+  figure.height_m = t.quantity_or("height", Dimension::length, figure.height_m, above(0.0));
+  figure.period_s = t.quantity_or("period", Dimension::time, figure.period_s, at_least(1.0));
+  return figure;
+}
+
+Cruise read_cruise(const Table& t) {
+  return {t.quantity_or("north", Dimension::speed, 0.0),
+          t.quantity_or("east", Dimension::speed, 0.0),
+          maybe(t, "height", Dimension::length, above(0.0))};
+}
+
 // { bytes = "5A 03 C1", read = 6, times = 10, every = "20 ms", shift = "7 us" }
 RawTransfer read_raw(const Table& t) {
   RawTransfer raw;
@@ -81,6 +97,8 @@ void read_flying(const Table& t, std::vector<Command>& all) {
     all.emplace_back(TakeOff{t.quantity("takeoff", Dimension::length, above(0.0))});
   }
   if (t.has("position") || t.has("yaw")) all.emplace_back(read_go_to(t));
+  if (t.has("figure_8")) all.emplace_back(read_figure_8(t.table("figure_8")));
+  if (t.has("velocity")) all.emplace_back(read_cruise(t.table("velocity")));
   if (t.has("land") && t.flag_or("land", true)) all.emplace_back(Land{});
 }
 

@@ -27,6 +27,13 @@ struct GoTo {  // what is left out stays as it was
   std::optional<double> speed_mps;  // above 0: straight there at that speed; left out: at once
 };
 struct Land {};
+struct Figure8 {  // x = north cos(2 pi t / period), y = east sin(4 pi t / period), from now on
+  double north_m = 1.0, east_m = 1.0, height_m = 1.1, period_s = 20.0;  // the last two above 0
+};
+struct Cruise {  // a velocity over ground, at a height
+  double north_mps = 0.0, east_mps = 0.0;
+  std::optional<double> height_m;  // left out: as it was
+};
 
 enum class SetPointKind { duty, speed, thrust, power };
 struct SetPoint {
@@ -69,10 +76,10 @@ struct Jet {  // a round vertical stream, from now on
 
 }  // namespace request
 
-using Command =
-    std::variant<request::Arm, request::TakeOff, request::GoTo, request::Land, request::SetPoint,
-                 request::Stop, request::Silence, request::SetPointRate, request::RawTransfer,
-                 request::Pulses, request::Line, request::Brake>;
+using Command = std::variant<request::Arm, request::TakeOff, request::GoTo, request::Land,
+                             request::Figure8, request::Cruise, request::SetPoint, request::Stop,
+                             request::Silence, request::SetPointRate, request::RawTransfer,
+                             request::Pulses, request::Line, request::Brake>;
 using Disturbance = std::variant<request::Wind, request::Jet>;
 
 const char* word(const Command& command);          // "takeoff"
