@@ -44,6 +44,62 @@ struct SysStatus {  // voltage in mV, current in cA, load in 0.1 %
   }
 };
 
+// A parameter's name as it travels: sixteen characters, the rest zero; all sixteen may be used.
+using ParamId = std::array<char, 16>;
+inline ParamId to_param_id(std::string_view name) {
+  ParamId id{};
+  std::copy_n(name.begin(), std::min(name.size(), id.size()), id.begin());
+  return id;
+}
+inline std::string param_name(const ParamId& id) {
+  return {id.data(), strnlen(id.data(), id.size())};
+}
+inline constexpr std::uint8_t kParamReal32 = 9;  // MAV_PARAM_TYPE
+
+struct ParamRequestRead {
+  static constexpr std::uint32_t kId = 20;
+  std::int16_t param_index = -1;  // -1: by its name
+  std::uint8_t target_system = 0, target_component = 0;
+  ParamId param_id{};
+  template <typename V>
+  void fields(V& v) {
+    v(param_index, target_system, target_component, param_id);
+  }
+};
+
+struct ParamRequestList {
+  static constexpr std::uint32_t kId = 21;
+  std::uint8_t target_system = 0, target_component = 0;
+  template <typename V>
+  void fields(V& v) {
+    v(target_system, target_component);
+  }
+};
+
+struct ParamValue {
+  static constexpr std::uint32_t kId = 22;
+  float param_value = 0;
+  std::uint16_t param_count = 0, param_index = 0;
+  ParamId param_id{};
+  std::uint8_t param_type = kParamReal32;
+  template <typename V>
+  void fields(V& v) {
+    v(param_value, param_count, param_index, param_id, param_type);
+  }
+};
+
+struct ParamSet {
+  static constexpr std::uint32_t kId = 23;
+  float param_value = 0;
+  std::uint8_t target_system = 0, target_component = 0;
+  ParamId param_id{};
+  std::uint8_t param_type = kParamReal32;
+  template <typename V>
+  void fields(V& v) {
+    v(param_value, target_system, target_component, param_id, param_type);
+  }
+};
+
 struct AttitudeQuaternion {  // q1..q4 = w, x, y, z
   static constexpr std::uint32_t kId = 31;
   std::uint32_t time_boot_ms = 0;

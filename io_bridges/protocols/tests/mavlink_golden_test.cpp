@@ -148,5 +148,41 @@ TEST(MavlinkGolden, Statustext) {
       "00 01 02 01 FE F0");
 }
 
+TEST(MavlinkGolden, ParamRequestRead) {
+  ParamRequestRead m;
+  m.target_system = m.target_component = 1;
+  m.param_id = to_param_id("EST_FILTER");
+  expect_golden(m, 8,
+                "FD 0E 00 00 08 01 01 14 00 00 FF FF 01 01 45 53 54 5F 46 49 4C 54 45 52 A6 A4");
+}
+
+TEST(MavlinkGolden, ParamRequestList) {
+  ParamRequestList m;
+  m.target_system = m.target_component = 1;
+  expect_golden(m, 9, "FD 02 00 00 09 01 01 15 00 00 01 01 8A C8");
+}
+
+TEST(MavlinkGolden, ParamValue) {
+  ParamValue m;
+  m.param_value = 1.25f;
+  m.param_count = 4;
+  m.param_index = 1;
+  m.param_id = to_param_id("EST_START_SCALE");
+  expect_golden(m, 10,
+                "FD 19 00 00 0A 01 01 16 00 00 00 00 A0 3F 04 00 01 00 45 53 54 5F 53 54 41 52 54 "
+                "5F 53 43 41 4C 45 00 09 CB C9");
+}
+
+TEST(MavlinkGolden, ParamSet) {
+  ParamSet m;
+  m.param_value = -0.5f;
+  m.target_system = m.target_component = 1;
+  m.param_id = to_param_id("SIXTEEN_LETTERS_");
+  EXPECT_EQ(param_name(m.param_id), "SIXTEEN_LETTERS_");
+  expect_golden(m, 11,
+                "FD 17 00 00 0B 01 01 17 00 00 00 00 00 BF 01 01 53 49 58 54 45 45 4E 5F 4C 45 54 "
+                "54 45 52 53 5F 09 4B F9");
+}
+
 }  // namespace
 }  // namespace whirl::io

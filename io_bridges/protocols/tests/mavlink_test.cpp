@@ -166,6 +166,10 @@ TEST(Mavlink, StructsAreAsLongAsThePublishedMessages) {
   expect_full_length<ViconPositionEstimate>(116);
   expect_full_length<HighresImu>(63);
   expect_full_length<Statustext>(54);
+  expect_full_length<ParamRequestRead>(20);
+  expect_full_length<ParamRequestList>(2);
+  expect_full_length<ParamValue>(25);
+  expect_full_length<ParamSet>(23);
 }
 
 TEST(Mavlink, FieldsSitAtThePublishedOffsets) {
