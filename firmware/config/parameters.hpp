@@ -1,0 +1,67 @@
+// The parameters of the flight image: what can be set over the radio and is kept in flash.
+//
+//   Table   one row each in kParameterTable, in the order of Parameter; to add one, add both lines.
+//           The store knows them by their names: rows may move, a new name is a new parameter
+//   Units   degrees and shares as a pilot types them; the last word of a name in the enumeration
+//   Refused NaN, beyond the bounds, a fraction where whole numbers go, while armed where the row says
+//           so: the old value stays
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+namespace fw {
+
+enum class Parameter : std::uint8_t {
+  est_filter,          // 0: explicit complementary filter, 1: velocity-aided filters
+  est_start_scale,     // factor on the velocities that the estimate starts with
+  est_start_tilt_deg,  // added to the tilt that the estimate starts with
+  ctl_feedforward,     // 1: the reference's acceleration is fed forward
+};
+
+enum class Numbers : std::uint8_t { real, whole };
+enum class WhileArmed : std::uint8_t { refused, allowed };
+
+struct ParameterRow {
+  Parameter parameter;
+  std::string_view name;
+  float start, low, high;  // start: its value until it was set
+  Numbers numbers;
+  WhileArmed while_armed;
+};
+
+inline constexpr ParameterRow kParameterTable[] = {
+    {Parameter::est_filter, "EST_FILTER", 0, 0, 1, Numbers::whole, WhileArmed::refused},
+    {Parameter::est_start_scale, "EST_START_SCALE", 1, 0.5f, 1.5f, Numbers::real,
+     WhileArmed::refused},
+    {Parameter::est_start_tilt_deg, "EST_START_TILT", 0, -45, 45, Numbers::real,
+     WhileArmed::refused},
+    {Parameter::ctl_feedforward, "CTL_FEEDFWD", 1, 0, 1, Numbers::whole, WhileArmed::allowed},
+};
+inline constexpr std::size_t kParameterCount = std::size(kParameterTable);
+
+class Parameters {
+ public:
+  Parameters();
+
+  float get(Parameter parameter) const { return values_[static_cast<std::size_t>(parameter)]; }
+  bool is_on(Parameter parameter) const { return get(parameter) != 0.0f; }
+
+  float value(std::size_t index) const { return values_[index]; }
+  // False: refused, and nothing has changed.
+  bool set(std::size_t index, float value, bool armed);
+  bool set(Parameter parameter, float value) {
+    return set(static_cast<std::size_t>(parameter), value, false);
+  }
+  static std::optional<std::size_t> index_of(std::string_view name);
+
+  std::uint32_t changes() const { return changes_; }  // counts up with each that was taken over
+
+ private:
+  std::array<float, kParameterCount> values_;
+  std::uint32_t changes_ = 0;
+};
+
+}  // namespace fw
