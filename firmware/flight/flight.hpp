@@ -8,6 +8,7 @@
 #include <array>
 #include <cstdint>
 
+#include "firmware/config/parameters.hpp"
 #include "firmware/control/attitude_controller.hpp"
 #include "firmware/control/mixer.hpp"
 #include "firmware/control/position_controller.hpp"
@@ -65,6 +66,9 @@ class Flight {
   Reason take_off(float height_m);
   Reason land();
 
+  Parameters& parameters() { return parameters_; }
+  const Parameters& parameters() const { return parameters_; }
+
   // Tasks.
   void attitude_step();
   void position_step();
@@ -101,6 +105,7 @@ class Flight {
   void advance_reference();
   void follow_reference();
 
+  Parameters parameters_;
   Estimator estimator_;
   AttitudeController attitude_control_;
   PositionController position_control_;

@@ -14,6 +14,14 @@ int crc_extra(std::uint32_t id) {
       return 50;
     case kSysStatus:
       return 124;
+    case kParamRequestRead:
+      return 214;
+    case kParamRequestList:
+      return 159;
+    case kParamValue:
+      return 220;
+    case kParamSet:
+      return 168;
     case kAttitudeQuaternion:
       return 246;
     case kLocalPositionNed:

@@ -15,10 +15,15 @@ namespace fw::mavlink {
 
 inline constexpr std::size_t kMaxPayload = 255, kOverhead = 12;
 inline constexpr std::size_t kMaxSent = 64 + kOverhead;
+inline constexpr std::uint8_t kSystem = 1, kComponent = 1;  // ours
 
 enum MessageId : std::uint32_t {
   kHeartbeat = 0,
   kSysStatus = 1,
+  kParamRequestRead = 20,
+  kParamRequestList = 21,
+  kParamValue = 22,
+  kParamSet = 23,
   kAttitudeQuaternion = 31,
   kLocalPositionNed = 32,
   kCommandLong = 76,

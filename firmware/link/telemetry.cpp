@@ -5,9 +5,8 @@
 namespace fw {
 namespace {
 
-using mavlink::Frame, mavlink::Message;
+using mavlink::Frame, mavlink::kComponent, mavlink::kSystem, mavlink::Message;
 
-constexpr std::uint8_t kSystem = 1, kComponent = 1;
 constexpr std::uint32_t kSlotsPerSecond = 200;
 
 enum Command : std::uint16_t { kNavLand = 21, kNavTakeoff = 22, kArmDisarm = 400 };
@@ -51,6 +50,7 @@ void Telemetry::receive(std::span<const std::uint8_t> bytes) {
     if (frame.id == mavlink::kViconPositionEstimate) on_vicon(frame);
     if (frame.id == mavlink::kSetPositionTargetLocalNed) on_target(frame);
     if (frame.id == mavlink::kCommandLong) on_command(frame);
+    parameters_.on_frame(frame, flight_.parameters(), flight_.state() != FlightState::disarmed);
   }
 }
 
@@ -121,6 +121,7 @@ std::span<const std::uint8_t> Telemetry::next(std::uint32_t time_ms, const Fault
   if (slot == 6) return send(heartbeat());
   if (slot == 106) return send(sys_status(faults, health));
   if (ack_due_) return send(ack());
+  if (slot % 10 == 7 && parameters_.due()) return send(parameters_.next(flight_.parameters()));
   if (slot % 50 != 8) return {};  // texts are long: four a second at most
   if (!booted_told_ && time_ms > 500) {
     booted_told_ = true;
@@ -129,6 +130,10 @@ std::span<const std::uint8_t> Telemetry::next(std::uint32_t time_ms, const Fault
   if (refusal_due_) {
     refusal_due_ = false;
     return send(status_text(text_of(ack_reason_), true));
+  }
+  if (unsaved_told_ != health.parameters_unsaved) {
+    unsaved_told_ = health.parameters_unsaved;
+    if (unsaved_told_) return send(status_text("parameters not saved, restart to make room", true));
   }
   if (reasons_told_ != flight_.reason_count()) {
     reasons_told_ = flight_.reason_count();

@@ -2,9 +2,10 @@
 // that the 57600 baud of a half-duplex radio are filled evenly.
 //
 //   Down    HEARTBEAT 1 Hz, SYS_STATUS 1 Hz, ATTITUDE_QUATERNION 20 Hz, LOCAL_POSITION_NED 10 Hz,
-//           HIGHRES_IMU 2 Hz, DEBUG_FLOAT_ARRAY of the filters 5 Hz each; COMMAND_ACK and STATUSTEXT in free slots
+//           HIGHRES_IMU 2 Hz, DEBUG_FLOAT_ARRAY of the filters 5 Hz each; COMMAND_ACK, STATUSTEXT and
+//           PARAM_VALUE in free slots
 //   Up      VICON_POSITION_ESTIMATE, SET_POSITION_TARGET_LOCAL_NED, COMMAND_LONG (400 arm, disarm;
-//           22 take off to param 7; 21 land)
+//           22 take off to param 7; 21 land); the requests of parameter_link.hpp
 //   State   HEARTBEAT.custom_mode is the FlightState; system_status 2 not ready, 3 ready, 4 active,
 //           5 failsafe, 6 motors stopped in an emergency
 #pragma once
@@ -14,13 +15,15 @@
 
 #include "firmware/flight/flight.hpp"
 #include "firmware/link/mavlink.hpp"
+#include "firmware/link/parameter_link.hpp"
 #include "firmware/status.hpp"
 
 namespace fw {
 
 struct Health {  // what only the image knows
   std::uint16_t load_permille = 0;
-  const char* boot_text = "";  // reset cause, sent once
+  const char* boot_text = "";       // reset cause, sent once
+  bool parameters_unsaved = false;  // flash did not take the last change
 };
 
 class Telemetry {
@@ -53,6 +56,7 @@ class Telemetry {
 
   Flight& flight_;
   mavlink::Parser parser_;
+  ParameterLink parameters_;
   mavlink::Message last_{mavlink::kHeartbeat, 9};
   std::uint32_t slot_ = 0;
   std::uint8_t sequence_ = 0;
@@ -60,7 +64,7 @@ class Telemetry {
   std::uint16_t ack_command_ = 0;
   Reason ack_reason_ = Reason::none;
   std::uint32_t reasons_told_ = 0;
-  bool refusal_due_ = false, booted_told_ = false;
+  bool refusal_due_ = false, booted_told_ = false, unsaved_told_ = false;
 };
 
 }  // namespace fw
