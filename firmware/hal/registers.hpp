@@ -41,8 +41,19 @@ struct PWR {
 };
 
 struct FLASH {
-  using ACR = Reg32<0x4002'3C00>;
-  static constexpr std::uint32_t LATENCY_5WS = 5u, PRFTEN = bit(8), ICEN = bit(9), DCEN = bit(10);
+  static constexpr std::uint32_t base = 0x4002'3C00;
+  using ACR = Reg32<base + 0x00>;
+  using KEYR = Reg32<base + 0x04>;
+  using SR = Reg32<base + 0x0C>;
+  using CR = Reg32<base + 0x10>;
+  static constexpr std::uint32_t LATENCY_5WS = 5u, PRFTEN = bit(8), ICEN = bit(9), DCEN = bit(10),
+                                 DCRST = bit(12);
+  static constexpr std::uint32_t KEY1 = 0x4567'0123, KEY2 = 0xCDEF'89AB;
+  static constexpr std::uint32_t BSY = bit(16);
+  static constexpr std::uint32_t all_errors = 0xF2;  // PGSERR, PGPERR, PGAERR, WRPERR, OPERR
+  static constexpr std::uint32_t PG = bit(0), SER = bit(1), PSIZE_x32 = 2u << 8, STRT = bit(16),
+                                 LOCK = bit(31);
+  static constexpr std::uint32_t SNB(std::uint32_t sector) { return sector << 3; }
 };
 
 template <std::uint32_t kBase>

@@ -6,6 +6,7 @@
 //   Watch   the watchdog is fed when each task has run since the last time
 #include <tuple>
 
+#include "firmware/config/parameter_store.hpp"
 #include "firmware/config/vehicle.hpp"
 #include "firmware/drivers/esc_bus.hpp"
 #include "firmware/drivers/hmc5883l.hpp"
@@ -15,6 +16,7 @@
 #include "firmware/flight/schedule.hpp"
 #include "firmware/hal/clock.hpp"
 #include "firmware/hal/fault_record.hpp"
+#include "firmware/hal/flash.hpp"
 #include "firmware/hal/i2c_master.hpp"
 #include "firmware/hal/interrupts.hpp"
 #include "firmware/hal/pins.hpp"
@@ -35,6 +37,7 @@ constinit Mpu6000<hal::SpiMaster> imu(hal::spi1);
 constinit EscBus<hal::I2cMaster<hal::EscI2c>> escs(hal::i2c3);
 constinit Ms5611<hal::I2cMaster<hal::SensorI2c>> barometer(hal::i2c2);
 constinit Hmc5883l<hal::I2cMaster<hal::SensorI2c>> magnetometer(hal::i2c2);
+constinit ParameterStore<hal::ParameterSectors> store(hal::parameter_sectors);
 volatile std::uint32_t ticks_due = 0;
 volatile bool sample_ready = false;
 
@@ -170,6 +173,12 @@ __attribute__((noinline)) void telemetry_task() {
   if (!frame.empty() && hal::radio.send(frame) != Status::ok) ++faults.link_overruns;
 }
 
+// The core stalls for each word of flash: never while the motors may turn.
+__attribute__((noinline)) void store_task() {
+  if (flight().state() == FlightState::disarmed) store.step(flight().parameters());
+  health.parameters_unsaved = store.gave_up(flight().parameters());
+}
+
 namespace {
 
 // Runs what is due in this tick. The attitude task comes before the set-points that use it.
@@ -196,6 +205,7 @@ std::uint8_t run_tick(std::uint32_t tick) {
     telemetry_task();
     ran |= kTelemetry;
   }
+  store_task();
   return ran;
 }
 
@@ -279,6 +289,7 @@ extern "C" void fw_main() {
   using namespace fw;
   health.boot_text = boot_text();
   if (hal::start_clocks() != Status::ok) stay_on_ground();
+  store.load(flight().parameters());  // may erase: before the watchdog and the ticks
   hal::start_time_base();
   hal::spi1.init();  // switches on the clocks of all ports in use
   start_leds();
