@@ -99,6 +99,13 @@ void FlightWorld::name_telemetry_signals() {
              [this] { return static_cast<double>(station_.last_result()); });
   add_signal("command_pending", D::none, "1: a command waits for its answer",
              [this] { return station_.command_pending() ? 1.0 : 0.0; });
+  add_signal("parameter_result", D::none,
+             "of the last { parameter = ... }: 0 holds, 2 refused, -1 waiting, -2 never answered",
+             [this] { return static_cast<double>(station_.parameters().last_result()); });
+  add_signal("parameter_value", D::none, "in that answer",
+             [this] { return station_.parameters().last_value(); });
+  add_signal("parameter_pending", D::none, "1: a parameter waits for its answer",
+             [this] { return station_.parameters().pending() ? 1.0 : 0.0; });
 }
 
 void FlightWorld::name_estimate_signals() {

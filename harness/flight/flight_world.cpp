@@ -138,6 +138,11 @@ Result<Done> FlightWorld::command(const Command& command, std::int64_t /*now_ns*
             [this](const request::Land&) -> Result<Done> { return land(), Done{}; },
             [this](const request::Figure8& c) -> Result<Done> { return fly_figure_8(c), Done{}; },
             [this](const request::Cruise& c) -> Result<Done> { return cruise(c), Done{}; },
+            [this](const request::SetParameter& c) -> Result<Done> {
+              station_.request_parameter(
+                  c.name, c.value ? std::optional(static_cast<float>(*c.value)) : std::nullopt);
+              return Done{};
+            },
             [&](const auto&) -> Result<Done> { return not_understood("a flight", word(command)); }},
       command);
 }

@@ -94,6 +94,11 @@ void Station::command(std::uint16_t command, const std::array<float, 7>& param) 
   last_result_ = kWaiting;
 }
 
+void Station::request_parameter(const std::string& name, std::optional<float> value) {
+  await(Awaited::nothing);
+  parameters_.add(name, value);
+}
+
 void Station::step(std::int64_t t_ns, const Send& send) {
   if (target_ && goal_speed_mps_ > 0.0) {
     const Eigen::Vector3d left_m = goal_W_m_ - target_->p_W_m;
@@ -104,6 +109,7 @@ void Station::step(std::int64_t t_ns, const Send& send) {
   last_step_ns_ = t_ns;
   if (target_ && t_ns >= next_target_ns_) send_target(t_ns, send);
   if (!commands_.empty() && t_ns >= commands_.front().next_ns) send_command(t_ns, send);
+  if (const auto frame = parameters_.step(t_ns, sender_)) send(t_ns, io::encode(*frame));
 }
 
 void Station::send_target(std::int64_t t_ns, const Send& send) {
@@ -170,6 +176,8 @@ void Station::hear(const io::MavlinkFrame& frame) {
     heartbeat_ns_ = heard_ns_;
   } else if (const auto ack = io::unpack<io::CommandAck>(frame)) {
     acknowledged(*ack);
+  } else if (const auto parameter = io::unpack<io::ParamValue>(frame)) {
+    parameters_.on_value(*parameter);
   } else if (const auto position = io::unpack<io::LocalPositionNed>(frame)) {
     telemetry_.north_m = position->x;
     telemetry_.east_m = position->y;

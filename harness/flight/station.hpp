@@ -2,8 +2,8 @@
 //
 //   Up    captured poses as VICON_POSITION_ESTIMATE; the target at 10 Hz once there is one: a place,
 //         moving straight to a new one where a speed is given; a point of a path with its velocity and
-//         acceleration; a velocity at a height. Commands, repeated every 300 ms with a
-//         rising confirmation until COMMAND_ACK
+//         acceleration; a velocity at a height. Commands, repeated every 300 ms with a rising
+//         confirmation until COMMAND_ACK; requests for parameters (parameter_requests.hpp)
 //   Wire  a command has passed when the first frame that carries it has reached the vehicle's UART
 //   Down  the vehicle's telemetry, last value of each; nothing is known before it was heard
 //   Ids   we are 255/190, the vehicle is 1/1
@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "harness/flight/capture.hpp"
+#include "harness/flight/parameter_requests.hpp"
 #include "io_bridges/protocols/mavlink_messages.hpp"
 
 namespace whirl::flight {
@@ -60,7 +61,9 @@ class Station {
   const std::optional<Target>& target() const { return target_; }
   // COMMAND_LONG; waits its turn behind an earlier one that is not yet acknowledged.
   void command(std::uint16_t command, const std::array<float, 7>& param);
-  // What is due at t_ns: set-points and commands.
+  void request_parameter(const std::string& name, std::optional<float> value);  // none: read it
+  const ParameterRequests& parameters() const { return parameters_; }
+  // What is due at t_ns: set-points, commands, requests for parameters.
   void step(std::int64_t t_ns, const Send& send);
   void receive(std::span<const std::uint8_t> bytes, std::int64_t t_ns);
   void delivered(std::span<const std::uint8_t> frame, std::int64_t t_ns);
@@ -102,6 +105,7 @@ class Station {
   std::vector<std::vector<std::uint8_t>> carriers_;  // frames that carry what is awaited
   std::int64_t on_wire_ns_ = -1;
   std::deque<Pending> commands_;
+  ParameterRequests parameters_;
   int last_result_ = kWaiting;
   Telemetry telemetry_;
   std::string last_text_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 namespace whirl::plan {
@@ -91,6 +92,18 @@ Pulses read_pulses(const Table& t) {
   return pulses;
 }
 
+// { name = "EST_FILTER", value = 1 }; without a value it is only asked for.
+SetParameter read_parameter(const Table& t) {
+  constexpr double kMost = std::numeric_limits<float>::max();
+  SetParameter parameter;
+  parameter.name = t.text("name");
+  if (parameter.name.empty() || parameter.name.size() > 16 || !is_one_line(parameter.name)) {
+    t.refuse("name", "is not 1 to 16 ASCII characters");
+  }
+  if (t.has("value")) parameter.value = t.number("value", between(-kMost, kMost));
+  return parameter;
+}
+
 void read_flying(const Table& t, std::vector<Command>& all) {
   if (t.has("arm")) all.emplace_back(Arm{t.flag_or("arm", true)});
   if (t.has("takeoff")) {
@@ -100,6 +113,7 @@ void read_flying(const Table& t, std::vector<Command>& all) {
   if (t.has("figure_8")) all.emplace_back(read_figure_8(t.table("figure_8")));
   if (t.has("velocity")) all.emplace_back(read_cruise(t.table("velocity")));
   if (t.has("land") && t.flag_or("land", true)) all.emplace_back(Land{});
+  if (t.has("parameter")) all.emplace_back(read_parameter(t.table("parameter")));
 }
 
 void read_turning(const Table& t, std::vector<Command>& all) {

@@ -34,6 +34,10 @@ struct Cruise {  // a velocity over ground, at a height
   double north_mps = 0.0, east_mps = 0.0;
   std::optional<double> height_m;  // left out: as it was
 };
+struct SetParameter {           // of the firmware, over the radio
+  std::string name;             // 1 to 16 characters
+  std::optional<double> value;  // within a float's range; left out: only asked for
+};
 
 enum class SetPointKind { duty, speed, thrust, power };
 struct SetPoint {
@@ -76,10 +80,11 @@ struct Jet {  // a round vertical stream, from now on
 
 }  // namespace request
 
-using Command = std::variant<request::Arm, request::TakeOff, request::GoTo, request::Land,
-                             request::Figure8, request::Cruise, request::SetPoint, request::Stop,
-                             request::Silence, request::SetPointRate, request::RawTransfer,
-                             request::Pulses, request::Line, request::Brake>;
+using Command =
+    std::variant<request::Arm, request::TakeOff, request::GoTo, request::Land, request::Figure8,
+                 request::Cruise, request::SetParameter, request::SetPoint, request::Stop,
+                 request::Silence, request::SetPointRate, request::RawTransfer, request::Pulses,
+                 request::Line, request::Brake>;
 using Disturbance = std::variant<request::Wind, request::Jet>;
 
 const char* word(const Command& command);          // "takeoff"

@@ -209,6 +209,44 @@ TEST(FlightWorld, SendsPosesAndCommandsOverTheRadio) {
   EXPECT_EQ(commands, 4);
 }
 
+TEST(FlightWorld, SetsAndReadsParametersOverTheRadio) {
+  Flight flight;
+  const char* set = "{ parameter = { name = 'EST_FILTER', value = 1 } }";
+  ASSERT_TRUE(plan::command(flight.world, table(set), 0).ok());
+  ASSERT_TRUE(plan::command(flight.world, table("{ parameter = { name = 'B' } }"), 0).ok());
+  std::vector<std::uint32_t> sent;
+  io::MavlinkParser parser([&](const io::MavlinkFrame& frame, std::span<const std::uint8_t>) {
+    if (frame.msgid >= 20 && frame.msgid <= 23) sent.push_back(frame.msgid);
+  });
+  io::MavlinkSender vehicle{1, 1, 0};
+  const auto step = [&](const io::Batch& happened) {
+    io::Batch sensed;
+    flight.world.step(flight.t_ns += kMs, happened, sensed);
+    io::Reader reader(sensed.bytes());
+    while (reader.next()) {
+      if (reader.header().kind != io::Kind::uart_frame) continue;
+      for (const std::uint8_t byte : reader.payload()) parser.add(byte);
+    }
+  };
+  step({});
+  EXPECT_EQ(flight.value("parameter_result"), -1.0);
+  for (const char* name : {"EST_FILTER", "B"}) {
+    EXPECT_EQ(flight.value("parameter_pending"), 1.0);
+    io::ParamValue answer;
+    answer.param_id = io::to_param_id(name);
+    answer.param_value = 3.0f;
+    const auto bytes = io::encode(io::pack(answer, vehicle));
+    io::Batch happened;
+    happened.add(io::Kind::uart_received, kRadioPort, flight.t_ns, bytes.data(),
+                 static_cast<std::uint32_t>(bytes.size()));
+    step(happened);
+    EXPECT_EQ(flight.value("parameter_result"), name[0] == 'E' ? 2.0 : 0.0);
+    EXPECT_EQ(flight.value("parameter_value"), 3.0);
+  }
+  EXPECT_EQ(flight.value("parameter_pending"), 0.0);
+  EXPECT_EQ(sent, (std::vector<std::uint32_t>{23, 20}));
+}
+
 TEST(FlightWorld, AJetBlowsWhereItIsAndNowhereElse) {
   Flight flight;
   flight.run(0.1);
@@ -251,8 +289,13 @@ TEST(FlightWorld, TellsWhenACommandHasReachedTheVehiclesUart) {
 
 TEST(FlightWorld, RefusesCommandsItDoesNotUnderstand) {
   Flight flight;
-  for (const char* text : {"{ fly = true }", "{ takeoff = '1.1 kg' }", "{ takeoff = '-1 m' }",
-                           "{ position = { north = '1 m' }, speed = '0 m/s' }"}) {
+  for (const char* text :
+       {"{ fly = true }", "{ takeoff = '1.1 kg' }", "{ takeoff = '-1 m' }",
+        "{ position = { north = '1 m' }, speed = '0 m/s' }", "{ parameter = { value = 1 } }",
+        "{ parameter = { name = '', value = 1 } }",
+        "{ parameter = { name = 'SEVENTEEN_LETTERS', value = 1 } }",
+        "{ parameter = { name = 'A', value = 1e300 } }",
+        "{ parameter = { name = 'A', value = '1 m' } }"}) {
     EXPECT_FALSE(plan::command(flight.world, table(text), 0).ok()) << text;
   }
   for (const char* text : {"{ jet = { up = '3 m/s' } }", "{ jet = { radius = '1 m' } }",
