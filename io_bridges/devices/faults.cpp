@@ -30,6 +30,7 @@ constexpr KindName kNames[] = {
     {FaultKind::esc_stopped, "esc_stopped"},
     {FaultKind::code_hangs, "code_hangs"},
     {FaultKind::sensor_late, "sensor_late"},
+    {FaultKind::reset_pin, "reset_pin"},
 };
 
 bool matches(int wanted, int here) {

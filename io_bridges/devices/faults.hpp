@@ -40,6 +40,7 @@ enum class FaultKind : std::uint32_t {
   esc_stopped,            // harness: the ESC of motor `address` stops its motor
   code_hangs,             // board: the watched function number `address` comes no further
   sensor_late,            // each measurement takes value seconds longer
+  reset_pin,              // board: NRST goes low for an instant, at the start
 };
 
 std::optional<FaultKind> fault_kind(std::string_view name);  // "i2c_nack"

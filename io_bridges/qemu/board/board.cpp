@@ -192,10 +192,24 @@ void Board::hang(const io::FaultCommand& fault) {
   if (number < watch.size()) hangs_.add(fault, setup_.image.functions_named(watch[number]));
 }
 
+// Devices have no reset line: they keep what they were set to.
+void Board::pull_reset_pin(const io::FaultCommand& fault) {
+  const std::uint32_t number = fault.number;
+  const auto pull = [this, number] {
+    happened_.add(io::Kind::fault_applied, static_cast<std::uint16_t>(number), events_.now(),
+                  nullptr, 0);
+    emulator_.reset_core(stm32::ResetCause::pin);
+  };
+  reset_pulls_.emplace_back(events_, pull).at(fault.start_ns);
+}
+
 void Board::on_message(const io::Reader& message) {
   if (message.header().kind == io::Kind::fault) {
     const auto fault = message.as<io::FaultCommand>();
     if (fault.kind == static_cast<std::uint32_t>(io::FaultKind::code_hangs)) return hang(fault);
+    if (fault.kind == static_cast<std::uint32_t>(io::FaultKind::reset_pin)) {
+      return pull_reset_pin(fault);
+    }
   }
   if (devices_.on_message(message)) return;
   if (message.header().kind == io::Kind::end_of_run) {

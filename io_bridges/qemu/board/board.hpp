@@ -6,6 +6,7 @@
 //            sensed at this instant and for the next boundary, and goes on
 #pragma once
 #include <cstdint>
+#include <deque>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
@@ -95,6 +96,7 @@ class Board final : stm32::InterruptLines, stm32::SystemBus, stm32::FlashArray {
   void await_orders();
   void on_message(const io::Reader& message);
   void hang(const io::FaultCommand& fault);
+  void pull_reset_pin(const io::FaultCommand& fault);
   Result<Done> watch_converters();
   void retime();
   void report_clocks();
@@ -122,6 +124,7 @@ class Board final : stm32::InterruptLines, stm32::SystemBus, stm32::FlashArray {
   std::unique_ptr<stm32::ChipModel> chip_;
   DeviceRack devices_;
   CodeHangs hangs_;
+  std::deque<io::Event> reset_pulls_;  // events must stay where they are
   SysTick systick_;
   CycleCounter cycle_counter_;
   Unanswered unanswered_;
