@@ -15,10 +15,12 @@
 namespace fw {
 
 enum class Parameter : std::uint8_t {
-  est_filter,          // 0: explicit complementary filter, 1: velocity-aided filters
-  est_start_scale,     // factor on the velocities that the estimate starts with
-  est_start_tilt_deg,  // added to the tilt that the estimate starts with
-  ctl_feedforward,     // 1: the reference's acceleration is fed forward
+  est_filter,           // 0: explicit complementary filter, 1: velocity-aided filters
+  est_start_scale,      // latent scale that the velocity-aided filters start with
+  est_start_tilt_deg,   // about the nose, by which their attitude starts wrong; a change of either
+                        // starts them anew, but not while they are flown by
+  ctl_feedforward,      // 1: acceleration and rates of a trajectory are fed forward
+  mag_declination_deg,  // of the magnetic field, towards east of north
 };
 
 enum class Numbers : std::uint8_t { real, whole };
@@ -33,12 +35,15 @@ struct ParameterRow {
 };
 
 inline constexpr ParameterRow kParameterTable[] = {
-    {Parameter::est_filter, "EST_FILTER", 0, 0, 1, Numbers::whole, WhileArmed::refused},
+    {Parameter::est_filter, "EST_FILTER", 1, 0, 1, Numbers::whole, WhileArmed::refused},
     {Parameter::est_start_scale, "EST_START_SCALE", 1, 0.5f, 1.5f, Numbers::real,
-     WhileArmed::refused},
+     WhileArmed::allowed},
     {Parameter::est_start_tilt_deg, "EST_START_TILT", 0, -45, 45, Numbers::real,
-     WhileArmed::refused},
+     WhileArmed::allowed},
     {Parameter::ctl_feedforward, "CTL_FEEDFWD", 1, 0, 1, Numbers::whole, WhileArmed::allowed},
+    // Canberra, from a map.
+    {Parameter::mag_declination_deg, "MAG_DECLINATION", 12.4f, -180, 180, Numbers::real,
+     WhileArmed::refused},
 };
 inline constexpr std::size_t kParameterCount = std::size(kParameterTable);
 

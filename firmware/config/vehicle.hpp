@@ -19,8 +19,6 @@ inline constexpr float kImuSign[3] = {1.0f, -1.0f, -1.0f};
 // The magnetometer's x points right, its y backwards, its z down: which of its axes is along B's.
 inline constexpr unsigned kMagAxis[3] = {1, 0, 2};
 inline constexpr float kMagSign[3] = {-1.0f, 1.0f, 1.0f};
-// Of the magnetic field at Canberra, towards east of north, from a map.
-inline constexpr float kDeclination_rad = 0.216f;
 // Torque over thrust at hover: shaft power of a figure of merit of 0.69 at 2.21 N, 3950 RPM.
 inline constexpr float kTorquePerThrust_m = 0.0165f;
 inline constexpr float kDrag_spm = 0.04f;  // rotor drag: force = -kDrag T v, sideways
@@ -34,11 +32,11 @@ inline constexpr float kThrustMax_N = esc::range_of(esc::Mode::FW_ESC_MODE).max;
 inline constexpr float kThrustUsable_N = 6.0f;  // per rotor, with the battery sagging
 
 // Attitude: torque = -Kw (rate + Kq angle). Crossover 14 rad/s: the ESC (25 ms), half a set-point
-// period (10 ms), the IMU's filter (2 ms) and the averaging (3 ms) leave 40 degrees there.
+// period (10 ms), the IMU's filter (2 ms) and the averaging (3 ms) leave some 33 degrees there.
 inline constexpr float kRateGain_Nms[3] = {0.170f, 0.170f, 0.080f};
-inline constexpr float kAngleOverRate_radps[3] = {5.0f, 5.0f, 1.5f};
+inline constexpr float kAngleOverRate_radps[3] = {7.0f, 7.0f, 1.5f};
 // Angle trim: what the rotors' and the centre of mass's scatter needs in the mean.
-inline constexpr float kAngleIntegral_Nmps[3] = {0.25f, 0.25f, 0.03f};
+inline constexpr float kAngleIntegral_Nmps[3] = {0.6f, 0.6f, 0.03f};
 inline constexpr float kAngleIntegralLimit_Nm[3] = {0.15f, 0.15f, 0.03f};
 
 // Position: acceleration = -Kp error - Kd velocity error - Ki integral; 40 Hz.
@@ -49,9 +47,9 @@ inline constexpr float kIntegralLimit_mps2[3] = {1.5f, 1.5f, 3.0f};
 inline constexpr float kTiltLimit_tan = 0.40f;  // 22 degrees
 
 // Reference: speed and acceleration that a set-point may ask for.
-inline constexpr float kReferenceGain_ps = 1.2f;  // critically damped with four times this inside
+inline constexpr float kReferenceGain_ps = 1.35f;  // critically damped with four times this inside
 inline constexpr float kSpeedLimit_mps = 1.2f, kClimbLimit_mps = 0.5f;
-inline constexpr float kAccelerationLimit_mps2 = 1.2f, kClimbAccelerationLimit_mps2 = 0.8f;
+inline constexpr float kAccelerationLimit_mps2 = 1.5f, kClimbAccelerationLimit_mps2 = 0.8f;
 
 inline constexpr float kDescent_mps = 0.35f, kTouchdown_mps = 0.25f, kTouchdownHeight_m = 0.35f;
 

@@ -19,7 +19,7 @@ float seconds(std::uint32_t ms) {
 
 }  // namespace
 
-Estimator::Estimator() : declination_rad_(config::kDeclination_rad) {
+Estimator::Estimator() {
   body_.start(Quaternion::Identity(), 1.0f);
   inertial_.start(Quaternion::Identity(), Vector3::Zero(), 1.0f);
 }
@@ -90,10 +90,19 @@ void Estimator::on_field(const Vector3& field_B_uT) {
   field_B_uT_ = field_B_uT;
 }
 
-void Estimator::restart_aided(float scale, float tilt_rad) {
-  const Quaternion q_WB = this->q_WB() * from_euler(tilt_rad, 0.0f, 0.0f);
-  body_.start(q_WB, scale);
-  inertial_.start(q_WB, position_.v_WB_W_mps(), scale);
+void Estimator::set_start(float scale, float tilt_rad) {
+  if (scale == start_scale_ && tilt_rad == start_tilt_rad_) return;
+  const bool flown_by = situation_.in_flight && source_ == AttitudeSource::velocity_aided;
+  if (flown_by) return;
+  start_scale_ = scale;
+  start_tilt_rad_ = tilt_rad;
+  restart_aided();
+}
+
+void Estimator::restart_aided() {
+  const Quaternion q_WB = explicit_.q_WB() * from_euler(start_tilt_rad_, 0.0f, 0.0f);
+  body_.start(q_WB, start_scale_);
+  inertial_.start(q_WB, position_.v_WB_W_mps(), start_scale_);
 }
 
 void Estimator::step(const Situation& situation) {
@@ -119,7 +128,7 @@ void Estimator::step(const Situation& situation) {
 __attribute__((noinline)) void Estimator::step_explicit(const Vector3& w_B) {
   if (!started_) {
     explicit_.start(a_B_mps2_, fix_.yaw_rad);
-    restart_aided(1.0f, 0.0f);
+    restart_aided();
   }
   started_ = true;
   const float gain = !situation_.resting ? kAccelGainFlight_radps : kAccelGainGround_radps;
@@ -164,7 +173,7 @@ void Estimator::calibrate() {
   if (!calibrated_) {
     explicit_.start(q_WB.conjugate() * Vector3(0.0f, 0.0f, -config::kGravity_mps2), fix_.yaw_rad);
     position_.start(fix_.p_WB_W_m);
-    restart_aided(1.0f, 0.0f);
+    restart_aided();
   }
   calibrated_ = true;
 }

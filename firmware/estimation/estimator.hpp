@@ -56,9 +56,9 @@ class Estimator {
 
   void choose(AttitudeSource source) { source_ = source; }
   void set_declination(float declination_rad) { declination_rad_ = declination_rad; }
-  // Filters 1 and 2 begin anew: with this scale, tilted by this much about the nose from the attitude
-  // that is flown by.
-  void restart_aided(float scale, float tilt_rad);
+  // How filters 1 and 2 start: with this scale, tilted by this much about the nose from the explicit
+  // filter's attitude. A change starts them anew, unless they are flown by.
+  void set_start(float scale, float tilt_rad);
 
   const Quaternion& q_WB() const;
   const Vector3& w_WB_B_radps() const { return explicit_.w_WB_B_radps(); }
@@ -85,6 +85,7 @@ class Estimator {
  private:
   static constexpr std::uint32_t kSlowSensorLost_ms = 200;
 
+  void restart_aided();
   void step_explicit(const Vector3& w_B);
   void step_aided(const Vector3& w_B);
   void calibrate();
@@ -113,7 +114,7 @@ class Estimator {
   float pressure_Pa_ = 0.0f, resting_Pa_ = 0.0f, height_offset_m_ = 0.0f;
   std::uint32_t pressure_age_ms_ = kNever, field_age_ms_ = kNever;
   Vector3 field_B_uT_ = Vector3::Zero();
-  float declination_rad_;
+  float declination_rad_ = 0.0f, start_scale_ = 1.0f, start_tilt_rad_ = 0.0f;
 };
 
 }  // namespace fw

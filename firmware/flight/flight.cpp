@@ -96,7 +96,9 @@ void Flight::on_target(const Vector3& p_W_m, float yaw_rad) {
   if (accept_target(p_W_m, yaw_rad)) aim_ = Aim::place;
 }
 
-void Flight::on_trajectory(const TrajectoryPoint& point) {
+void Flight::on_trajectory(const TrajectoryPoint& told) {
+  TrajectoryPoint point = told;
+  if (!parameters_.is_on(Parameter::ctl_feedforward)) point.a_W_mps2.setZero();
   const float since_last_s = 1e-3f * static_cast<float>(target_age_ms_);
   const bool goes_on = aim_ == Aim::trajectory && target_age_ms_ < kTargetFresh_ms;
   if (!accept_target(point.p_W_m, point.yaw_rad)) return;
@@ -207,7 +209,17 @@ void Flight::attitude_step() {
   control();
 }
 
+void Flight::apply_parameters() {
+  constexpr float kDegree = kPi / 180.0f;
+  estimator_.choose(parameters_.is_on(Parameter::est_filter) ? AttitudeSource::velocity_aided
+                                                             : AttitudeSource::explicit_filter);
+  estimator_.set_declination(kDegree * parameters_.get(Parameter::mag_declination_deg));
+  estimator_.set_start(parameters_.get(Parameter::est_start_scale),
+                       kDegree * parameters_.get(Parameter::est_start_tilt_deg));
+}
+
 void Flight::estimate() {
+  apply_parameters();
   const bool turning = std::any_of(
       esc_status_.begin(), esc_status_.end(),
       [](const esc::protocol::Status& s) { return (s.flags & esc::flag_turning) != 0; });

@@ -92,6 +92,7 @@ class Flight {
   static constexpr std::uint32_t kImuLost_ms = 20;
 
   void tick();
+  void apply_parameters();
   void estimate();
   void supervise();
   void watch_flight();

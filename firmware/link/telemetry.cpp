@@ -115,8 +115,8 @@ std::span<const std::uint8_t> Telemetry::next(std::uint32_t time_ms, const Fault
   const std::uint32_t slot = slot_++ % kSlotsPerSecond;
   if (slot % 10 == 0) return send(attitude(time_ms));
   if (slot % 20 == 3) return send(position(time_ms));
-  if (slot % 100 == 17) return send(highres_imu(time_ms));
-  if (slot % 40 == 15) return send(filter_attitudes(time_ms));
+  if (slot % 100 == 19) return send(highres_imu(time_ms));
+  if (slot % 40 == 21) return send(filter_attitudes(time_ms));
   if (slot % 40 == 33) return send(filters(time_ms));
   if (slot == 6) return send(heartbeat());
   if (slot == 106) return send(sys_status(faults, health));

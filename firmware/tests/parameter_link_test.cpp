@@ -148,10 +148,10 @@ TEST(ParameterLink, WhileArmedOnlyWhatTheTableAllows) {
   test::VehicleModel vehicle({});
   vehicle.run(radio.flight, 3.0);
   ASSERT_EQ(radio.flight.arm(), Reason::none);
-  radio.send(set("EST_START_SCALE", 1.25f));
+  radio.send(set("EST_FILTER", 0.0f));
   radio.send(set("CTL_FEEDFWD", 0.0f));
   EXPECT_EQ(radio.listen().size(), 2u);
-  EXPECT_EQ(radio.flight.parameters().get(Parameter::est_start_scale), 1.0f);
+  EXPECT_EQ(radio.flight.parameters().get(Parameter::est_filter), 1.0f);
   EXPECT_EQ(radio.flight.parameters().get(Parameter::ctl_feedforward), 0.0f);
 }
 

@@ -47,15 +47,15 @@ TEST(Parameters, WholeOnesTakeNoFraction) {
   EXPECT_FALSE(parameters.set(kFilter, 0.5f, false));
   EXPECT_TRUE(parameters.set(kScale, 0.75f, false));
   EXPECT_EQ(parameters.get(Parameter::est_start_scale), 0.75f);
-  EXPECT_FALSE(parameters.is_on(Parameter::est_filter));
+  EXPECT_TRUE(parameters.is_on(Parameter::est_filter));
   EXPECT_TRUE(parameters.is_on(Parameter::ctl_feedforward));
 }
 
 TEST(Parameters, WhileArmedOnlyTheRowsThatMay) {
   Parameters parameters;
-  EXPECT_FALSE(parameters.set(kScale, 1.25f, true));
-  EXPECT_EQ(parameters.value(kScale), 1.0f);
-  EXPECT_TRUE(parameters.set(kScale, 1.0f, true));  // what it is already
+  EXPECT_FALSE(parameters.set(kFilter, 0.0f, true));
+  EXPECT_EQ(parameters.value(kFilter), 1.0f);
+  EXPECT_TRUE(parameters.set(kFilter, 1.0f, true));  // what it is already
   EXPECT_TRUE(parameters.set(kForward, 0.0f, true));
 }
 

@@ -1,10 +1,11 @@
 -- The thesis's figure 8 (section 6.7, ground-station state 7): x = cos(pi t / 10), y = sin(2 pi t / 10), 1.1 m
 -- high. The ground station tells place, velocity and acceleration ten times a second.
 include "include/hover.lua"
+include "include/parameter.lua"
 
 plan "figure_8" {
   image = "flight", board = "px4fmu_v1", vehicle = "hp_quad",
-  tags = { "quick", "flight" }, timeout = "90 s",
+  tags = { "quick", "flight" }, timeout = "120 s",
   run = function(t)
     hover(t)
     t:step "to its start"
@@ -24,5 +25,10 @@ plan "figure_8" {
     t:expect(r:rms_error("height", "1.1 m"), "height RMS error"):at_most "5 cm"
     t:expect(r:rms "attitude_error", "RMS of the error of attitude"):at_most "3 deg"
     t:expect(r:rms "attitude_error_2", "the same of filter 2"):at_most "3 deg"
+    t:step "without feedforward"
+    set_parameter(t, "CTL_FEEDFWD", 0)
+    t:wait "5 s"
+    local without = t:record({ "path_error" }, "20 s")
+    t:expect(without:rms "path_error", "without feedforward: RMS of the error of position"):at_least "1.5 cm"
   end,
 }

@@ -39,7 +39,7 @@ parameter_plan("parameters are set, bounded and kept over resets", "px4fmu_v1", 
   t:step "set and refuse"
   ask(t, "EST_START_SCALE", 1.25, 0, 1.25)
   ask(t, "EST_START_SCALE", 2, 2, 1.25)
-  ask(t, "EST_FILTER", 0.5, 2, 0)
+  ask(t, "EST_FILTER", 0.5, 2, 1)
 
   t:step "reset"
   t:wait "1 s" -- half of it until it is written
@@ -73,8 +73,8 @@ parameter_plan("parameters in flight are guarded, and written after the landing"
   for _, esc in ipairs { "esc1", "esc2", "esc3", "esc4" } do
     t:bus { device = esc, direction = "write", period = "20 ms", tolerance = "0.5 ms", during = "2 s" }
   end
-  ask(t, "EST_START_SCALE", 1.25, 2, 1)
-  ask(t, "EST_FILTER", 1, 2, 0)
+  ask(t, "EST_START_TILT", 60, 2, 0)
+  ask(t, "EST_FILTER", 0, 2, 1)
   ask(t, "CTL_FEEDFWD", 0, 0, 0)
   t:wait "2 s"
   t:command { land = true }
@@ -82,7 +82,7 @@ parameter_plan("parameters in flight are guarded, and written after the landing"
   t:wait "1 s"
   reset(t)
   ask(t, "CTL_FEEDFWD", nil, 0, 0)
-  ask(t, "EST_START_SCALE", nil, 0, 1)
+  ask(t, "EST_FILTER", nil, 0, 1)
 end)
 
 -- An erase takes 0.25 s: the first start makes one sector blank, the second start the other one.
