@@ -103,7 +103,10 @@ void FlightWorld::send(std::int64_t t_ns, io::Batch& sensed) {
   copy(s.q_WB.conjugate() * kMagneticField_W_T, motion.magnetic_field_B_T);
   for (std::size_t i = 0; i < s.motors.size(); ++i) {
     motion.rotor_speed_radps[i] = s.motors[i].speed_radps;
+    motion.rotor_thrust_N[i] = s.motors[i].thrust_N;
+    motion.rotor_bus_current_A[i] = s.motors[i].bus_current_A;
   }
+  motion.battery_current_A = s.battery_current_A;
   motion.static_pressure_Pa = s.static_pressure_Pa;
   motion.air_temperature_K = s.air_temperature_K;
   motion.bus_voltage_V = s.bus_voltage_V;

@@ -44,6 +44,9 @@ constexpr Field kBodyMotion[] = {
     WHIRL_FIELD(BodyMotion, v_WB_W_mps),
     WHIRL_FIELD(BodyMotion, q_WB),
     WHIRL_FIELD(BodyMotion, v_AB_B_mps),
+    WHIRL_FIELD(BodyMotion, rotor_thrust_N),
+    WHIRL_FIELD(BodyMotion, rotor_bus_current_A),
+    WHIRL_FIELD(BodyMotion, battery_current_A),
 };
 constexpr Field kEscState[] = {
     WHIRL_FIELD(EscState, bus_current_A),

@@ -76,10 +76,13 @@ struct BodyMotion {  // of the body's reference point (centre of mass), at t_ns
   double static_pressure_Pa = 101325.0;
   double air_temperature_K = 288.15;
   double bus_voltage_V = 16.4;
-  double p_WB_W_m[3] = {0, 0, 0};    // W's origin is on the ground
-  double v_WB_W_mps[3] = {0, 0, 0};  // over ground
-  double q_WB[4] = {1, 0, 0, 0};     // w x y z, Hamilton
-  double v_AB_B_mps[3] = {0, 0, 0};  // through the air around it
+  double p_WB_W_m[3] = {0, 0, 0};                // W's origin is on the ground
+  double v_WB_W_mps[3] = {0, 0, 0};              // over ground
+  double q_WB[4] = {1, 0, 0, 0};                 // w x y z, Hamilton
+  double v_AB_B_mps[3] = {0, 0, 0};              // through the air around it
+  double rotor_thrust_N[kMostMotors] = {};       // along the shafts; 0 of rotors that are not there
+  double rotor_bus_current_A[kMostMotors] = {};  // into each motor's bridge, mean of the last step
+  double battery_current_A = 0.0;                // out of the pack, mean of the last step
 };
 
 struct EscState {

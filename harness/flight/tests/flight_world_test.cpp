@@ -175,6 +175,24 @@ TEST(FlightWorld, TellsTheBoardWhereItIsAndHowFast) {
   EXPECT_GT(motion.q_WB[0], 0.99);  // near upright, nose north
 }
 
+TEST(FlightWorld, TellsTheBoardThrustsAndCurrents) {
+  Flight flight;
+  flight.run(1.0);  // the zeros that arm
+  flight.height_m = 1.0;
+  flight.run(1.0);
+  const io::BodyMotion motion = motion_of(flight.sensed);
+  double bridges_A = 0.0;
+  for (int motor = 1; motor <= 4; ++motor) {
+    const std::string n = "_" + std::to_string(motor);
+    EXPECT_GT(motion.rotor_thrust_N[motor - 1], 1.0);  // it climbs
+    EXPECT_EQ(motion.rotor_thrust_N[motor - 1], flight.value("thrust" + n));
+    EXPECT_EQ(motion.rotor_bus_current_A[motor - 1], flight.value("bus_current" + n));
+    bridges_A += motion.rotor_bus_current_A[motor - 1];
+  }
+  EXPECT_EQ(motion.rotor_thrust_N[4], 0.0);  // of motors that are not there
+  EXPECT_TRUE(near(motion.battery_current_A, bridges_A + 0.25, stated(1e-6, "and the avionics")));
+}
+
 // Standing nose north in a wind that blows to the east, it moves through the air to the left.
 TEST(FlightWorld, TellsTheBoardHowItMovesThroughTheAir) {
   Flight flight;
