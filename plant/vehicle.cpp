@@ -132,8 +132,8 @@ Forcing Vehicle::Parts::run_rotors(double dt_s) {
     state.motors[i].shaft_torque_Nm = loads[i].shaft_torque_Nm;
   }
   const Vector3d against_B = v_WB_B - R_BW * state.wind_W_mps;
-  sum.f_B_N -= 0.5 * state.air_density_kgpm3 * params.airframe.parasitic_area_m2 *
-               against_B.norm() * against_B;
+  sum.f_B_N -= 0.5 * state.air_density_kgpm3 * against_B.norm() *
+               params.airframe.drag_area_m2.cwiseProduct(against_B);
   for (const Push& push : pushes) {
     if (state.t_s < push.end_s) sum.f_W_N += push.force_W_N;
   }

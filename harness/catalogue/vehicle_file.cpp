@@ -61,6 +61,19 @@ void read_rotors(const Table& t, plant::AirframeParams& a) {
   }
 }
 
+// Areas seen along x, y and z, each with the coefficient or with its own.
+void read_drag(const Table& t, plant::AirframeParams& a) {
+  const auto areas_m2 = t.numbers("frontal_areas_m2", between(0.0, 10.0));
+  const auto coefficients = t.numbers("drag_coefficients", between(0.0, 3.0));
+  if (areas_m2.size() != 3) return t.refuse("frontal_areas_m2", "needs three, along x, y and z");
+  if (coefficients.size() != 3) {
+    return t.refuse("drag_coefficients", "needs three, along x, y and z");
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
+    a.drag_area_m2[static_cast<Eigen::Index>(i)] = areas_m2[i] * coefficients[i];
+  }
+}
+
 void read_airframe(const Table& t, plant::AirframeParams& a) {
   a.mass_kg = t.quantity("mass", Dimension::mass, above(0.0));
   const auto inertia = t.quantities("inertia", Dimension::inertia, above(0.0));
@@ -70,7 +83,7 @@ void read_airframe(const Table& t, plant::AirframeParams& a) {
     a.inertia_kgm2 = {inertia[0], inertia[1], inertia[2]};
   }
   read_rotors(t, a);
-  a.parasitic_area_m2 = t.number_or("parasitic_area_m2", 0.0, at_least(0.0));
+  if (t.has("frontal_areas_m2") || t.has("drag_coefficients")) read_drag(t, a);
   a.rotor_drag_spm = t.number_or("rotor_drag_s_per_m", 0.0, at_least(0.0));
 }
 

@@ -22,7 +22,7 @@ Result<Done> validate(const AirframeParams& p, const std::string& place) {
     b.within("distance of a rotor_m", rotor.p_BP_B_m.norm(), 0.0, 5.0);
   }
   b.within("rotor_drag_spm", p.rotor_drag_spm, 0.0, 1.0);
-  b.within("parasitic_area_m2", p.parasitic_area_m2, 0.0, 10.0);
+  for (const double area : p.drag_area_m2) b.within("drag_area_m2", area, 0.0, 10.0);
   b.require(!p.contact.gear_B_m.empty(), "landing gear has no feet");
   for (const auto& foot : p.contact.gear_B_m) b.within("distance of a foot_m", foot.norm(), 0, 5);
   b.within("foot_radius_m", p.contact.foot_radius_m, 1e-3, 0.5);

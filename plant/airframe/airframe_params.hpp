@@ -3,8 +3,9 @@
 //   Frame    B; rotor and gear positions are from the centre of mass
 //   Drag     who provides what: each rotor's own in-plane force comes from plant/rotor and acts at
 //            its hub. `rotor_drag_spm` is only what the rotor model does not give of the lumped
-//            0.04 s/m of [Bangura2017, 4.4]; it acts at the hub too. Parasitic drag is quadratic
-//            and acts at the centre of mass.
+//            0.04 s/m of [Bangura2017, 4.4]; it acts at the hub too. Parasitic drag, of all
+//            but the propellers, is -1/2 rho (cd A)_i |v| v_i along each axis of B and acts at the
+//            centre of mass. A propeller that stands or windmills is the rotor model's.
 #pragma once
 #include <Eigen/Core>
 #include <string>
@@ -32,7 +33,8 @@ struct AirframeParams {
   Eigen::Vector3d inertia_kgm2 = Eigen::Vector3d::Zero();  // principal, along the axes of B
   std::vector<RotorMount> rotors;  // 1 to kMostMotors; index: motor number - 1
   double rotor_drag_spm = 0.0;     // in-plane force = -this x thrust x air speed, per rotor
-  double parasitic_area_m2 = 0.0;  // drag coefficient x frontal area
+  // Drag coefficient x area seen along each axis of B.
+  Eigen::Vector3d drag_area_m2 = Eigen::Vector3d::Zero();
   ContactParams contact;
 };
 

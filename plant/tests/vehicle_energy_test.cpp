@@ -55,7 +55,8 @@ TEST(VehicleEnergy, EveryJouleOfThePackIsAccountedForInAnyState) {
 // Straight up through rising air, so that nothing turns: pack, losses, shafts, rotors, wind and body.
 TEST(VehicleEnergy, ClimbInAnUpdraftBalancesFromThePackToTheHeight) {
   VehicleParams params = hp_quad();
-  params.airframe.parasitic_area_m2 = params.airframe.rotor_drag_spm = 0.0;
+  params.airframe.rotor_drag_spm = 0.0;
+  params.airframe.drag_area_m2.setZero();
   RotorSet inner = blade_element_rotors(hobbyking(), params.airframe), watched(inner.size());
   double shaft_J = 0.0, to_air_J = 0.0, ideal_J = 0.0;
   Vector3d force = Vector3d::Zero();

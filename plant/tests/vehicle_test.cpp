@@ -49,7 +49,7 @@ TEST(Vehicle, RestsOnItsGearUntilThrustExceedsWeight) {
 
 TEST(Vehicle, AcceleratesUpAsThrustOverMassLessGravity) {
   VehicleParams params = hp_quad();
-  params.airframe.parasitic_area_m2 = 0.0;
+  params.airframe.drag_area_m2.setZero();
   Vehicle v = hovering(params);
   all(v, 0.4);
   run(v, 0.5);
@@ -156,7 +156,7 @@ TEST(Vehicle, GustPushesDownwind) {
 TEST(Vehicle, LumpedDragIsItsCoefficientTimesThrustTimesSpeed) {
   VehicleParams params = hp_quad();
   params.airframe.rotor_drag_spm = 0.04;
-  params.airframe.parasitic_area_m2 = 0.0;
+  params.airframe.drag_area_m2.setZero();
   Vehicle v(params, quadratic_rotors(params.airframe), 1);
   v.place({0, 0, -50}, Eigen::Quaterniond::Identity(), {3.0, 0.0, 0.0}, Vector3d::Zero());
   for (int i = 0; i < 4; ++i) v.set_motor_speed(i, 413.0);

@@ -42,7 +42,8 @@ ByHand by_hand(double thrust_N, double induced_mps, double omega_radps) {
 std::vector<Proof> flight_proofs(const std::shared_ptr<const Blade>& blade) {
   const VehicleParams params = hp_quad();
   VehicleParams bare = params;
-  bare.airframe.rotor_drag_spm = bare.airframe.parasitic_area_m2 = 0.0;
+  bare.airframe.rotor_drag_spm = 0.0;
+  bare.airframe.drag_area_m2.setZero();
   Vehicle vehicle(params, blade_element_rotors(blade, params.airframe), 1);
   Vehicle rotors_only(bare, blade_element_rotors(blade, bare.airframe), 1);
   for (int i = 0; i < 4; ++i) {

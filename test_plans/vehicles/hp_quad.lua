@@ -11,7 +11,13 @@ return {
   propeller = "../propellers/hk_10x4.5.lua",
   gear = { half_span = "12 cm", below = "10 cm", foot_radius = "1 cm", restitution = 0.3, friction = 0.8 },
   rotor_drag_s_per_m = 0.033, -- what the blade elements (0.007) lack of the measured 0.04
-  parasitic_area_m2 = 0.002, -- drag coefficient x frontal area
+  -- Of the frame without propellers, along x, y, z. No measurement: estimated from an X frame of that
+  -- span. From ahead: two arms of 19 cm x 12 mm, plates with boards and battery 10 x 4 cm, three motors of
+  -- 28 x 28 mm, two legs of 10 cm x 8 mm. From above: four arms, plates 12 x 12 cm, four motors, four
+  -- ESCs that show 45 x 13 mm beside their arm. Coefficients: round and square bars 1.0 to 1.2,
+  -- a short cylinder 0.75, a plate 1.15 [Hoerner]
+  frontal_areas_m2 = { 0.0125, 0.0125, 0.0283 },
+  drag_coefficients = { 1.0, 1.0, 1.15 },
   avionics_current = "250 mA",
   motor = { -- Turnigy D2836/9 with ESC32v2 and leads, line to line
     kv_rpm_per_V = 950,

@@ -182,6 +182,9 @@ TEST(VehicleFile, EachMistakeIsOneSentenceWithItsPlace) {
       {"esc = {", "esc = { shunt = { gain_tolerance = \"70 %\" },", "gain_tolerance"},
       {"{ \"0.0125 kg m2\", ", "{ ", "needs three values"},
       {"hk_10x4.5.lua", "hk_99.lua", "hk_99.lua"},
+      {"0.0283 }", "}", "frontal_areas_m2: needs three, along x, y and z"},
+      {"1.15 }", "-1 }", "drag_coefficients"},
+      {"drag_coefficients = ", "drag_coefficient = ", "drag_coefficients"},
   };
   for (const Case& c : cases) {
     const std::string complaint = complaint_about(c.passage, c.instead);
