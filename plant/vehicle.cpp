@@ -44,7 +44,7 @@ struct Vehicle::Parts {
         rotors(std::move(rotor_set)),
         powertrain(std::move(shafts_of)),
         air(vehicle.air, seed),
-        contact(vehicle.airframe),
+        contact(vehicle.airframe, vehicle.obstacles),
         loads(rotors.size()),
         loads_at_radps(rotors.size(), 0.0),
         shaft(rotors.size()) {
@@ -120,7 +120,7 @@ Forcing Vehicle::Parts::run_rotors(double dt_s) {
     const Vector3d p_W = hub_W(i);
     conditions.omega_radps = state.motors[i].speed_radps;
     conditions.v_AP_P_mps = v_WB_B + body.w_WB_B_radps.cross(arm_B) - R_BW * air.wind_W_mps(p_W);
-    conditions.height_m = -p_W.z();
+    conditions.height_m = height_above_m(params.obstacles, p_W);
     loads[i] = rotors[i](conditions, dt_s);
     loads_at_radps[i] = conditions.omega_radps;
     Vector3d f_B = loads[i].f_P_N;
@@ -144,9 +144,11 @@ void Vehicle::Parts::run_body(Forcing& forcing, double dt_s) {
   forcing.spin_start_B_Nms = spin_start_B_Nms;
   forcing.spin_end_B_Nms = spin_B();
   const BodyState before = body;
-  state.contact_impulse_Ns = contact.in_reach(body, dt_s) ? contact.step(body, forcing, dt_s) : 0.0;
-  state.on_ground = state.contact_impulse_Ns > 0.0;
-  if (state.on_ground) {
+  const Touch touch = contact.in_reach(body, dt_s) ? contact.step(body, forcing, dt_s) : Touch{};
+  state.contact_impulse_Ns = touch.sum_Ns;
+  state.on_ground = touch.from_below_Ns > 0.0;
+  state.touching = touch.sum_Ns > touch.from_below_Ns;
+  if (touch.sum_Ns > 0.0) {
     const Vector3d a_W = (body.v_WB_W_mps - before.v_WB_W_mps) / dt_s;
     state.specific_force_B_mps2 = body.q_WB.conjugate() * (a_W - Vector3d(0.0, 0.0, kGravity_mps2));
     state.alpha_WB_B_radps2 = (body.w_WB_B_radps - before.w_WB_B_radps) / dt_s;
@@ -159,12 +161,16 @@ void Vehicle::Parts::run_body(Forcing& forcing, double dt_s) {
   spin_start_B_Nms = forcing.spin_end_B_Nms;
 }
 
-// A disc whose lowest point is in the ground: the propeller stops, and stays stopped.
+// A disc with a point in the ground or an obstacle: the propeller stops, and stays stopped.
 void Vehicle::Parts::strike() {
   const Vector3d axis_W = body.q_WB * Vector3d::UnitZ();
   const double slope = std::sqrt(std::max(0.0, 1.0 - axis_W.z() * axis_W.z()));
   for (std::size_t i = 0; i < count(); ++i) {
-    if (hub_W(i).z() + params.airframe.rotors[i].radius_m * slope <= 0.0) continue;
+    const double radius_m = params.airframe.rotors[i].radius_m;
+    const bool struck =
+        std::any_of(params.obstacles.begin(), params.obstacles.end(),
+                    [&](const Obstacle& o) { return disc_enters(o, hub_W(i), axis_W, radius_m); });
+    if (!struck && hub_W(i).z() + radius_m * slope <= 0.0) continue;
     powertrain->block(i);
     state.motors[i].blocked = true;
     state.motors[i].speed_radps = powertrain->speed_radps(i);

@@ -17,6 +17,7 @@
 #include "base/result.hpp"
 #include "plant/air/air_params.hpp"
 #include "plant/airframe/airframe_params.hpp"
+#include "plant/airframe/obstacle.hpp"
 #include "plant/battery/battery_params.hpp"
 #include "plant/motor/motor_params.hpp"
 #include "plant/powertrain.hpp"
@@ -38,6 +39,7 @@ struct VehicleParams {
   BatteryParams battery;
   double avionics_current_A = 0.25;
   AirParams air;
+  std::vector<Obstacle> obstacles;  // besides the floor
 };
 
 VehicleParams hp_quad();  // the reference vehicle of [Bangura2017, ch. 3]
@@ -54,8 +56,9 @@ struct VehicleState : PowertrainState {
   Eigen::Vector3d alpha_WB_B_radps2 = Eigen::Vector3d::Zero();
   Eigen::Vector3d wind_W_mps = Eigen::Vector3d::Zero();  // at the centre of mass
   double static_pressure_Pa = 0.0, air_temperature_K = 0.0, air_density_kgpm3 = 0.0;
-  double contact_impulse_Ns = 0.0;  // what the ground gave in this step
-  bool on_ground = false;
+  double contact_impulse_Ns = 0.0;  // what ground and obstacles gave in this step
+  bool on_ground = false;           // something holds it from below: floor, slope, box
+  bool touching = false;            // something else touches feet or hubs: a wall, a ceiling
 };
 
 class Vehicle {

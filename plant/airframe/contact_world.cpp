@@ -34,11 +34,46 @@ Vector3d eigen(const btVector3& v) {
 
 }  // namespace
 
+namespace {
+
+using Ball = std::pair<Vector3d, double>;  // centre in B, radius
+
+std::vector<Ball> balls_of(const AirframeParams& params) {
+  std::vector<Ball> balls;
+  for (const auto& foot : params.contact.gear_B_m) {
+    balls.emplace_back(foot, params.contact.foot_radius_m);
+  }
+  for (const auto& rotor : params.rotors) balls.emplace_back(rotor.p_BP_B_m, kHubRadius_m);
+  return balls;
+}
+
+// Bullet's shape of an obstacle, where it is.
+struct Fixed {
+  explicit Fixed(const Obstacle& obstacle) {
+    btTransform pose = btTransform::getIdentity();
+    if (obstacle.kind == Obstacle::Kind::half_space) {
+      const Vector3d& n = obstacle.normal_W;
+      shape = std::make_unique<btStaticPlaneShape>(bt(n), n.dot(obstacle.p_W_m));
+    } else {
+      shape = std::make_unique<btBoxShape>(bt(obstacle.half_size_m));
+      pose = btTransform(btQuaternion(btVector3(0, 0, 1), obstacle.yaw_rad), bt(obstacle.p_W_m));
+    }
+    body = std::make_unique<btRigidBody>(0.0, nullptr, shape.get());
+    body->setWorldTransform(pose);
+  }
+  std::unique_ptr<btCollisionShape> shape;
+  std::unique_ptr<btRigidBody> body;
+};
+
+}  // namespace
+
 struct ContactWorld::Parts {
-  explicit Parts(const AirframeParams& params);
+  Parts(const AirframeParams& params, const std::vector<Obstacle>& given);
+  void add_fixed(btRigidBody& fixed);
 
   MassProperties mass;
-  std::vector<std::pair<Vector3d, double>> balls;  // centre in B, radius
+  std::vector<Ball> balls;
+  std::vector<Obstacle> obstacles;
 
   btDefaultCollisionConfiguration configuration;
   btCollisionDispatcher dispatcher{&configuration};
@@ -49,27 +84,29 @@ struct ContactWorld::Parts {
   std::vector<std::unique_ptr<btSphereShape>> spheres;
   btCompoundShape hull;
   std::unique_ptr<btRigidBody> ground, body;
+  std::vector<Fixed> fixed;  // of each obstacle
 };
 
-ContactWorld::Parts::Parts(const AirframeParams& params)
-    : mass{params.mass_kg, params.inertia_kgm2} {
-  for (const auto& foot : params.contact.gear_B_m) {
-    balls.emplace_back(foot, params.contact.foot_radius_m);
-  }
-  for (const auto& rotor : params.rotors) balls.emplace_back(rotor.p_BP_B_m, kHubRadius_m);
+// Bullet multiplies the figures of two bodies: the vehicle's are the pair's.
+void ContactWorld::Parts::add_fixed(btRigidBody& each) {
+  each.setFriction(1.0);
+  each.setRestitution(1.0);
+  each.setContactProcessingThreshold(kTouch_m);
+  world.addRigidBody(&each);
+}
+
+ContactWorld::Parts::Parts(const AirframeParams& params, const std::vector<Obstacle>& given)
+    : mass{params.mass_kg, params.inertia_kgm2}, balls(balls_of(params)), obstacles(given) {
   for (const auto& [centre, radius] : balls) {
     spheres.push_back(std::make_unique<btSphereShape>(radius));
     hull.addChildShape(btTransform(btQuaternion::getIdentity(), bt(centre)), spheres.back().get());
   }
   ground = std::make_unique<btRigidBody>(0.0, nullptr, &plane);
   body = std::make_unique<btRigidBody>(mass.mass_kg, nullptr, &hull, bt(mass.inertia_kgm2));
-  for (btRigidBody* each : {ground.get(), body.get()}) each->setFriction(1.0);
-  ground->setRestitution(1.0);  // Bullet multiplies the two: the vehicle's figures are the pair's
   body->setRestitution(params.contact.restitution);
   body->setFriction(params.contact.friction);
   body->setDamping(0.0, 0.0);
   body->setContactProcessingThreshold(kTouch_m);
-  ground->setContactProcessingThreshold(kTouch_m);
   body->setFlags(0);  // no gyroscopic term of Bullet's: it is in the torque we apply
   body->setActivationState(DISABLE_DEACTIVATION);
   world.setGravity(btVector3(0, 0, 0));  // gravity is in the force we apply
@@ -77,12 +114,16 @@ ContactWorld::Parts::Parts(const AirframeParams& params)
   info.m_restitutionVelocityThreshold = 0.1;
   info.m_numIterations = 30;
   info.m_splitImpulsePenetrationThreshold = 0.0;  // depth is mended by position, not by speed
-  world.addRigidBody(ground.get());
+  add_fixed(*ground);
   world.addRigidBody(body.get());
+  for (const Obstacle& obstacle : obstacles) {
+    fixed.emplace_back(obstacle);
+    add_fixed(*fixed.back().body);
+  }
 }
 
-ContactWorld::ContactWorld(const AirframeParams& params)
-    : parts_(std::make_unique<Parts>(params)) {}
+ContactWorld::ContactWorld(const AirframeParams& params, const std::vector<Obstacle>& obstacles)
+    : parts_(std::make_unique<Parts>(params, obstacles)) {}
 ContactWorld::ContactWorld(ContactWorld&&) noexcept = default;
 ContactWorld& ContactWorld::operator=(ContactWorld&&) noexcept = default;
 
@@ -90,6 +131,18 @@ ContactWorld::~ContactWorld() {
   if (!parts_) return;
   parts_->world.removeRigidBody(parts_->body.get());
   parts_->world.removeRigidBody(parts_->ground.get());
+  for (const Fixed& each : parts_->fixed) parts_->world.removeRigidBody(each.body.get());
+}
+
+double clearance_m(const AirframeParams& params, std::span<const Obstacle> obstacles,
+                   const Vector3d& p_WB_W_m, const Eigen::Quaterniond& q_WB) {
+  double least = 1e300;
+  for (const auto& [centre, radius] : balls_of(params)) {
+    const Vector3d at_W = p_WB_W_m + q_WB * centre;
+    least = std::min(least, -at_W.z() - radius);
+    for (const Obstacle& o : obstacles) least = std::min(least, distance_m(o, at_W) - radius);
+  }
+  return least;
 }
 
 bool ContactWorld::in_reach(const BodyState& s, double dt_s) const {
@@ -99,10 +152,17 @@ bool ContactWorld::in_reach(const BodyState& s, double dt_s) const {
     lowest = std::max(lowest, R_WB.row(2).dot(centre) + radius);
   }
   const double fall = s.v_WB_W_mps.norm() + s.w_WB_B_radps.norm();  // feet are within a metre
-  return s.p_WB_W_m.z() + lowest + fall * dt_s > -kSlack_m;
+  if (s.p_WB_W_m.z() + lowest + fall * dt_s > -kSlack_m) return true;
+  for (const Obstacle& o : parts_->obstacles) {
+    for (const auto& [centre, radius] : parts_->balls) {
+      const double gap_m = distance_m(o, s.p_WB_W_m + R_WB * centre) - radius;
+      if (gap_m < fall * dt_s + kSlack_m) return true;
+    }
+  }
+  return false;
 }
 
-double ContactWorld::step(BodyState& s, const Forcing& f, double dt_s) {
+Touch ContactWorld::step(BodyState& s, const Forcing& f, double dt_s) {
   Parts& p = *parts_;
   const Eigen::Quaterniond& q = s.q_WB;
   const btTransform pose(btQuaternion(q.x(), q.y(), q.z(), q.w()), bt(s.p_WB_W_m));
@@ -118,20 +178,26 @@ double ContactWorld::step(BodyState& s, const Forcing& f, double dt_s) {
   p.body->applyTorque(bt(q * p.mass.inertia_kgm2.cwiseProduct(alpha_B)));
   p.world.stepSimulation(dt_s, 0);
 
-  double impulse = 0.0;
+  Touch touch;
   for (int i = 0; i < p.dispatcher.getNumManifolds(); ++i) {
     const btPersistentManifold& manifold = *p.dispatcher.getManifoldByIndexInternal(i);
+    const bool onto_first = manifold.getBody0() == p.body.get();  // the normal is from 1 to 0
     for (int k = 0; k < manifold.getNumContacts(); ++k) {
-      impulse += manifold.getContactPoint(k).getAppliedImpulse();
+      const btManifoldPoint& point = manifold.getContactPoint(k);
+      // The solver passes over a pair that has parted, and leaves there what it last found.
+      if (point.getDistance() > manifold.getContactProcessingThreshold()) continue;
+      const double up = (onto_first ? -1.0 : 1.0) * point.m_normalWorldOnB.z();
+      touch.sum_Ns += point.getAppliedImpulse();
+      if (up > 0.5) touch.from_below_Ns += point.getAppliedImpulse();
     }
   }
-  if (impulse <= 0.0) return 0.0;
+  if (touch.sum_Ns <= 0.0) return {};
   const btQuaternion turned = p.body->getWorldTransform().getRotation();
   s.q_WB = Eigen::Quaterniond(turned.w(), turned.x(), turned.y(), turned.z()).normalized();
   s.p_WB_W_m = eigen(p.body->getWorldTransform().getOrigin());
   s.v_WB_W_mps = eigen(p.body->getLinearVelocity());
   s.w_WB_B_radps = s.q_WB.conjugate() * eigen(p.body->getAngularVelocity());
-  return impulse;
+  return touch;
 }
 
 }  // namespace whirl::plant

@@ -20,7 +20,7 @@ struct Drop {
   double impulse = 0.0;
   void step(const Forcing& f = {}) {
     const MassProperties m{frame.mass_kg, frame.inertia_kgm2};
-    impulse = ground.in_reach(s, kStep_s) ? ground.step(s, f, kStep_s) : 0.0;
+    impulse = ground.in_reach(s, kStep_s) ? ground.step(s, f, kStep_s).sum_Ns : 0.0;
     if (impulse == 0.0) s = step_free(s, m, f, kStep_s);
   }
 };
