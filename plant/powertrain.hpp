@@ -27,7 +27,7 @@ struct MotorCommand {
 };
 
 struct MotorState {
-  double speed_radps = 0.0;
+  double speed_radps = 0.0;      // negative: the air turns the propeller backward
   double winding_peak_A = 0.0;   // largest magnitude within the step
   double bus_current_A = 0.0;    // mean over the step; negative when it feeds the pack
   double shaft_torque_Nm = 0.0;  // taken by the air: the rotor's, not the powertrain's to fill in

@@ -30,8 +30,9 @@ struct Push {
 
 ShaftLoad shaft_load(const RotorLoads& loads, double at_speed_radps) {
   const double torque = loads.shaft_torque_Nm;
-  if (torque <= 0.0 || at_speed_radps < kFewTurns_radps) return {0.0, torque};
-  return {torque / (at_speed_radps * at_speed_radps), 0.0};
+  const bool brakes = torque * at_speed_radps > 0.0;
+  if (!brakes || std::abs(at_speed_radps) < kFewTurns_radps) return {0.0, torque};
+  return {torque / (at_speed_radps * std::abs(at_speed_radps)), 0.0};
 }
 
 }  // namespace

@@ -32,6 +32,7 @@ Pulses pulses(const MotorParams& p, double resistance, const Drive& drive, doubl
   const double peak = (drive.bus_V - emf_V) / resistance * -std::expm1(-rise_s / tau);
   if (!(peak > 0.0)) return {.falls_s = 0.0};
   const double back = emf_V + p.diode_drop_V;
+  if (back <= 0.0) return {};  // turned backward: the current grows between pulses, too
   const double fall_s = tau * std::log1p(peak * resistance / back);
   if (rise_s + fall_s >= period) {  // never dry for a whole period
     const double least = 0.5 * ripple_A(p, drive);
@@ -80,7 +81,8 @@ MotorBooks AveragedMotor::step(const Drive& drive, const ShaftLoad& load, double
 }
 
 void AveragedMotor::prepare(const Drive& about, double dt_s) {
-  const double speed = std::max(0.0, speed_ + 0.5 * rise_radps_);
+  const double ahead = speed_ + 0.5 * rise_radps_;
+  const double speed = speed_ < 0.0 ? std::min(0.0, ahead) : std::max(0.0, ahead);
   if (still_holds(about, speed, dt_s)) return;
   found_for_ = {about, speed, current_, resistance_, dt_s, blocked_};
   const double emf = params_.torque_constant_NmpA * speed;
@@ -93,7 +95,7 @@ void AveragedMotor::prepare(const Drive& about, double dt_s) {
     }
   }
   commutation_ = {};
-  if (!blocked_) {
+  if (!blocked_ && speed >= 0.0) {
     commutation_ = commutate(params_, {.bus_V = about.bus_V,
                                        .duty = about.duty,
                                        .diode = about.diode,
@@ -116,7 +118,7 @@ bool AveragedMotor::still_holds(const Drive& about, double speed, double dt_s) c
   return f.dt_s == dt_s && f.drive.duty == about.duty && f.drive.diode == about.diode &&
          f.ohm == resistance_ && f.blocked == blocked_ &&
          std::abs(f.drive.bus_V - about.bus_V) <= 1e-3 * about.bus_V &&
-         std::abs(f.speed_radps - speed) <= 5e-4 * speed &&
+         std::abs(f.speed_radps - speed) <= 5e-4 * std::abs(speed) &&
          std::abs(f.current_A - current_) <= 0.01 * std::abs(current_);
 }
 
@@ -135,8 +137,16 @@ AveragedMotor::Winding AveragedMotor::conduct(double voltage_V, double dt_s) con
   return w;
 }
 
+// All switches off and turned backward: no pair is held closed through which the back-EMF could drive
+// a current. What still flowed returns to the bus.
+void AveragedMotor::open_bridge(Winding& w) {
+  w.held = true;
+  w.held_A = w.a_C = w.b_Cs = w.push_C = 0.0;
+}
+
 // Under diode freewheeling the current does not follow the mean voltage below the pulses' mean.
 void AveragedMotor::diode_limit(const Drive& drive, double dt_s, Winding& w) const {
+  if (drive.duty == 0.0 && speed_ < 0.0) return open_bridge(w);
   const double emf = params_.torque_constant_NmpA * speed_;
   const double ends = (w.voltage_V - emf) / prepared_ohm_;  // where the mean voltage would lead
   const double floor_A = commutation_.dry_A;
@@ -169,17 +179,37 @@ void AveragedMotor::diode_limit(const Drive& drive, double dt_s, Winding& w) con
                     pulses_.fall_A * (floor_A / std::max(pulses_.least_A, 1e-9)) * rest_s;
 }
 
-// Implicit midpoint: 2 J (w - w0) = Kt (a - b w) - dt (no-load + c + k w^2), solved for w.
-double AveragedMotor::mean_speed(const Winding& winding, const ShaftLoad& load, double dt_s) const {
-  if (blocked_) return 0.0;
+// Implicit midpoint: 2 J (w - w0) = Kt (a - b w) - dt (friction + c + k w |w|), solved for the mean speed
+// w, which has the sign of what turns the shaft forward at no speed.
+double AveragedMotor::balance(const Winding& winding, const ShaftLoad& load, double friction_Nm,
+                              double dt_s) const {
   const double kt = params_.torque_constant_NmpA;
-  const double drag = kt * params_.no_load_current_A + load.constant_Nm;
   const double a = dt_s * load.quadratic_Nm_s2;
   const double b = 2.0 * params_.inertia_kgm2 + kt * winding.b_Cs;
+  const double drag = friction_Nm + load.constant_Nm;
   const double c =
       2.0 * params_.inertia_kgm2 * speed_ + kt * (winding.a_C + winding.push_C) - dt_s * drag;
-  const double mean = 2.0 * c / (b + std::sqrt(std::max(0.0, b * b + 4.0 * a * c)));
-  return std::max(mean, 0.5 * speed_);  // friction stops the shaft, it does not turn it back
+  return 2.0 * c / (b + std::sqrt(b * b + 4.0 * a * std::abs(c)));
+}
+
+// Friction opposes the rotation: it stops the shaft and holds it, and never turns it.
+AveragedMotor::Motion AveragedMotor::move(const Winding& winding, const ShaftLoad& load,
+                                          double dt_s) const {
+  if (blocked_) return {};
+  const double friction_Nm = params_.torque_constant_NmpA * params_.no_load_current_A;
+  if (speed_ == 0.0) {
+    const double forward = balance(winding, load, friction_Nm, dt_s);
+    if (forward > 0.0) return {forward, friction_Nm};
+    const double backward = balance(winding, load, -friction_Nm, dt_s);
+    return backward < 0.0 ? Motion{backward, -friction_Nm} : Motion{};
+  }
+  const double against_Nm = std::copysign(friction_Nm, speed_);
+  const auto turned_round = [this](double mean) { return (2.0 * mean - speed_) * speed_ <= 0.0; };
+  const double mean = balance(winding, load, against_Nm, dt_s);
+  if (!turned_round(mean)) return {mean, against_Nm};
+  const double unhindered = balance(winding, load, 0.0, dt_s);
+  if (!turned_round(unhindered)) return {0.5 * speed_, against_Nm};  // friction has stopped it
+  return {unhindered, 0.0};  // something stronger turns it round
 }
 
 // Where the pair's charge and the heat went.
@@ -214,7 +244,8 @@ AveragedMotor::Trial AveragedMotor::attempt(const Drive& drive, const ShaftLoad&
   w.ripple_A = ripple_A(params_, drive);
   if (drive.diode) diode_limit(drive, dt_s, w);
   const double kt = params_.torque_constant_NmpA;
-  const double mean = mean_speed(w, load, dt_s);
+  const Motion motion = move(w, load, dt_s);
+  const double mean = motion.mean_radps;
 
   Trial out;
   out.speed_radps = blocked_ ? 0.0 : 2.0 * mean - speed_;
@@ -223,13 +254,13 @@ AveragedMotor::Trial AveragedMotor::attempt(const Drive& drive, const ShaftLoad&
   const double converted_J = kt * mean * (w.a_C - w.b_Cs * mean + w.push_C);
   books.electrical_in_J = books.copper_J + books.diode_J + books.magnetic_J + converted_J;
   books.bus_charge_C = drive.bus_V > 0.0 ? books.electrical_in_J / drive.bus_V : 0.0;
-  books.air_torque_Nm = load.quadratic_Nm_s2 * mean * mean + load.constant_Nm;
+  books.air_torque_Nm = load.quadratic_Nm_s2 * mean * std::abs(mean) + load.constant_Nm;
   books.air_J = books.air_torque_Nm * mean * dt_s;
   books.kinetic_J =
       0.5 * params_.inertia_kgm2 * (out.speed_radps * out.speed_radps - speed_ * speed_);
   const bool stopped = out.speed_radps == 0.0;  // friction took what was left
-  books.no_load_J = stopped ? converted_J - books.air_J - books.kinetic_J
-                            : kt * params_.no_load_current_A * mean * dt_s;
+  books.no_load_J =
+      stopped ? converted_J - books.air_J - books.kinetic_J : motion.friction_Nm * mean * dt_s;
   return out;
 }
 
@@ -239,7 +270,7 @@ void AveragedMotor::block() {
 }
 
 void AveragedMotor::set_speed(double speed_radps) {
-  WHIRL_CHECK(speed_radps >= 0.0 && std::isfinite(speed_radps), speed_radps);
+  WHIRL_CHECK(std::isfinite(speed_radps), speed_radps);
   if (!blocked_) speed_ = speed_radps;
 }
 

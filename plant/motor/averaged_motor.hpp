@@ -6,22 +6,23 @@
 //   Method  Pair current by the exact exponential at the mean speed of the sub-step, speed by the
 //           implicit midpoint rule: the energy books close to round-off and no step is unstable.
 //           The bus pays for what the books say: duty x pair current less what commutations return
-//   Valid   speed >= 0 (a bridge that only pushes one way); sub-steps up to 0.5 ms; current shorter
-//           than a sector in the outgoing phase
+//   Valid   speed forward; sub-steps up to 0.5 ms; current shorter than a sector in the outgoing phase.
+//           Backward (the air turns a propeller round): with all switches off no current flows; driven,
+//           the back-EMF adds to the bridge's voltage, which is all that is told of commutation there
 //   Source  [Bangura2017, 3.4] with the current read as bus current; [Erickson2001, ch. 5] for
 //           discontinuous conduction
 //   Error   power balance to round-off, closed forms to 1e-6 (tests/averaged_motor_test.cpp); against
 //           the switched face 1 % in speed, torque, winding and bus current, but 2 % where the dips of
 //           a sinusoidal motor run dry under diodes (tests/faces_test.cpp)
-//   Left out magnetic saturation, current fed back through diodes at overspeed, timing other than
-//           neutral
+//   Left out magnetic saturation, current fed back through diodes at overspeed (an open bridge
+//           conducts where the back-EMF exceeds the bus), timing other than neutral
 #pragma once
 #include "plant/motor/commutation.hpp"
 
 namespace whirl::plant {
 
-struct ShaftLoad {  // torque that the air takes at speed w: quadratic x w^2 + constant
-  double quadratic_Nm_s2 = 0.0;
+struct ShaftLoad {  // torque that the air takes at speed w: quadratic x w |w| + constant
+  double quadratic_Nm_s2 = 0.0;  // not negative
   double constant_Nm = 0.0;
 };
 
@@ -88,7 +89,13 @@ class AveragedMotor {
  private:
   struct Winding;
   Winding conduct(double voltage_V, double dt_s) const;
-  double mean_speed(const Winding& winding, const ShaftLoad& load, double dt_s) const;
+  struct Motion {  // of the shaft over a sub-step
+    double mean_radps = 0.0, friction_Nm = 0.0;
+  };
+  Motion move(const Winding& winding, const ShaftLoad& load, double dt_s) const;
+  double balance(const Winding& winding, const ShaftLoad& load, double friction_Nm,
+                 double dt_s) const;
+  static void open_bridge(Winding& winding);
   void diode_limit(const Drive& drive, double dt_s, Winding& winding) const;
   void settle(const Winding& winding, double mean_radps, double dt_s, Trial& trial) const;
 

@@ -64,8 +64,8 @@ DiscFlow disc_flow(const Blade& blade, int spin, const RotorConditions& c,
   f.q_radps = bounded(c.w_WP_P_radps.y(), 100.0, clamped);
   const double yaw = bounded(c.w_WP_P_radps.z(), 100.0, clamped);
   const double omega = bounded(c.omega_radps, kMost_tip_speed_mps / R, clamped);
-  if (omega < 0.0) clamped = true;
-  f.omega_radps = std::max(omega, 0.0) - spin * yaw;
+  validity.backward = omega < 0.0;
+  f.omega_radps = omega - spin * yaw;
   f.density_kgpm3 = std::max(bounded(c.density_kgpm3, 5.0, clamped), 1e-3);
   f.viscosity_Pas = std::max(bounded(c.viscosity_Pas, 1e-3, clamped), 1e-6);
   f.tip_radius_m = R;

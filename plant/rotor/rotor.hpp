@@ -1,7 +1,8 @@
 // One rotor: shaft speed and the air's motion in, force, moment and shaft torque out.
 //
 //   Frame   P at the hub, axes parallel to the body's (forward, right, down): thrust acts along -z_P.
-//   Units   SI; rotor speed is rad/s and never negative, the sense of turning is the spin sign.
+//   Units   SI; rotor speed is rad/s in the rotor's own sense (its spin sign). Negative: the air turns
+//           it backward, trailing edges first, by what the polars say of that (polar.hpp: a flat plate).
 //   Valid   |advance ratio| <= 0.3; descent through the vortex-ring state by an empirical closure
 //           (validity says so), its mean only. Outside: finite, bounded, flagged, not to be believed.
 //   Source  20 rings x 12 azimuths, averaged over a revolution. Each ring balances blade thrust and
@@ -35,9 +36,11 @@ struct RotorValidity {
   bool beyond_advance_ratio = false;  // |mu| > 0.3
   bool stalled = false;        // more than a third of the disc (by dynamic pressure) is past stall
   bool not_converged = false;  // steady() gave up within its limit of iterations
+  bool backward = false;       // turned against its sense
   bool out_of_range = false;   // conditions were clamped to a physical range first
   bool ok() const {
-    return !(vortex_ring || beyond_advance_ratio || stalled || not_converged || out_of_range);
+    return !(vortex_ring || beyond_advance_ratio || stalled || not_converged || backward ||
+             out_of_range);
   }
 };
 

@@ -85,10 +85,10 @@ TEST(Shapes, DescentIsSmooth) {
   }
 }
 
-TEST(Shapes, TurningBackwardsIsRefusedWithAFlag) {
+TEST(Shapes, TurningBackwardsIsFlaggedAndFinite) {
   RotorConditions c = hover(-3000.0);
   const RotorLoads l = Rotor(blade_of(kShapes[0]), -1).steady(c);
-  EXPECT_TRUE(l.validity.out_of_range);
+  EXPECT_TRUE(l.validity.backward);
   EXPECT_TRUE(l.f_P_N.allFinite());
 }
 
