@@ -78,8 +78,7 @@ Proof dropping() {
   double top = 0.0, fastest = 0.0;
   bool touched = false;
   for (int k = 1; k <= 4000; ++k) {
-    const double impulse =
-        ground.in_reach(s, kStep_s) ? ground.step(s, {}, kStep_s).sum_Ns : 0.0;
+    const double impulse = ground.in_reach(s, kStep_s) ? ground.step(s, {}, kStep_s).sum_Ns : 0.0;
     if (impulse == 0.0) s = step_free(s, m, {}, kStep_s);
     touched |= impulse > 0.0;
     if (touched) top = std::max(top, -kGear_m - s.p_WB_W_m.z());
