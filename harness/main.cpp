@@ -5,6 +5,7 @@
 #include "base/interruption.hpp"
 #include "base/places.hpp"
 #include "harness/catalogue/stand_table.hpp"
+#include "harness/catalogue/surroundings_table.hpp"
 #include "harness/catalogue/vehicle_file.hpp"
 #include "harness/cli/composition.hpp"
 #include "harness/cli/console.hpp"
@@ -48,8 +49,10 @@ Result<std::unique_ptr<World>> make_world(const cli::Setup& setup) {
     if (!params) return params.error();
     return std::unique_ptr<World>(std::make_unique<stand::StandWorld>(params.value(), setup.seed));
   }
-  const auto params = catalogue::read_vehicle(setup.vehicle_file, setup.settings);
+  auto params = catalogue::read_vehicle(setup.vehicle_file, setup.settings);
   if (!params) return params.error();
+  const auto around = catalogue::read_surroundings(*setup.plan.surroundings, params.value());
+  if (!around) return around.error();
   if (const auto joined = check_escs(setup, params.value()); !joined) return joined.error();
   return std::unique_ptr<World>(std::make_unique<flight::FlightWorld>(params.value(), setup.seed));
 }

@@ -214,6 +214,9 @@ Vehicle& Vehicle::operator=(Vehicle&&) noexcept = default;
 void Vehicle::place(const Vector3d& p_WB_W_m, const Eigen::Quaterniond& q_WB,
                     const Vector3d& v_WB_W_mps, const Vector3d& w_WB_B_radps) {
   parts_->body = {p_WB_W_m, v_WB_W_mps, q_WB.normalized(), w_WB_B_radps};
+  // Until a step has told more, what is in the air falls.
+  const bool supported = parts_->contact.in_reach(parts_->body, 1e-3);
+  parts_->state.specific_force_B_mps2 = {0.0, 0.0, supported ? -kGravity_mps2 : 0.0};
   parts_->publish_air();
 }
 

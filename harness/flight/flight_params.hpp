@@ -6,6 +6,7 @@
 
 #include "harness/flight/capture.hpp"
 #include "harness/flight/native_esc.hpp"
+#include "harness/flight/surroundings.hpp"
 #include "plant/rotor/blade.hpp"
 #include "plant/vehicle.hpp"
 
@@ -18,6 +19,7 @@ struct FlightParams {
   std::string controller = "esc_core";  // of each motor: the name of a ControllerType
   EscParams esc;                        // esc_core's
   CaptureParams capture;
+  Surroundings place;
 };
 
 }  // namespace whirl::flight

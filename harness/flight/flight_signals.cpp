@@ -50,11 +50,23 @@ void FlightWorld::name_signals() {
   add_signal("wind_north", D::speed, "of the air", [=] { return state().wind_W_mps.x(); });
   add_signal("wind_east", D::speed, "of the air", [=] { return state().wind_W_mps.y(); });
   add_signal("wind_down", D::speed, "of the air", [=] { return state().wind_W_mps.z(); });
-  add_signal("on_ground", D::none, "1: the gear touches",
+  add_signal("on_ground", D::none, "1: something holds it from below",
              [=] { return state().on_ground ? 1.0 : 0.0; });
+  add_signal("touching", D::none, "1: a wall, a ceiling or the side of a box touches it",
+             [=] { return state().touching ? 1.0 : 0.0; });
+  name_fence_signals();
   name_motor_signals();
   name_telemetry_signals();
   name_estimate_signals();
+}
+
+void FlightWorld::name_fence_signals() {
+  if (!place_.fence) return;
+  const auto margin_m = [this] { return place_.fence->margin_m(vehicle_.state().p_WB_W_m); };
+  add_signal("inside_fence", Dimension::none, "1: it is",
+             [=] { return margin_m() >= 0.0 ? 1.0 : 0.0; });
+  add_signal("fence_margin", Dimension::length,
+             "to the nearest face of the fence; negative outside", margin_m);
 }
 
 void FlightWorld::name_motor_signals() {
@@ -65,7 +77,8 @@ void FlightWorld::name_motor_signals() {
       return vehicle_.state().motors[i];
     };
     add_signal("thrust" + n, D::force, "", [=] { return motor().thrust_N; });
-    add_signal("speed" + n, D::angular_rate, "", [=] { return motor().speed_radps; });
+    add_signal("speed" + n, D::angular_rate, "negative: the air turns it backward",
+               [=] { return motor().speed_radps; });
     add_signal("winding_current" + n, D::current, "largest magnitude in the step",
                [=] { return motor().winding_peak_A; });
     add_signal("bus_current" + n, D::current, "mean over the step",

@@ -15,8 +15,6 @@ constexpr const char *kEsc_stopped = "esc_stopped", *kSupply_dip = "supply_dip",
                      *kCapture_lost = "capture_lost";
 constexpr double kStep_s = 1e-3;
 constexpr std::int64_t kStep_ns = 1'000'000;
-// Earth's field at Canberra in W (north, east, down).
-const Eigen::Vector3d kMagneticField_W_T(23.0e-6, 5.1e-6, -52.9e-6);
 
 static_assert(io::kMostMotors == plant::kMostMotors);  // BodyMotion has room for each rotor
 
@@ -36,7 +34,9 @@ FlightWorld::FlightWorld(const FlightParams& params, std::uint64_t seed)
 
 FlightWorld::FlightWorld(const FlightParams& params, plant::RotorSet rotors, std::uint64_t seed,
                          const ControllerTypes& types)
-    : vehicle_(params.vehicle, std::move(rotors), seed), capture_(params.capture, seed) {
+    : place_(params.place),
+      vehicle_(params.vehicle, std::move(rotors), seed),
+      capture_(params.capture, seed) {
   const auto type = std::find_if(types.begin(), types.end(), [&](const ControllerType& t) {
     return t.name == params.controller;
   });
@@ -47,7 +47,15 @@ FlightWorld::FlightWorld(const FlightParams& params, plant::RotorSet rotors, std
   }
   station_.on_frame(
       [this](const io::MavlinkFrame& frame, std::int64_t at_ns) { estimates_.hear(frame, at_ns); });
+  if (place_.start) begin(*place_.start);
   name_signals();
+}
+
+void FlightWorld::begin(const Start& start) {
+  vehicle_.place(start.p_WB_W_m, start.q_WB, start.v_WB_W_mps, start.w_WB_B_radps);
+  for (std::size_t i = 0; i < controllers_.size(); ++i) {
+    vehicle_.set_motor_speed(static_cast<int>(i), start.motor_speed_radps);
+  }
 }
 
 void FlightWorld::read(std::span<double> values) const {
@@ -100,7 +108,7 @@ void FlightWorld::send(std::int64_t t_ns, io::Batch& sensed) {
   copy(s.specific_force_B_mps2, motion.specific_force_B_mps2);
   copy(s.w_WB_B_radps, motion.w_WB_B_radps);
   copy(s.alpha_WB_B_radps2, motion.alpha_WB_B_radps2);
-  copy(s.q_WB.conjugate() * kMagneticField_W_T, motion.magnetic_field_B_T);
+  copy(s.q_WB.conjugate() * place_.magnetic_field_W_T, motion.magnetic_field_B_T);
   for (std::size_t i = 0; i < s.motors.size(); ++i) {
     motion.rotor_speed_radps[i] = s.motors[i].speed_radps;
     motion.rotor_thrust_N[i] = s.motors[i].thrust_N;

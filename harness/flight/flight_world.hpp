@@ -4,6 +4,7 @@
 //            sensed goes out: body_motion, esc_state of each motor, uart_frame to the radio
 //   Command  Arm, TakeOff, GoTo, Figure8, Cruise, Land. Take-off also streams the point above where the vehicle stands
 //            as its target; land and disarm end the stream
+//   Begins   standing at W's origin, or as the plan's `start` says (surroundings.hpp)
 //   Air      Wind with a duration, Jet
 //   Faults   capture_lost; supply_dip (value: volts below); esc_stopped (of a motor, or of the device that is its ESC)
 #pragma once
@@ -44,6 +45,7 @@ class FlightWorld : public World {
   const plant::VehicleState& truth() const { return vehicle_.state(); }
 
  private:
+  void begin(const Start& start);
   void on_messages(const io::Batch& happened);
   void move(std::int64_t t_ns);
   void send(std::int64_t t_ns, io::Batch& sensed);
@@ -51,6 +53,7 @@ class FlightWorld : public World {
   void add_signal(std::string name, Dimension dimension, std::string about,
                   std::function<double()> value);
   void name_signals();
+  void name_fence_signals();
   void name_motor_signals();
   void name_telemetry_signals();
   void name_estimate_signals();
@@ -64,6 +67,7 @@ class FlightWorld : public World {
   Result<Done> add_jet(const request::Jet& wanted);
   double offset_from_target_m() const;
 
+  Surroundings place_;
   plant::Vehicle vehicle_;
   std::vector<std::unique_ptr<MotorController>> controllers_;  // index: motor number - 1
   Capture capture_;

@@ -14,6 +14,8 @@ namespace {
 
 constexpr std::size_t kMost_nodes = 16;
 constexpr std::int64_t kDefaultTimeout_ns = 120'000'000'000;
+const std::vector<std::string> kSurroundings = {"start",     "room",  "outdoors", "fence",
+                                                "obstacles", "field", "air"};
 
 PlanNode read_node(const lua::Table& t) {
   return {"", t.text("image"), t.text_or("board", "px4fmu_v1"), t.texts("watch"),
@@ -93,8 +95,14 @@ Result<Plan> read_plan(const lua::Table& t, std::string name, const std::string&
   plan.tags = t.texts("tags");
   plan.seed = static_cast<std::uint64_t>(t.integer_or("seed", 1, 0));
   plan.timeout_ns = t.duration_ns_or("timeout", kDefaultTimeout_ns);
-  // What the stand is made of is read (and its unknown keys refused) by who makes it.
-  if (auto good = t.finish_except({"stand"}); !good) return good.error();
+  // What stand and surroundings are made of is read (and their unknown keys refused) by who makes them.
+  std::vector<std::string> elsewhere{"stand"};
+  for (const std::string& key : kSurroundings) {
+    if (t.has(key) && plan.stand) t.refuse(key, "belongs to a vehicle, not to a stand");
+    elsewhere.push_back(key);
+  }
+  if (!plan.stand) plan.surroundings = t;
+  if (auto good = t.finish_except(elsewhere); !good) return good.error();
   return plan;
 }
 

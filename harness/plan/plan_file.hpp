@@ -8,6 +8,7 @@
 //            watch = { ... } }, ... }; the vehicle or stand surrounds the first. wires = { { from = "esc.usart1",
 //            to = "fc.usart2" }, ... } join their UARTs, both ways, at the grain of the exchange
 //   Stand    instead of vehicle: stand = { prop = "hk_10x4.5", battery = "4s_2200" }
+//   Around   of a vehicle: start, room, outdoors, fence, obstacles, field, air, read by who makes the world
 //   Limits   tags and names are checked; a plan without run, image or name is refused with its line
 #pragma once
 #include <cstdint>
@@ -49,7 +50,8 @@ struct Plan {
   std::uint64_t seed = 1;
   std::int64_t timeout_ns = 0;
   std::optional<lua::Table> stand;
-  int run_ref = 0;  // in the file's Lua registry
+  std::optional<lua::Table> surroundings;  // of a vehicle: the plan's whole table
+  int run_ref = 0;                         // in the file's Lua registry
 
   bool has_tag(const std::string& tag) const;
 };

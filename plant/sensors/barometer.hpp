@@ -3,6 +3,9 @@
 //   Units   Pa, s
 //   Method  true static pressure + rotors' back-pressure (a share of the mean disc loading, so arming
 //           makes a step) + a share of the dynamic pressure + drift + white noise, behind one lag
+//   Source   no measurement of this frame: a share of 0.1 is 4 Pa (37 cm lower) in the HP quad's hover, of
+//           the order that autopilots' thrust compensations hold; either sign is met, by where
+//           the part's vent sits
 //   Left out temperature, counts and conversion time (the part's device has them)
 #pragma once
 #include <cstdint>

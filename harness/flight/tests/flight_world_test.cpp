@@ -31,13 +31,15 @@ lua::Table table(const std::string& text) {
 }
 
 struct Flight {
-  FlightWorld world{hp_quad_file(), 1};
+  FlightWorld world;
   io::Batch happened, sensed;
   std::int64_t t_ns = 0;
   double height_m = 0.0;  // wanted; 0: motors stopped
   double height_integral_N = 0.0;
 
-  Flight() { world.step(0, happened, sensed); }
+  explicit Flight(const FlightParams& params = hp_quad_file()) : world(params, 1) {
+    world.step(0, happened, sensed);
+  }
 
   double value(const std::string& name) const {
     const auto& signals = world.signals();
@@ -93,6 +95,28 @@ TEST(FlightWorld, StandsStillUntilItIsFlown) {
   EXPECT_TRUE(near(flight.value("height"), 0.11, stated(0.002, "gear settles")));
   EXPECT_EQ(flight.value("on_ground"), 1.0);
   EXPECT_GT(flight.value("bus_voltage"), 15.7);
+}
+
+// In the air, nose to the east and moving: a body that is thrown follows its parabola.
+TEST(FlightWorld, StartsWhereThePlanSays) {
+  FlightParams params = hp_quad_file();
+  params.place.start =
+      Start{.p_WB_W_m = {1.0, -1.0, -2.5},
+            .q_WB = Eigen::Quaterniond(Eigen::AngleAxisd(0.5 * M_PI, Eigen::Vector3d::UnitZ())),
+            .v_WB_W_mps = {0.5, 0.0, -1.0},
+            .w_WB_B_radps = {0.0, 0.0, 1.0},
+            .motor_speed_radps = 100.0};
+  Flight flight(params);
+  EXPECT_EQ(flight.value("height"), 2.5);
+  EXPECT_EQ(flight.value("north"), 1.0);
+  EXPECT_EQ(flight.value("climb"), 1.0);
+  EXPECT_EQ(flight.value("rate_z"), 1.0);
+  EXPECT_EQ(flight.value("speed_3"), 100.0);
+  EXPECT_TRUE(near(flight.value("yaw"), 0.5 * M_PI, round_off(8, 2.0)));
+  flight.run(0.2);
+  const double want_m = 2.5 + 0.2 - 0.5 * 9.80665 * 0.2 * 0.2;
+  EXPECT_TRUE(near(flight.value("height"), want_m, stated(0.02, "drag and slow propellers")));
+  EXPECT_TRUE(near(flight.value("north"), 1.1, stated(0.005, "drag")));
 }
 
 TEST(FlightWorld, HoversWhereItsPilotWants) {
