@@ -74,6 +74,17 @@ void read_drag(const Table& t, plant::AirframeParams& a) {
   }
 }
 
+// One figure for each motor.
+void read_unbalance(const Table& t, plant::AirframeParams& a) {
+  constexpr double kKgm_per_g_mm = 1e-6;
+  const auto each = t.numbers("unbalance_g_mm", between(0.0, 1e4));
+  if (each.size() != a.rotors.size()) {
+    return t.refuse("unbalance_g_mm",
+                    "needs " + std::to_string(a.rotors.size()) + " values, one for each motor");
+  }
+  for (std::size_t i = 0; i < each.size(); ++i) a.rotors[i].unbalance_kgm = each[i] * kKgm_per_g_mm;
+}
+
 void read_airframe(const Table& t, plant::AirframeParams& a) {
   a.mass_kg = t.quantity("mass", Dimension::mass, above(0.0));
   const auto inertia = t.quantities("inertia", Dimension::inertia, above(0.0));
@@ -83,6 +94,7 @@ void read_airframe(const Table& t, plant::AirframeParams& a) {
     a.inertia_kgm2 = {inertia[0], inertia[1], inertia[2]};
   }
   read_rotors(t, a);
+  if (t.has("unbalance_g_mm")) read_unbalance(t, a);
   if (t.has("frontal_areas_m2") || t.has("drag_coefficients")) read_drag(t, a);
   a.rotor_drag_spm = t.number_or("rotor_drag_s_per_m", 0.0, at_least(0.0));
 }

@@ -44,6 +44,9 @@ FlightWorld::FlightWorld(const FlightParams& params, plant::RotorSet rotors, std
   const int motors = static_cast<int>(params.vehicle.airframe.rotors.size());
   for (int motor = 1; motor <= motors; ++motor) {
     controllers_.push_back(type->make(params, seed, motor));
+    unbalance_m_.push_back(
+        params.vehicle.airframe.rotors[static_cast<std::size_t>(motor) - 1].unbalance_kgm /
+        params.vehicle.airframe.mass_kg);
   }
   station_.on_frame(
       [this](const io::MavlinkFrame& frame, std::int64_t at_ns) { estimates_.hear(frame, at_ns); });
@@ -108,10 +111,11 @@ void FlightWorld::send(std::int64_t t_ns, io::Batch& sensed) {
   copy(s.specific_force_B_mps2, motion.specific_force_B_mps2);
   copy(s.w_WB_B_radps, motion.w_WB_B_radps);
   copy(s.alpha_WB_B_radps2, motion.alpha_WB_B_radps2);
-  copy(s.q_WB.conjugate() * place_.magnetic_field_W_T, motion.magnetic_field_B_T);
+  copy(s.q_WB.conjugate() * place_.field_W_T(s.p_WB_W_m, t_ns), motion.magnetic_field_B_T);
   for (std::size_t i = 0; i < s.motors.size(); ++i) {
     motion.rotor_speed_radps[i] = s.motors[i].speed_radps;
     motion.rotor_thrust_N[i] = s.motors[i].thrust_N;
+    motion.rotor_unbalance_m[i] = unbalance_m_[i];
     motion.rotor_bus_current_A[i] = s.motors[i].bus_current_A;
   }
   motion.battery_current_A = s.battery_current_A;
@@ -207,8 +211,19 @@ void FlightWorld::cruise(const request::Cruise& command) {
 }
 
 Result<Done> FlightWorld::disturb(const Disturbance& disturbance, std::int64_t now_ns) {
-  if (const auto* jet = std::get_if<request::Jet>(&disturbance)) return add_jet(*jet);
-  return blow(std::get<request::Wind>(disturbance), now_ns);
+  return std::visit(Match{[this](const request::Jet& jet) { return add_jet(jet); },
+                          [&](const request::Wind& wind) { return blow(wind, now_ns); },
+                          [&](const request::Magnet& m) { return add_magnet(m, now_ns); }},
+                    disturbance);
+}
+
+Result<Done> FlightWorld::add_magnet(const request::Magnet& wanted, std::int64_t now_ns) {
+  FieldSource magnet{.field_W_T = {wanted.north_T, wanted.east_T, wanted.down_T},
+                     .p_W_m = {wanted.at_north_m, wanted.at_east_m, -wanted.at_height_m}};
+  if (wanted.radius_m) magnet.radius_m = *wanted.radius_m;
+  if (wanted.duration_s) magnet.end_ns = now_ns + std::llround(*wanted.duration_s * 1e9);
+  place_.magnets.push_back(magnet);
+  return Done{};
 }
 
 Result<Done> FlightWorld::add_jet(const request::Jet& wanted) {

@@ -5,7 +5,7 @@
 //   Command  Arm, TakeOff, GoTo, Figure8, Cruise, Land. Take-off also streams the point above where the vehicle stands
 //            as its target; land and disarm end the stream
 //   Begins   standing at W's origin, or as the plan's `start` says (surroundings.hpp)
-//   Air      Wind with a duration, Jet
+//   Disturbed by Wind with a duration, Jet, Magnet
 //   Faults   capture_lost; supply_dip (value: volts below); esc_stopped (of a motor, or of the device that is its ESC)
 #pragma once
 #include <functional>
@@ -65,11 +65,13 @@ class FlightWorld : public World {
   void cruise(const request::Cruise& command);
   Result<Done> blow(const request::Wind& wind, std::int64_t now_ns);
   Result<Done> add_jet(const request::Jet& wanted);
+  Result<Done> add_magnet(const request::Magnet& wanted, std::int64_t now_ns);
   double offset_from_target_m() const;
 
   Surroundings place_;
   plant::Vehicle vehicle_;
   std::vector<std::unique_ptr<MotorController>> controllers_;  // index: motor number - 1
+  std::vector<double> unbalance_m_;                            // likewise, over the vehicle's mass
   Capture capture_;
   Station station_;
   Estimates estimates_;

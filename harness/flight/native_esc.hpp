@@ -15,7 +15,11 @@
 //            its seventh crossing ends the start. The 161 ms put the thrust in the middle of where the
 //            image has it: 90 % of 2 N 288 to 318 ms after the set-point in 18 starts on its stand, as
 //            the rotor came to rest (harness/tests/native_start_test.cpp holds it to the image)
-//   Left out the 1.5 A that the bus carries while the rotor is aligned; loss of sync other than by
+//   Backward a rotor that the air turns against its sense shows its crossings in the wrong order, which the
+//            image does not join (firmware/esc/tests/catching_test.cpp): it is held off like one that
+//            stands, still turning, then driven against its back-EMF until it is round
+//   Left out how the alignment's current brakes a rotor that turns, and a start that the image would
+//            lose against one; the 1.5 A that the bus carries while the rotor is aligned; loss of sync other than by
 //            standing still; the image's guard of the winding current at the PWM's rate, which droops
 //            beyond 22 A (the core's own bounds act); the amplifier's ripple and its removal
 #pragma once

@@ -5,7 +5,10 @@
 //   Read     by harness/catalogue/surroundings_table.hpp
 #pragma once
 #include <Eigen/Geometry>
+#include <cstdint>
+#include <limits>
 #include <optional>
+#include <vector>
 
 namespace whirl::flight {
 
@@ -27,11 +30,23 @@ struct Fence {  // where the vehicle shall stay; the floor is no part of it
   double margin_m(const Eigen::Vector3d& p_WB_W_m) const;  // to the nearest face; negative outside
 };
 
+struct FieldSource {  // beyond its radius its field falls with the cube of the distance
+  Eigen::Vector3d field_W_T = Eigen::Vector3d::Zero();
+  Eigen::Vector3d p_W_m = Eigen::Vector3d::Zero();
+  double radius_m = std::numeric_limits<double>::infinity();
+  std::int64_t end_ns = std::numeric_limits<std::int64_t>::max();
+
+  Eigen::Vector3d at_W_T(const Eigen::Vector3d& p_WB_W_m) const;
+};
+
 struct Surroundings {
   std::optional<Start> start;
   std::optional<Fence> fence = Fence{};  // the room that the cameras see where nothing is said
   // Earth's field at Canberra where nothing is said.
   Eigen::Vector3d magnetic_field_W_T = {23.0e-6, 5.1e-6, -52.9e-6};
+  std::vector<FieldSource> magnets;  // in the order in which the plan brings them
+
+  Eigen::Vector3d field_W_T(const Eigen::Vector3d& p_WB_W_m, std::int64_t now_ns) const;
 };
 
 }  // namespace whirl::flight

@@ -155,11 +155,40 @@ Jet read_jet(const Table& t) {
   return jet;
 }
 
+// { field = { north = "20 uT" }, at = { north = "1 m", height = "1 m" }, radius = "50 cm" }
+Magnet read_magnet(const Table& t) {
+  constexpr double kMost_T = 10e-3;
+  Magnet magnet;
+  const Table field = t.table("field");
+  const auto along = [&field](const char* key) {
+    return field.quantity_or(key, Dimension::magnetic_field, 0.0, between(-kMost_T, kMost_T));
+  };
+  magnet.north_T = along("north");
+  magnet.east_T = along("east");
+  magnet.down_T = along("down");
+  magnet.radius_m = maybe(t, "radius", Dimension::length, above(0.0));
+  magnet.duration_s = maybe(t, "duration", Dimension::time, above(0.0));
+  if (t.has("at") != t.has("radius"))
+    t.refuse("radius", "a place has a radius, and a radius a place");
+  if (!t.has("at")) return magnet;
+  const Table at = t.table("at");
+  magnet.at_north_m = at.quantity_or("north", Dimension::length, 0.0);
+  magnet.at_east_m = at.quantity_or("east", Dimension::length, 0.0);
+  magnet.at_height_m = at.quantity_or("height", Dimension::length, 0.0);
+  return magnet;
+}
+
 Wind read_wind(const Table& t) {
   const lua::Range time = between(0.0, 1e9);
   return {maybe(t, "north", Dimension::speed),     maybe(t, "east", Dimension::speed),
           maybe(t, "down", Dimension::speed),      maybe(t, "duration", Dimension::time, time),
           maybe(t, "edge", Dimension::time, time), maybe(t, "after", Dimension::time, time)};
+}
+
+Disturbance read_any(const Table& t) {
+  if (t.has("jet")) return read_jet(t.table("jet"));
+  if (t.has("magnet")) return read_magnet(t.table("magnet"));
+  return read_wind(t);
 }
 
 // A world's refusal with the line of the plan: its place is the key.
@@ -184,7 +213,7 @@ Result<std::vector<Command>> read_commands(const Table& t) {
 }
 
 Result<Disturbance> read_disturbance(const Table& t) {
-  Disturbance all = t.has("jet") ? Disturbance(read_jet(t.table("jet"))) : read_wind(t);
+  const Disturbance all = read_any(t);
   if (auto good = t.finish(); !good) return good.error();
   return all;
 }

@@ -25,7 +25,10 @@ const char* word(const Command& command) {
 }
 
 const char* word(const Disturbance& disturbance) {
-  return std::holds_alternative<request::Jet>(disturbance) ? "jet" : "wind";
+  return std::visit(
+      Match{[](const request::Wind&) { return "wind"; }, [](const request::Jet&) { return "jet"; },
+            [](const request::Magnet&) { return "magnet"; }},
+      disturbance);
 }
 
 Error not_understood(const std::string& world, const char* word) {

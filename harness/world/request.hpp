@@ -78,6 +78,15 @@ struct Jet {  // a round vertical stream, from now on
   std::optional<double> edge_m;  // above 0
 };
 
+// A magnetised thing or a loaded cable: `field` everywhere within `radius` of its place, beyond it less by
+// the cube of the distance, as a dipole's; without a radius everywhere. Frame W.
+struct Magnet {
+  double north_T = 0.0, east_T = 0.0, down_T = 0.0;
+  double at_north_m = 0.0, at_east_m = 0.0, at_height_m = 0.0;
+  std::optional<double> radius_m;    // above 0
+  std::optional<double> duration_s;  // above 0; left out: for ever
+};
+
 }  // namespace request
 
 using Command =
@@ -85,7 +94,7 @@ using Command =
                  request::Cruise, request::SetParameter, request::SetPoint, request::Stop,
                  request::Silence, request::SetPointRate, request::RawTransfer, request::Pulses,
                  request::Line, request::Brake>;
-using Disturbance = std::variant<request::Wind, request::Jet>;
+using Disturbance = std::variant<request::Wind, request::Jet, request::Magnet>;
 
 const char* word(const Command& command);          // "takeoff"
 const char* word(const Disturbance& disturbance);  // "jet"

@@ -47,6 +47,7 @@ constexpr Field kBodyMotion[] = {
     WHIRL_FIELD(BodyMotion, rotor_thrust_N),
     WHIRL_FIELD(BodyMotion, rotor_bus_current_A),
     WHIRL_FIELD(BodyMotion, battery_current_A),
+    WHIRL_FIELD(BodyMotion, rotor_unbalance_m),
 };
 constexpr Field kEscState[] = {
     WHIRL_FIELD(EscState, bus_current_A),

@@ -83,6 +83,7 @@ struct BodyMotion {  // of the body's reference point (centre of mass), at t_ns
   double rotor_thrust_N[kMostMotors] = {};       // along the shafts; 0 of rotors that are not there
   double rotor_bus_current_A[kMostMotors] = {};  // into each motor's bridge, mean of the last step
   double battery_current_A = 0.0;                // out of the pack, mean of the last step
+  double rotor_unbalance_m[kMostMotors] = {};    // mass x arm over the vehicle's mass
 };
 
 struct EscState {

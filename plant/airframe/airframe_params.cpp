@@ -19,6 +19,7 @@ Result<Done> validate(const AirframeParams& p, const std::string& place) {
   for (const RotorMount& rotor : p.rotors) {
     b.require(rotor.spin == 1 || rotor.spin == -1, "spin of a rotor must be +1 or -1");
     b.within("radius_m of a rotor", rotor.radius_m, 0.01, 2.0);
+    b.within("unbalance_kgm of a rotor", rotor.unbalance_kgm, 0.0, 1e-2);
     b.within("distance of a rotor_m", rotor.p_BP_B_m.norm(), 0.0, 5.0);
   }
   b.within("rotor_drag_spm", p.rotor_drag_spm, 0.0, 1.0);

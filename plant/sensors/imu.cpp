@@ -68,6 +68,9 @@ Result<Done> validate(const ImuParams& params, const std::string& place) {
   Bounds b(place);
   check(b, params.accelerometer);
   check(b, params.gyroscope);
+  b.within("unbalance_second", params.unbalance_second, 0.0, 10.0);
+  b.within("unbalance_blades", params.unbalance_blades, 0.0, 10.0);
+  b.within("blade_count", params.blade_count, 1.0, 12.0);
   b.within("distance of the sensor_m", params.p_BS_B_m.norm(), 0.0, 5.0);
   b.within("misalignment_rad", params.misalignment_rad.norm(), 0.0, 0.5);
   return b.result();
@@ -76,6 +79,9 @@ Result<Done> validate(const ImuParams& params, const std::string& place) {
 struct Imu::Parts {
   Parts(const ImuParams& params, std::uint64_t seed, const std::string& name)
       : lever_B_m(params.p_BS_B_m),
+        second(params.unbalance_second),
+        blades(params.unbalance_blades),
+        blade_count(params.blade_count),
         accelerometer(params.accelerometer, seed, name + ".accel"),
         gyroscope(params.gyroscope, seed, name + ".gyro") {
     const double angle = params.misalignment_rad.norm();
@@ -100,7 +106,23 @@ struct Imu::Parts {
     return sum;
   }
 
+  // At the phases that shake() has brought up to date.
+  Vector3d unbalance_mps2(const ImuMotion& m) const {
+    Vector3d sum = Vector3d::Zero();
+    for (std::size_t i = 0; i < kMostMotors; ++i) {
+      if (m.unbalance_m[i] == 0.0) continue;
+      const double a = m.unbalance_m[i] * m.rotor_speed_radps[i] * m.rotor_speed_radps[i];
+      const double once = phase[i], twice = 2.0 * phase[i];
+      sum += a * Vector3d(std::cos(once) + second * std::cos(twice),
+                          std::sin(once) + second * std::sin(twice),
+                          blades * std::cos(blade_count * once));
+    }
+    return sum;
+  }
+
   Vector3d lever_B_m;
+  double second, blades;
+  int blade_count;
   Eigen::Matrix3d R_SB = Eigen::Matrix3d::Identity();
   Triad accelerometer, gyroscope;
   std::array<double, kMostMotors> phase{};
@@ -126,7 +148,7 @@ ImuSample Imu::sample(double t_s, const ImuMotion& m) {
   const Vector3d& w = m.w_WB_B_radps;
   const Vector3d f_B = m.specific_force_B_mps2 + m.alpha_WB_B_radps2.cross(r) + w.cross(w.cross(r));
   const Vector3d shake = p.shake(m.rotor_speed_radps, dt_s);
-  return {p.accelerometer.read(p.R_SB * f_B, shake, dt_s),
+  return {p.accelerometer.read(p.R_SB * (f_B + p.unbalance_mps2(m)), shake, dt_s),
           p.gyroscope.read(p.R_SB * w, shake, dt_s)};
 }
 

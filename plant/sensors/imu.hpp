@@ -5,9 +5,14 @@
 //   Units   SI
 //   Method  specific force at the lever arm: f + alpha x r + w x (w x r); then scale, misalignment,
 //           turn-on bias, bias instability, white noise, vibration at rotor and blade frequencies
+//   Unbalance  of a rotor, mass x arm, shakes the body by m r w^2 / M in the disc's plane, turning with the
+//           rotor. With it come its second harmonic in the plane and the blades' passing along the shaft,
+//           as shares of that amplitude: no theory gives them, they are what is set
 //   Valid   sampled at a steady pace of 50 Hz to 10 kHz; the noise is the mean since the last sample
 //   Error   lever arm in closed form, Allan deviations within 10 % (tests/imu_test.cpp)
-//   Left out range and quantisation (device), temperature, g-sensitivity of the gyro
+//   Left out range and quantisation (device), temperature, g-sensitivity of the gyro, the turning that an
+//           unbalance far from the centre of mass adds (the gyroscope's own figure stands for it), the
+//           frame's resonances; the sense of turning
 #pragma once
 #include <Eigen/Core>
 #include <array>
@@ -29,8 +34,11 @@ struct TriadParams {
 };
 
 struct ImuParams {
-  TriadParams accelerometer;  // m/s^2
-  TriadParams gyroscope;      // rad/s
+  TriadParams accelerometer;      // m/s^2
+  TriadParams gyroscope;          // rad/s
+  double unbalance_second = 0.2;  // at 2/rev, share of the 1/rev amplitude
+  double unbalance_blades = 0.3;  // at blade_count/rev, along the shaft
+  int blade_count = 2;
   Eigen::Vector3d p_BS_B_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d misalignment_rad = Eigen::Vector3d::Zero();  // small turn of S against B
 };
@@ -43,6 +51,7 @@ struct ImuMotion {
   Eigen::Vector3d w_WB_B_radps = Eigen::Vector3d::Zero();
   Eigen::Vector3d alpha_WB_B_radps2 = Eigen::Vector3d::Zero();
   std::array<double, kMostMotors> rotor_speed_radps{};  // of rotors that are not there: 0
+  std::array<double, kMostMotors> unbalance_m{};        // mass x arm over the vehicle's mass
 };
 
 struct ImuSample {

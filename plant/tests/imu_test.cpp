@@ -108,6 +108,36 @@ TEST(Imu, VibrationIsAtTheRotorsFrequencyAndGrowsWithItsSquare) {
   EXPECT_TRUE(near(amplitude(400.0, 300.0), 0.0, stated(0.002, "5 s window")));
 }
 
+// 1 g mm of a rotor at 400 rad/s on 0.9 kg: 0.178 m/s^2 once, its shares twice and three times a turn.
+TEST(Imu, UnbalanceShakesByItsForceOverTheMass) {
+  ImuParams params;
+  params.unbalance_second = 0.25;
+  params.unbalance_blades = 0.5;
+  params.blade_count = 3;
+  const double once = 1e-6 * 400.0 * 400.0 / 0.9;
+  auto amplitude = [&](int axis, double at, std::size_t unbalanced) {
+    Imu imu(params, 1);
+    ImuMotion m = at_rest();
+    m.rotor_speed_radps = {400.0, 250.0};
+    m.unbalance_m[unbalanced] = 1e-6 / 0.9;
+    double c = 0.0, s = 0.0;
+    const int n = 20000;
+    for (int k = 1; k <= n; ++k) {
+      const double t_s = k * 2.5e-4, x = imu.sample(t_s, m).specific_force_S_mps2[axis];
+      c += x * std::cos(at * t_s) * 2.0 / n;
+      s += x * std::sin(at * t_s) * 2.0 / n;
+    }
+    return std::hypot(c, s);
+  };
+  const Tolerance window = stated(0.01 * once, "5 s window");
+  EXPECT_TRUE(near(amplitude(0, 400.0, 0), once, window));
+  EXPECT_TRUE(near(amplitude(1, 400.0, 0), once, window));
+  EXPECT_TRUE(near(amplitude(0, 800.0, 0), 0.25 * once, window));
+  EXPECT_TRUE(near(amplitude(2, 1200.0, 0), 0.5 * once, window));
+  EXPECT_TRUE(near(amplitude(0, 400.0, 1), 0.0, window));  // the other one shakes at its own speed
+  EXPECT_TRUE(near(amplitude(0, 250.0, 1), once * 250.0 * 250.0 / 160000.0, window));
+}
+
 TEST(Imu, SameSeedSameBitsAndNamesTellSensorsApart) {
   Imu a(mpu6000_physics(), 1), b(mpu6000_physics(), 1), c(mpu6000_physics(), 2),
       d(mpu6000_physics(), 1, "imu2");

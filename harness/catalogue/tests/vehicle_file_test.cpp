@@ -182,6 +182,7 @@ TEST(VehicleFile, EachMistakeIsOneSentenceWithItsPlace) {
       {"esc = {", "esc = { shunt = { gain_tolerance = \"70 %\" },", "gain_tolerance"},
       {"{ \"0.0125 kg m2\", ", "{ ", "needs three values"},
       {"hk_10x4.5.lua", "hk_99.lua", "hk_99.lua"},
+      {"arm = ", "unbalance_g_mm = { 1, 2 }, arm = ", "unbalance_g_mm: needs 4 values"},
       {"0.0283 }", "}", "frontal_areas_m2: needs three, along x, y and z"},
       {"1.15 }", "-1 }", "drag_coefficients"},
       {"drag_coefficients = ", "drag_coefficient = ", "drag_coefficients"},

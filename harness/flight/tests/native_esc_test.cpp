@@ -37,6 +37,7 @@ struct Stand {
   plant::MotorState state;
   double bus_V = 16.4;
   double drag_Nm_s2 = 2.0e-7;
+  double rising_Nm = 0.0;    // of air from below, against the sense of the rotor
   double extra_bus_A = 0.0;  // what the shunt reads beyond the motor
   bool hidden = false;       // the rotor shows no crossings
   std::int64_t t_ns = 0;
@@ -56,7 +57,8 @@ struct Stand {
     const bool diode = command.freewheel == plant::Freewheel::diode;
     double charge_C = 0.0;
     for (int i = 0; i < 8; ++i) {
-      charge_C += motor.step({bus_V, command.duty, diode}, {drag_Nm_s2, 0.0}, 1.25e-4).bus_charge_C;
+      charge_C +=
+          motor.step({bus_V, command.duty, diode}, {drag_Nm_s2, rising_Nm}, 1.25e-4).bus_charge_C;
       worst_winding_A = std::max(worst_winding_A, std::abs(motor.current_A()));
     }
     state.speed_radps = motor.speed_radps();
@@ -305,6 +307,18 @@ TEST(NativeEsc, CutItStaysStopped) {
   stand.command(0, 2000);
   EXPECT_FALSE(stand.esc.armed());
   EXPECT_LT(stand.motor.speed_radps(), 50.0);
+}
+
+// Falling with its motors off, the vehicle has its propellers turned backward by the air.
+TEST(NativeEsc, StartsARotorThatTheAirTurnsBackward) {
+  Stand stand;
+  stand.rising_Nm = 0.012;
+  stand.arm();
+  ASSERT_LT(stand.motor.speed_radps(), -20.0);
+  stand.thrust(2.0, 1500);
+  EXPECT_GT(stand.motor.speed_radps(), 300.0);
+  EXPECT_TRUE(near(stand.thrust_N(), 2.0, stated(0.2, "as from standstill")));
+  EXPECT_LT(stand.worst_winding_A, 60.0);
 }
 
 }  // namespace

@@ -110,17 +110,19 @@ TEST(Fields, TextsAndArraysReadAsSuch) {
       std::string::npos);
 }
 
-TEST(Fields, ABodysMotionEndsWithThrustsAndCurrents) {
+TEST(Fields, ABodysMotionEndsWithThrustsCurrentsAndUnbalance) {
   Batch batch;
   BodyMotion motion;
   motion.rotor_thrust_N[0] = 2.5;
   motion.rotor_bus_current_A[1] = 3.5;
   motion.battery_current_A = 12.25;
+  motion.rotor_unbalance_m[3] = 0.5;
   batch.add(Kind::body_motion, 0, 0, motion);
   EXPECT_TRUE(
       fields_text(*kind_info(Kind::body_motion), payload_of(batch))
           .ends_with(";rotor_thrust_N=2.5 0 0 0 0 0 0 0 0 0 0 0"
-                     ";rotor_bus_current_A=0 3.5 0 0 0 0 0 0 0 0 0 0;battery_current_A=12.25"));
+                     ";rotor_bus_current_A=0 3.5 0 0 0 0 0 0 0 0 0 0;battery_current_A=12.25"
+                     ";rotor_unbalance_m=0 0 0 0.5 0 0 0 0 0 0 0 0"));
 }
 
 }  // namespace

@@ -1,16 +1,29 @@
 // Honeywell HMC5883L on I2C: the part register by register (io_bridges/devices), the field at the
 // vehicle and what the frame adds to it, soldered as the board file's `axes` say.
 //
-//   Left out  the field of the motors' currents: no message tells the board of them; soft iron
+//   Currents  what each motor's bus current and the pack's add, per ampere, means over a millisecond
+//             (plant/sensors/magnetometer.hpp)
+//   Left out  soft iron; the currents' ripple
 #include "io_bridges/devices/hmc5883l.hpp"
 
 #include "io_bridges/rack/devices/table.hpp"
 #include "io_bridges/rack/models/inertial_sensor.hpp"
+#include "plant/sensors/magnetometer.hpp"
 
 namespace whirl::rack {
 namespace {
 
 constexpr double kMost_T = 1e-3;  // beyond its largest range
+
+std::string motor_field(std::size_t number) {
+  return "params.motor_field_" + std::to_string(number);
+}
+
+DeviceKey per_ampere_key(const std::string& path, const Eigen::Vector3d& usual_T,
+                         const char* about) {
+  return triple_key(path, Dimension::magnetic_field, "uT", {-kMost_T, kMost_T}, about)
+      .with(std::vector<double>(usual_T.begin(), usual_T.end()));
+}
 
 io::Hmc5883l::Params part_of(DeviceSlot& slot) {
   io::Hmc5883l::Params params;
@@ -27,11 +40,15 @@ class Hmc5883lDevice final : public RackDevice {
   explicit Hmc5883lDevice(DeviceSlot& slot)
       : mounting_(mounting_of(slot.axes("axes"))),
         hard_iron_B_T_(slot.triple("params.hard_iron").data()),
+        pack_per_ampere_T_(slot.triple("params.pack_field").data()),
         part_(
             slot.rack().events(), part_of(slot),
             [this](Nanoseconds) { return turned(mounting_, field_B_T_ + hard_iron_B_T_); },
             slot.given("drdy") ? &slot.pin("drdy") : nullptr, &slot.rack().faults(),
             slot.rack().finding()) {
+    for (std::size_t i = 0; i < per_ampere_T_.size(); ++i) {
+      per_ampere_T_[i] = Eigen::Vector3d(slot.triple(motor_field(i + 1)).data());
+    }
     slot.join_i2c(part_);
     if (!slot.given("drdy")) return;
     slot.pin("drdy").watch(
@@ -43,12 +60,17 @@ class Hmc5883lDevice final : public RackDevice {
   std::vector<Intake> intakes() const override { return {{io::Kind::body_motion}}; }
   void on_message(const io::Reader& message) override {
     const auto motion = message.as<io::BodyMotion>();
-    field_B_T_ = Eigen::Vector3d(motion.magnetic_field_B_T);
+    field_B_T_ =
+        Eigen::Vector3d(motion.magnetic_field_B_T) + pack_per_ampere_T_ * motion.battery_current_A;
+    for (std::size_t i = 0; i < per_ampere_T_.size(); ++i) {
+      field_B_T_ += per_ampere_T_[i] * motion.rotor_bus_current_A[i];
+    }
   }
 
  private:
   Mounting mounting_;
-  Eigen::Vector3d hard_iron_B_T_;
+  Eigen::Vector3d hard_iron_B_T_, pack_per_ampere_T_;
+  std::array<Eigen::Vector3d, io::kMostMotors> per_ampere_T_;  // index: motor number - 1
   Eigen::Vector3d field_B_T_ = Eigen::Vector3d::Zero();
   io::Hmc5883l part_;
 };
@@ -58,17 +80,29 @@ class Hmc5883lDevice final : public RackDevice {
 DeviceType hmc5883l_type() {
   DeviceKey address = address_key();
   address.limits = {io::Hmc5883l::kI2c_address, io::Hmc5883l::kI2c_address};
+  std::vector<DeviceKey> keys = {
+      bus_key("i2c", "the bus").need(),
+      address.need(),
+      pin_key("drdy", "data ready output, low for 5 us"),
+      axes_key("axes", "where its x, y, z point in the body").need(),
+      quantity_key("params.noise", Dimension::magnetic_field, "uT", {0.0, kMost_T},
+                   "RMS of one measurement")
+          .with(io::Hmc5883l::Params{}.noise_T),
+      triple_key("params.hard_iron", Dimension::magnetic_field, "uT", {-kMost_T, kMost_T},
+                 "that the frame adds, along x, y, z of the body")
+          .with(std::vector<double>{0.0, 0.0, 0.0}),
+      per_ampere_key("params.pack_field", Eigen::Vector3d::Zero(),
+                     "that each ampere out of the pack adds")};
+  const auto usual = plant::MagnetometerParams{}.per_ampere_T;
+  for (std::size_t motor = 1; motor <= io::kMostMotors; ++motor) {
+    const Eigen::Vector3d field_T =
+        motor <= usual.size() ? usual[motor - 1] : Eigen::Vector3d::Zero();
+    keys.push_back(
+        per_ampere_key(motor_field(motor), field_T, "that each ampere of this motor's adds"));
+  }
   return {"hmc5883l",
           "magnetometer on I2C",
-          {bus_key("i2c", "the bus").need(), address.need(),
-           pin_key("drdy", "data ready output, low for 5 us"),
-           axes_key("axes", "where its x, y, z point in the body").need(),
-           quantity_key("params.noise", Dimension::magnetic_field, "uT", {0.0, kMost_T},
-                        "RMS of one measurement")
-               .with(io::Hmc5883l::Params{}.noise_T),
-           triple_key("params.hard_iron", Dimension::magnetic_field, "uT", {-kMost_T, kMost_T},
-                      "that the frame adds, along x, y, z of the body")
-               .with(std::vector<double>{0.0, 0.0, 0.0})},
+          std::move(keys),
           make_device<Hmc5883lDevice>,
           {},
           {"field_x", "field_y", "field_z"}};

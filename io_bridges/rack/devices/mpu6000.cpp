@@ -21,6 +21,9 @@ plant::ImuParams physics_of(const DeviceSlot& slot) {
   plant::ImuParams params = plant::mpu6000_physics();
   read_triad(slot, "accelerometer", params.accelerometer);
   read_triad(slot, "gyroscope", params.gyroscope);
+  params.unbalance_second = slot.quantity("params.unbalance_second");
+  params.unbalance_blades = slot.quantity("params.unbalance_blades");
+  params.blade_count = slot.whole("params.blade_count");
   const auto place_m = slot.triple("params.place");
   const auto turn_rad = slot.triple("params.misalignment");
   params.p_BS_B_m = {place_m[0], place_m[1], place_m[2]};
@@ -106,6 +109,19 @@ DeviceType mpu6000_type() {
   };
   add_triad(keys, "accelerometer", "m/s2", Dimension::acceleration, usual.accelerometer);
   add_triad(keys, "gyroscope", "rad/s", Dimension::angular_rate, usual.gyroscope);
+  const auto share = [](const char* path, const char* about) {
+    return quantity_key(path, Dimension::none, "", {0.0, 10.0}, about);
+  };
+  keys.push_back(
+      share("params.unbalance_second", "twice a turn, of what a rotor's unbalance shakes")
+          .with(usual.unbalance_second));
+  keys.push_back(
+      share("params.unbalance_blades", "at the blades' passing, along the shaft, likewise")
+          .with(usual.unbalance_blades));
+  DeviceKey blade_count =
+      quantity_key("params.blade_count", Dimension::none, "", {1.0, 12.0}, "of a propeller");
+  blade_count.kind = KeyKind::whole;
+  keys.push_back(blade_count.with(static_cast<double>(usual.blade_count)));
   return {"mpu6000",
           "accelerometer and gyroscope on SPI",
           std::move(keys),

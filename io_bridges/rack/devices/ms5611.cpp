@@ -1,9 +1,12 @@
 // MEAS MS5611 on I2C or SPI: the part command by command (io_bridges/devices), what it senses by the
 // plant's barometer. Its white noise is the part's own, by oversampling.
 //
-//   Left out  the rotors' back-pressure: no message tells the board their thrust; self-heating: the
-//             part is as warm as the air
+//   Rotors    their thrust over the area of their discs, of which the frame feels rotor_share: a step
+//             when they start (plant/sensors/barometer.hpp)
+//   Left out  self-heating: the part is as warm as the air
 #include "io_bridges/devices/ms5611.hpp"
+
+#include <algorithm>
 
 #include "io_bridges/rack/devices/table.hpp"
 #include "plant/sensors/barometer.hpp"
@@ -20,7 +23,8 @@ bool on_i2c(const DeviceSlot& slot) {
 plant::BarometerParams physics_of(const DeviceSlot& slot) {
   plant::BarometerParams params;
   params.noise_density_Pa = 0.0;
-  params.rotor_share = 0.0;
+  params.rotor_share = slot.quantity("params.rotor_share");
+  params.disc_area_m2 = slot.quantity("params.disc_area_m2");
   params.turn_on_bias_Pa = slot.quantity("params.turn_on_bias");
   params.drift_Pa = slot.quantity("params.drift");
   params.drift_time_s = slot.quantity("params.drift_time");
@@ -81,6 +85,8 @@ class Ms5611Device final : public RackDevice {
     truth_.static_pressure_Pa = motion.static_pressure_Pa;
     truth_.air_density_kgpm3 = motion.static_pressure_Pa / (kDryAir_JpkgK * temperature_K_);
     for (int i = 0; i < 3; ++i) truth_.v_AB_B_mps[i] = motion.v_AB_B_mps[i];
+    std::copy(std::begin(motion.rotor_thrust_N), std::end(motion.rotor_thrust_N),
+              truth_.thrust_N.begin());
   }
 
  private:
@@ -131,6 +137,11 @@ void add_physics(std::vector<DeviceKey>& keys) {
   keys.push_back(time("params.drift_time", {1.0, 1e5}, "how slow it is").with(usual.drift_time_s));
   keys.push_back(number_key("params.wind_share", {-1.0, 1.0}, "of the dynamic pressure")
                      .with(usual.wind_share));
+  keys.push_back(number_key("params.rotor_share", {-1.0, 1.0},
+                            "of the rotors' thrust over the area of their discs")
+                     .with(usual.rotor_share));
+  keys.push_back(number_key("params.disc_area_m2", {1e-3, 100.0}, "of all rotors together")
+                     .with(usual.disc_area_m2));
   keys.push_back(time("params.lag", {1e-4, 10.0}, "of the air in the frame").with(usual.lag_s));
 }
 

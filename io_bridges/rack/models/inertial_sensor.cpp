@@ -39,6 +39,8 @@ io::Mpu6000::Truth InertialSensor::sample(Nanoseconds now) {
   }
   std::copy(std::begin(motion_.rotor_speed_radps), std::end(motion_.rotor_speed_radps),
             motion.rotor_speed_radps.begin());
+  std::copy(std::begin(motion_.rotor_unbalance_m), std::end(motion_.rotor_unbalance_m),
+            motion.unbalance_m.begin());
   const plant::ImuSample sensed = imu_.sample(static_cast<double>(now) * 1e-9, motion);
   return {turned(mounting_, sensed.specific_force_S_mps2), turned(mounting_, sensed.rate_S_radps),
           motion_.air_temperature_K};

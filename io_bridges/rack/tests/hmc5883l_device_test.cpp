@@ -55,6 +55,21 @@ TEST(Hmc5883lDevice, TheFramesFieldIsAddedInTheBody) {
   EXPECT_EQ(measure(rack), (Counts{-218, 327, 109 + 1090}));
 }
 
+// 10 A of motor 3 and 20 A of the pack; of the others nothing flows.
+TEST(Hmc5883lDevice, CurrentsAddTheirFieldPerAmpere) {
+  BenchRack rack;
+  BoardDevice device = compass({"+x", "+y", "+z"});
+  device.set("params.motor_field_3", std::vector<double>{1e-6, 0.0, -2e-6});
+  device.set("params.pack_field", std::vector<double>{0.0, 1e-6, 0.0});
+  ASSERT_NE(rack.add(device), nullptr);
+  io::BodyMotion motion;
+  motion.magnetic_field_B_T[0] = 1e-5;
+  motion.rotor_bus_current_A[2] = 10.0;
+  motion.battery_current_A = 20.0;
+  rack.send(motion);
+  EXPECT_EQ(measure(rack), (Counts{218, -218, 218}));
+}
+
 TEST(Hmc5883lDevice, ItsDataReadyPinIsToldToTheHarnessOnceAMeasurement) {
   BenchRack rack;
   BoardDevice device = compass({"+x", "+y", "+z"});

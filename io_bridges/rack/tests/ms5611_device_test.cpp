@@ -105,6 +105,22 @@ TEST(Ms5611Device, WindTakesItsShareOfTheDynamicPressure) {
   EXPECT_TRUE(near(measure(rack, false).pressure_Pa, want_Pa, stated(0.2, "counts")));
 }
 
+TEST(Ms5611Device, RotorsTakeTheirShareOfTheDiscLoading) {
+  for (const double share : {0.1, -0.3}) {
+    BenchRack rack;
+    BoardDevice device = on_i2c();
+    device.set("params.rotor_share", share);
+    device.set("params.disc_area_m2", 0.2);
+    ASSERT_NE(rack.add(device), nullptr);
+    io::BodyMotion motion = still_air(101325.0, 288.15);
+    motion.rotor_thrust_N[0] = 5.0;
+    motion.rotor_thrust_N[3] = 3.0;
+    rack.send(motion);
+    const double want_Pa = 101325.0 + share * 8.0 / 0.2;
+    EXPECT_TRUE(near(measure(rack, false).pressure_Pa, want_Pa, stated(0.2, "counts"))) << share;
+  }
+}
+
 TEST(Ms5611Device, EachPartIsAnotherAndAGivenCoefficientIsThat) {
   std::set<int> first, factory, serial;
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
