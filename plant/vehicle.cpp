@@ -46,6 +46,8 @@ struct Vehicle::Parts {
         powertrain(std::move(shafts_of)),
         air(vehicle.air, seed),
         contact(vehicle.airframe, vehicle.obstacles),
+        load(vehicle.load ? std::optional<SlungLoad>(std::in_place, *vehicle.load, mass)
+                          : std::nullopt),
         loads(rotors.size()),
         loads_at_radps(rotors.size(), 0.0),
         shaft(rotors.size()) {
@@ -74,6 +76,7 @@ struct Vehicle::Parts {
   std::unique_ptr<Powertrain> powertrain;
   Air air;
   ContactWorld contact;
+  std::optional<SlungLoad> load;
   // One of each for each motor:
   std::vector<RotorLoads> loads;
   std::vector<double> loads_at_radps;
@@ -145,6 +148,9 @@ void Vehicle::Parts::run_body(Forcing& forcing, double dt_s) {
   forcing.spin_start_B_Nms = spin_start_B_Nms;
   forcing.spin_end_B_Nms = spin_B();
   const BodyState before = body;
+  if (load) {
+    load->step(body, forcing, state.air_density_kgpm3, air.wind_W_mps(load->p_W_m()), dt_s);
+  }
   const Touch touch = contact.in_reach(body, dt_s) ? contact.step(body, forcing, dt_s) : Touch{};
   state.contact_impulse_Ns = touch.sum_Ns;
   state.on_ground = touch.from_below_Ns > 0.0;
@@ -185,6 +191,11 @@ void Vehicle::Parts::publish_air() {
   state.air_temperature_K = here.temperature_K;
   state.air_density_kgpm3 = here.density_kgpm3;
   viscosity_Pas = here.viscosity_Pas;
+  if (load) {
+    state.load_p_W_m = load->p_W_m();
+    state.load_v_W_mps = load->v_W_mps();
+    state.line_tension_N = load->tension_N();
+  }
   state.p_WB_W_m = body.p_WB_W_m;
   state.v_WB_W_mps = body.v_WB_W_mps;
   state.q_WB = body.q_WB;
@@ -204,6 +215,7 @@ Vehicle::Vehicle(const VehicleParams& params, RotorSet rotors,
   for (const auto& foot : params.airframe.contact.gear_B_m) gear_m = std::max(gear_m, foot.z());
   parts_->body.p_WB_W_m.z() = -gear_m - params.airframe.contact.foot_radius_m;
   parts_->state.specific_force_B_mps2.z() = -kGravity_mps2;
+  if (parts_->load) parts_->load->hang(parts_->body);
   parts_->state.bus_voltage_V = parts_->powertrain->source_V();
   parts_->publish_air();
 }
@@ -214,6 +226,7 @@ Vehicle& Vehicle::operator=(Vehicle&&) noexcept = default;
 void Vehicle::place(const Vector3d& p_WB_W_m, const Eigen::Quaterniond& q_WB,
                     const Vector3d& v_WB_W_mps, const Vector3d& w_WB_B_radps) {
   parts_->body = {p_WB_W_m, v_WB_W_mps, q_WB.normalized(), w_WB_B_radps};
+  if (parts_->load) parts_->load->hang(parts_->body);
   // Until a step has told more, what is in the air falls.
   const bool supported = parts_->contact.in_reach(parts_->body, 1e-3);
   parts_->state.specific_force_B_mps2 = {0.0, 0.0, supported ? -kGravity_mps2 : 0.0};

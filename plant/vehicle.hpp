@@ -12,12 +12,14 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "base/result.hpp"
 #include "plant/air/air_params.hpp"
 #include "plant/airframe/airframe_params.hpp"
 #include "plant/airframe/obstacle.hpp"
+#include "plant/airframe/slung_load.hpp"
 #include "plant/battery/battery_params.hpp"
 #include "plant/motor/motor_params.hpp"
 #include "plant/powertrain.hpp"
@@ -39,7 +41,8 @@ struct VehicleParams {
   BatteryParams battery;
   double avionics_current_A = 0.25;
   AirParams air;
-  std::vector<Obstacle> obstacles;  // besides the floor
+  std::vector<Obstacle> obstacles;      // besides the floor
+  std::optional<SlungLoadParams> load;  // below it on a line
 };
 
 VehicleParams hp_quad();  // the reference vehicle of [Bangura2017, ch. 3]
@@ -59,6 +62,10 @@ struct VehicleState : PowertrainState {
   double contact_impulse_Ns = 0.0;  // what ground and obstacles gave in this step
   bool on_ground = false;           // something holds it from below: floor, slope, box
   bool touching = false;            // something else touches feet or hubs: a wall, a ceiling
+  // Of a slung load:
+  Eigen::Vector3d load_p_W_m = Eigen::Vector3d::Zero();
+  Eigen::Vector3d load_v_W_mps = Eigen::Vector3d::Zero();
+  double line_tension_N = 0.0;
 };
 
 class Vehicle {

@@ -33,6 +33,12 @@ Result<Done> validate(const VehicleParams& params, const std::string& place) {
   b.merge(validate(params.airframe, place + ": airframe"));
   b.merge(validate(params.motor, place + ": motor"));
   b.merge(validate(params.battery, place + ": battery"));
+  if (params.load) {
+    b.within("load.mass_kg", params.load->mass_kg, 1e-3, 100.0);
+    b.within("load.line_m", params.load->line_m, 0.05, 100.0);
+    b.within("load.drag_area_m2", params.load->drag_area_m2, 0.0, 10.0);
+    b.within("load.attach_B_m", params.load->attach_B_m.norm(), 0.0, 5.0);
+  }
   b.within("avionics_current_A", params.avionics_current_A, 0.0, 50.0);
   b.within("ground_height_m", params.air.ground_height_m, -500.0, 9000.0);
   b.within("ground_temperature_offset_K", params.air.ground_temperature_offset_K, -80.0, 60.0);

@@ -105,6 +105,16 @@ void read_air(const Table& t, plant::AirParams& air) {
   air.ground_temperature_offset_K = wanted_K - standard_K;
 }
 
+// ---- What hangs below
+
+plant::SlungLoadParams read_load(const Table& t) {
+  return {
+      .mass_kg = t.quantity("mass", Dimension::mass, between(1e-3, 100.0)),
+      .line_m = t.quantity("line", Dimension::length, between(0.05, 100.0)),
+      .attach_B_m = {0.0, 0.0, t.quantity_or("below", Dimension::length, 0.0, between(-5.0, 5.0))},
+      .drag_area_m2 = t.number_or("drag_area_m2", 0.0, between(0.0, 10.0))};
+}
+
 // ---- How it begins
 
 Eigen::Quaterniond read_attitude(const Table& t) {
@@ -172,6 +182,7 @@ Result<Done> read_surroundings(const Table& plan, flight::FlightParams& params) 
   }
   if (plan.has("field")) params.place.magnetic_field_W_T = read_field(plan.table("field"));
   if (plan.has("air")) read_air(plan.table("air"), params.vehicle.air);
+  if (plan.has("load")) params.vehicle.load = read_load(plan.table("load"));
   // A start is looked at only where all before it is sound.
   if (const auto good = plan.finish_except({"start"}); !good) return good.error();
   if (plan.has("start")) params.place.start = read_start(plan.table("start"), params.vehicle);

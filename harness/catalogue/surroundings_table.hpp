@@ -1,5 +1,5 @@
 // Where a flight takes place and how it begins, from a plan's own table (test_plans/README.md lists the
-// keys: start, room, outdoors, fence, obstacles, field, air).
+// keys: start, room, outdoors, fence, obstacles, field, air, load).
 //
 //   Errors   bad_input, with the plan's line: a key that is wrong or unknown; a start inside the floor or
 //            an obstacle

@@ -55,9 +55,21 @@ void FlightWorld::name_signals() {
   add_signal("touching", D::none, "1: a wall, a ceiling or the side of a box touches it",
              [=] { return state().touching ? 1.0 : 0.0; });
   name_fence_signals();
+  if (has_load_) name_load_signals();
   name_motor_signals();
   name_telemetry_signals();
   name_estimate_signals();
+}
+
+void FlightWorld::name_load_signals() {
+  using D = Dimension;
+  const auto state = [this]() -> const plant::VehicleState& { return vehicle_.state(); };
+  add_signal("load_height", D::length, "of the slung load above the floor",
+             [=] { return -state().load_p_W_m.z(); });
+  add_signal("load_north", D::length, "position", [=] { return state().load_p_W_m.x(); });
+  add_signal("load_east", D::length, "position", [=] { return state().load_p_W_m.y(); });
+  add_signal("load_speed", D::speed, "", [=] { return state().load_v_W_mps.norm(); });
+  add_signal("line_tension", D::force, "", [=] { return state().line_tension_N; });
 }
 
 void FlightWorld::name_fence_signals() {

@@ -35,6 +35,7 @@ FlightWorld::FlightWorld(const FlightParams& params, std::uint64_t seed)
 FlightWorld::FlightWorld(const FlightParams& params, plant::RotorSet rotors, std::uint64_t seed,
                          const ControllerTypes& types)
     : place_(params.place),
+      has_load_(params.vehicle.load.has_value()),
       vehicle_(params.vehicle, std::move(rotors), seed),
       capture_(params.capture, seed) {
   const auto type = std::find_if(types.begin(), types.end(), [&](const ControllerType& t) {

@@ -54,6 +54,7 @@ class FlightWorld : public World {
                   std::function<double()> value);
   void name_signals();
   void name_fence_signals();
+  void name_load_signals();
   void name_motor_signals();
   void name_telemetry_signals();
   void name_estimate_signals();
@@ -69,6 +70,7 @@ class FlightWorld : public World {
   double offset_from_target_m() const;
 
   Surroundings place_;
+  bool has_load_;
   plant::Vehicle vehicle_;
   std::vector<std::unique_ptr<MotorController>> controllers_;  // index: motor number - 1
   std::vector<double> unbalance_m_;                            // likewise, over the vehicle's mass

@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t kMost_nodes = 16;
 constexpr std::int64_t kDefaultTimeout_ns = 120'000'000'000;
 const std::vector<std::string> kSurroundings = {"start",     "room",  "outdoors", "fence",
-                                                "obstacles", "field", "air"};
+                                                "obstacles", "field", "air",      "load"};
 
 PlanNode read_node(const lua::Table& t) {
   return {"", t.text("image"), t.text_or("board", "px4fmu_v1"), t.texts("watch"),

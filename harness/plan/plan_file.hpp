@@ -8,7 +8,7 @@
 //            watch = { ... } }, ... }; the vehicle or stand surrounds the first. wires = { { from = "esc.usart1",
 //            to = "fc.usart2" }, ... } join their UARTs, both ways, at the grain of the exchange
 //   Stand    instead of vehicle: stand = { prop = "hk_10x4.5", battery = "4s_2200" }
-//   Around   of a vehicle: start, room, outdoors, fence, obstacles, field, air, read by who makes the world
+//   Around   of a vehicle: start, room, outdoors, fence, obstacles, field, air, load, read by who makes the world
 //   Limits   tags and names are checked; a plan without run, image or name is refused with its line
 #pragma once
 #include <cstdint>

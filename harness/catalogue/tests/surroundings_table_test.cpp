@@ -112,6 +112,14 @@ TEST(Surroundings, FieldAndAirAreThoseOfThePlace) {
            308.15, round_off(4, 308.0)));
 }
 
+TEST(Surroundings, ALoadHangsOnALine) {
+  const auto p = sound("load = { mass = '200 g', line = '80 cm', below = '4 cm' }");
+  ASSERT_TRUE(p.vehicle.load);
+  EXPECT_TRUE(near(p.vehicle.load->mass_kg, 0.2, round_off(2, 1)));
+  EXPECT_EQ(p.vehicle.load->line_m, 0.8);
+  EXPECT_EQ(p.vehicle.load->attach_B_m.z(), 0.04);
+}
+
 TEST(Surroundings, EachMistakeIsOneSentenceWithItsPlace) {
   const struct {
     const char *text, *expected;
@@ -136,6 +144,8 @@ TEST(Surroundings, EachMistakeIsOneSentenceWithItsPlace) {
       {"field = { strength = '50 uT', inclination = '100 deg', declination = '0 deg' }",
        "field.inclination"},
       {"air = { temperature = '100 degC' }", "air.temperature"},
+      {"load = { mass = '200 g' }", "load.line"},
+      {"load = { mass = '0 g', line = '1 m' }", "load.mass"},
       {"sart = { height = '2 m' }", "unknown key 'sart'"},
   };
   for (const auto& c : cases) {
