@@ -20,18 +20,20 @@ Gps::Gps(const GpsParams& params, std::uint64_t seed, const std::string& name)
   }
 }
 
-GpsFix Gps::measure(double t_s, const Truth& truth) {
+GpsFix Gps::measure(double t_s, const Truth& truth, double error_scale) {
+  const double dt_s = t_s - measured_s_;
+  measured_s_ = t_s;
   GpsFix fix{.taken_s = t_s, .p_WB_W_m = truth.p_WB_W_m, .v_WB_W_mps = truth.v_WB_W_mps};
   for (int i = 0; i < 3; ++i) {
     const bool down = i == 2;
-    fix.p_WB_W_m[i] += wander_[i].step(params_.period_s) +
-                       (down ? params_.white_down_m : params_.white_level_m) * white_[i].normal();
-    fix.v_WB_W_mps[i] +=
-        (down ? params_.velocity_down_mps : params_.velocity_level_mps) * velocity_[i].normal();
+    const double white_m = down ? params_.white_down_m : params_.white_level_m;
+    const double velocity_mps = down ? params_.velocity_down_mps : params_.velocity_level_mps;
+    fix.p_WB_W_m[i] += error_scale * (wander_[i].step(dt_s) + white_m * white_[i].normal());
+    fix.v_WB_W_mps[i] += error_scale * velocity_mps * velocity_[i].normal();
   }
-  fix.level_accuracy_m = params_.wander_level_m;
-  fix.down_accuracy_m = params_.wander_down_m;
-  fix.velocity_accuracy_mps = params_.velocity_level_mps;
+  fix.level_accuracy_m = error_scale * params_.wander_level_m;
+  fix.down_accuracy_m = error_scale * params_.wander_down_m;
+  fix.velocity_accuracy_mps = error_scale * params_.velocity_level_mps;
   return fix;
 }
 

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/near.hpp"
@@ -112,6 +113,7 @@ TEST(Gps, FixesComeFiveTimesASecondAndLate) {
 TEST(Gps, PositionErrorWandersWithItsTimeConstant) {
   GpsParams p;
   p.white_level_m = 0.0;
+  p.wander_level_m = 1.0;
   Gps gps(p, 3);
   std::vector<double> x;
   for (int k = 0; k < 400000; ++k) {
@@ -126,6 +128,29 @@ TEST(Gps, PositionErrorWandersWithItsTimeConstant) {
   const double n = static_cast<double>(x.size() - lag);
   EXPECT_TRUE(near(std::sqrt(variance / n), 1.0, stated(0.1, "1300 independent values")));
   EXPECT_TRUE(near(at_one_time / variance, std::exp(-1.0), stated(0.06, "statistics")));
+}
+
+// The data sheet: 50 % of the fixes within 2.5 m. One fix each of 4000 receivers, which are independent.
+TEST(Gps, HalfOfAllFixesLieWithinTheDataSheetsCircle) {
+  std::vector<double> miss_m, miss_mps;
+  for (std::uint64_t seed = 1; seed <= 4000; ++seed) {
+    const GpsFix fix = Gps({}, seed).measure(60.0, {});
+    miss_m.push_back(fix.p_WB_W_m.head<2>().norm());
+    miss_mps.push_back(fix.v_WB_W_mps.head<2>().norm());
+  }
+  const auto middle = [](std::vector<double>& x) {
+    std::nth_element(x.begin(), x.begin() + 2000, x.end());
+    return x[2000];
+  };
+  EXPECT_TRUE(near(middle(miss_m), 2.5, stated(0.125, "5 %: three standard errors of a median")));
+  EXPECT_TRUE(near(middle(miss_mps), 0.1, stated(0.005, "5 %: three standard errors of a median")));
+}
+
+TEST(Gps, ErrorsGrowByTheirScaleAndTheEstimatesWithThem) {
+  const GpsFix settled = Gps({}, 7).measure(1.0, {}), fresh = Gps({}, 7).measure(1.0, {}, 5.0);
+  EXPECT_TRUE(near((fresh.p_WB_W_m - 5.0 * settled.p_WB_W_m).norm(), 0.0, round_off(16, 50.0)));
+  EXPECT_TRUE(near((fresh.v_WB_W_mps - 5.0 * settled.v_WB_W_mps).norm(), 0.0, round_off(16, 5.0)));
+  EXPECT_EQ(fresh.level_accuracy_m, 5.0 * settled.level_accuracy_m);
 }
 
 TEST(Gps, OutageSilencesAndShiftsNoNoise) {
