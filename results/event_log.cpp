@@ -84,6 +84,7 @@ void EventLog::add(const io::Reader& reader) {
     case io::Kind::shaft_state:
     case io::Kind::i2c_order:
     case io::Kind::pulse_train:
+    case io::Kind::rc_channels:
     case io::Kind::i2c_reply:
     case io::Kind::shoot_through:
     case io::Kind::uart_delivered:

@@ -77,6 +77,9 @@ constexpr Field kPulseTrain[] = {
     WHIRL_FIELD(PulseTrain, glitch_ns),
     WHIRL_FIELD(PulseTrain, glitch_after_ns),
 };
+constexpr Field kRcChannelsFields[] = {
+    WHIRL_FIELD(RcChannels, position),
+};
 constexpr Field kEscSetpoint[] = {
     WHIRL_FIELD(EscSetpoint, value),
     WHIRL_FIELD(EscSetpoint, valid),
@@ -154,6 +157,7 @@ constexpr KindInfo kKinds[] = {
     {Kind::shaft_load, "shaft_load", true, kShaftLoad, sizeof(ShaftLoad), Tail::none},
     {Kind::i2c_order, "i2c_order", true, kI2cOrder, sizeof(I2cOrder), Tail::bytes},
     {Kind::pulse_train, "pulse_train", true, kPulseTrain, sizeof(PulseTrain), Tail::none},
+    {Kind::rc_channels, "rc_channels", true, kRcChannelsFields, sizeof(RcChannels), Tail::none},
     {Kind::esc_setpoint, "esc_setpoint", false, kEscSetpoint, sizeof(EscSetpoint), Tail::none},
     {Kind::uart_received, "uart_received", false, {}, 0, Tail::bytes},
     {Kind::i2c_transaction, "i2c_transaction", false, kBusTransaction, sizeof(BusTransaction),

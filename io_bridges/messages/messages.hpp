@@ -30,6 +30,7 @@ enum class Kind : std::uint8_t {
   shaft_load = 6,   // ShaftLoad: air, brake and supply of a power stage, from here on
   i2c_order = 7,    // I2cOrder + bytes to write, port = bus number: not before t_ns
   pulse_train = 8,  // PulseTrain, port = motor number: on its throttle pin, from here on
+  rc_channels = 9,  // RcChannels: stick positions that a transmitter sends; silence: it is off
   // Target to harness.
   esc_setpoint = 32,     // EscSetpoint, port = motor number 1..kMostMotors
   uart_received = 33,    // bytes the board has sent on UART `port`; t_ns: the last stop bit
@@ -188,6 +189,13 @@ struct PulseTrain {  // high for width once per period; width 0: low
   std::int64_t period_ns = 20'000'000;
   std::int64_t glitch_ns = 0;  // the line inverted for so long, so long after each rising edge
   std::int64_t glitch_after_ns = 0;
+};
+
+inline constexpr int kRcChannels = 16;
+
+// Shares of full travel, -1..1 from stop to stop: a receiver of any kind scales them to its own counts.
+struct RcChannels {
+  double position[kRcChannels] = {};  // channel 1 first
 };
 
 struct I2cReplyHead {

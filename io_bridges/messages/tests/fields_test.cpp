@@ -18,6 +18,7 @@ bool has_to_be_listed(Kind kind) {
     case Kind::shaft_load:
     case Kind::i2c_order:
     case Kind::pulse_train:
+    case Kind::rc_channels:
     case Kind::esc_setpoint:
     case Kind::uart_received:
     case Kind::i2c_transaction:
