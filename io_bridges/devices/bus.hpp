@@ -53,6 +53,7 @@ struct UartFormat {
   int data_bits = 8;  // without parity
   char parity = 'N';
   double stop_bits = 1.0;
+  bool inverted = false;  // idle low, a one is low
 };
 
 // The far end of a UART. The near end (the MCU) gives every byte to receive() when its stop bit has

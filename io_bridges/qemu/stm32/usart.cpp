@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "io_bridges/qemu/stm32/uart_sampling.hpp"
+#include "io_bridges/devices/uart_sampling.hpp"
 
 namespace whirl::stm32 {
 namespace {
@@ -221,12 +221,12 @@ void Usart::receive(const io::UartByte& byte, const io::UartFormat& format) {
   const bool half_duplex = (cr3_ & HDSEL) != 0;
   if (!(half_duplex ? pins_.tx : pins_.rx).routed()) return;
   line_idle();
-  const UartSample sample = sample_uart(byte, format, word_bits(), baud_);
+  const io::UartSample sample = io::sample_uart(byte, format, word_bits(), baud_);
   std::uint32_t errors = 0;
   if (sample.stop_missing) errors |= FE;
   if (sample.noise) errors |= NF;
   if (sample.stop_missing && sample.bits == 0 && (cr2_ & LINEN) != 0) sr_ |= LBD;
-  if ((cr1_ & PCE) != 0 && odd_number_of_ones(sample.bits) != ((cr1_ & PS) != 0)) errors |= PE;
+  if ((cr1_ & PCE) != 0 && io::odd_number_of_ones(sample.bits) != ((cr1_ & PS) != 0)) errors |= PE;
   receive(sample.bits, errors);
   last_rx_end_ = chip_.events.now();
   idle_.in(2 * frame_ns());

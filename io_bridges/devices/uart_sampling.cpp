@@ -1,12 +1,12 @@
-#include "io_bridges/qemu/stm32/uart_sampling.hpp"
+#include "io_bridges/devices/uart_sampling.hpp"
 
 #include <cmath>
 
-namespace whirl::stm32 {
+namespace whirl::io {
 namespace {
 
 // Levels on the line from the start bit on; bit i of the result is the i-th bit time.
-std::uint32_t waveform(const io::UartByte& byte, const io::UartFormat& format, int& length) {
+std::uint32_t waveform(const UartByte& byte, const UartFormat& format, int& length) {
   if (byte.is_break) {
     length = 32;
     return 0;
@@ -23,21 +23,33 @@ std::uint32_t waveform(const io::UartByte& byte, const io::UartFormat& format, i
   return wave;  // stop bits beyond the first are idle line
 }
 
+// As a receiver takes it that knows nothing of the inversion: its start bit is the first low level
+// behind a high one.
+std::uint32_t inverted_from_its_fall(std::uint32_t wave, int& length) {
+  wave = ~wave & ((1u << (length + 1)) - 1);
+  int fall = 0;
+  while (fall < length && ((wave >> fall) & 1) != 0) ++fall;
+  length -= fall;
+  return wave >> fall;
+}
+
 }  // namespace
 
 bool odd_number_of_ones(std::uint32_t value) {
   return (__builtin_popcount(value) & 1) != 0;
 }
 
-UartSample sample_uart(const io::UartByte& byte, const io::UartFormat& format, int rx_bits,
+UartSample sample_uart(const UartByte& byte, const UartFormat& format, int rx_bits,
                        double rx_baud) {
   int length = 0;
-  const std::uint32_t wave = waveform(byte, format, length);
+  std::uint32_t wave = waveform(byte, format, length);
+  if (format.inverted && !byte.is_break) wave = inverted_from_its_fall(wave, length);
   const double ratio = rx_baud > 0.0 ? format.baud / rx_baud : 1.0;
   const bool matched = std::abs(ratio - 1.0) < 0.01;
   const auto level_at = [&](double rx_bit_times) {
     const int i = static_cast<int>(matched ? rx_bit_times : rx_bit_times * ratio);
     if (i <= length) return ((wave >> i) & 1) != 0;
+    if (format.inverted) return false;
     return matched;  // beyond the stop bit: idle, or already the next start bit
   };
   UartSample out;
@@ -55,4 +67,4 @@ UartSample sample_uart(const io::UartByte& byte, const io::UartFormat& format, i
   return out;
 }
 
-}  // namespace whirl::stm32
+}  // namespace whirl::io
