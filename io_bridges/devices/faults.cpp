@@ -31,6 +31,11 @@ constexpr KindName kNames[] = {
     {FaultKind::code_hangs, "code_hangs"},
     {FaultKind::sensor_late, "sensor_late"},
     {FaultKind::reset_pin, "reset_pin"},
+    {FaultKind::gnss_jammed, "gnss_jammed"},
+    {FaultKind::gnss_spoofed, "gnss_spoofed"},
+    {FaultKind::gnss_dropout, "gnss_dropout"},
+    {FaultKind::rc_link_lost, "rc_link_lost"},
+    {FaultKind::rc_glitch, "rc_glitch"},
 };
 
 bool matches(int wanted, int here) {

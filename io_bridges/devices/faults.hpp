@@ -41,6 +41,11 @@ enum class FaultKind : std::uint32_t {
   code_hangs,             // board: the watched function number `address` comes no further
   sensor_late,            // each measurement takes value seconds longer
   reset_pin,              // board: NRST goes low for an instant, at the start
+  gnss_jammed,            // no fix while it lasts
+  gnss_spoofed,  // the fix drifts away at value m/s along Fault::axis (0..2 north east down)
+  gnss_dropout,  // value: probability of each solution not to come out
+  rc_link_lost,  // the receiver no longer hears its transmitter
+  rc_glitch,     // value: probability of each frame to carry nonsense
 };
 
 std::optional<FaultKind> fault_kind(std::string_view name);  // "i2c_nack"
@@ -56,7 +61,8 @@ struct Fault {
   int bus = kAnywhere;      // I2C3: 3, SPI1: 1, USART2: 2
   int address = kAnywhere;  // see above
   int axis = 0;             // inertial: 0..2 accelerometer x y z, 3..5 gyro x y z; magnetometer:
-                            // 0..2 x y z; barometer: 0 pressure, 1 temperature
+                            // 0..2 x y z; barometer: 0 pressure, 1 temperature;
+                            // GNSS: 0..2 position, 3..5 velocity, north east down
   double value = 0.0;
 };
 
