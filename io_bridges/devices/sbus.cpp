@@ -1,0 +1,53 @@
+#include "io_bridges/devices/sbus.hpp"
+
+#include "io_bridges/protocols/sbus.hpp"
+
+namespace whirl::io {
+namespace {
+
+constexpr Nanoseconds kSbus_boot_ns = 200'000'000;
+
+UartFormat format_of(const SbusReceiver::Params& params) {
+  return {kSbusBaud, 8, 'E', 2.0, !params.inverter};
+}
+
+}  // namespace
+
+SbusReceiver::SbusReceiver(EventQueue& queue, const Params& params, FaultBook* faults)
+    : queue_(queue),
+      params_(params),
+      faults_(faults),
+      link_(params.link, faults),
+      transmitter_(queue, format_of(params),
+                   [this](const UartByte& byte, const UartFormat& format) { send(byte, format); }),
+      nonsense_(params.seed, params.name + ".nonsense"),
+      frame_(queue, [this] { begin_frame(); }) {
+  frame_.in(kSbus_boot_ns);
+}
+
+void SbusReceiver::begin_frame() {
+  const Nanoseconds now = queue_.now();
+  frame_.at(now + params_.period_ns);
+  RadioLink::Output out = link_.at(now);
+  const bool never = out.state == RadioLink::State::never_heard;
+  if (out.silent && !(never && params_.link.failsafe == Failsafe::hold)) return;
+  if (never && params_.link.failsafe == Failsafe::hold) out.sticks[kThrustStick] = -1.0;
+  SbusFrame frame;
+  for (std::size_t i = 0; i < frame.channels.size(); ++i) {
+    frame.channels[i] = sbus_of_travel(out.sticks[i]);
+  }
+  if (out.state != RadioLink::State::up) frame.flags |= kSbusFrameLost;
+  if (never || out.state == RadioLink::State::failsafe) frame.flags |= kSbusFailsafe;
+  const Fault* glitch = faults_ == nullptr ? nullptr
+                                           : faults_->find(FaultKind::rc_glitch, params_.link.bus,
+                                                           params_.link.device, now);
+  if (glitch != nullptr && nonsense_.uniform() < glitch->value) {
+    faults_->applied(*glitch, now);
+    for (auto& channel : frame.channels) {
+      channel = static_cast<std::uint16_t>(nonsense_.bits() % 2048);
+    }
+  }
+  transmitter_.add(encode(frame));
+}
+
+}  // namespace whirl::io
