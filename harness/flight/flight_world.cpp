@@ -134,6 +134,7 @@ void FlightWorld::send(std::int64_t t_ns, io::Batch& sensed) {
     sensed.add(io::Kind::esc_state, static_cast<std::uint16_t>(i + 1), t_ns,
                controllers_[i]->status());
   }
+  transmitter_.step(t_ns, sensed);
   const auto send = [&sensed](std::int64_t at_ns, std::span<const std::uint8_t> frame) {
     sensed.add(io::Kind::uart_frame, kRadioPort, at_ns, frame.data(),
                static_cast<std::uint32_t>(frame.size()));
@@ -148,18 +149,20 @@ void FlightWorld::send(std::int64_t t_ns, io::Batch& sensed) {
 
 Result<Done> FlightWorld::command(const Command& command, std::int64_t /*now_ns*/) {
   return std::visit(
-      Match{[this](const request::Arm& c) -> Result<Done> { return arm(c), Done{}; },
-            [this](const request::TakeOff& c) -> Result<Done> { return take_off(c), Done{}; },
-            [this](const request::GoTo& c) -> Result<Done> { return go_to(c), Done{}; },
-            [this](const request::Land&) -> Result<Done> { return land(), Done{}; },
-            [this](const request::Figure8& c) -> Result<Done> { return fly_figure_8(c), Done{}; },
-            [this](const request::Cruise& c) -> Result<Done> { return cruise(c), Done{}; },
-            [this](const request::SetParameter& c) -> Result<Done> {
-              station_.request_parameter(
-                  c.name, c.value ? std::optional(static_cast<float>(*c.value)) : std::nullopt);
-              return Done{};
-            },
-            [&](const auto&) -> Result<Done> { return not_understood("a flight", word(command)); }},
+      Match{
+          [this](const request::Arm& c) -> Result<Done> { return arm(c), Done{}; },
+          [this](const request::TakeOff& c) -> Result<Done> { return take_off(c), Done{}; },
+          [this](const request::GoTo& c) -> Result<Done> { return go_to(c), Done{}; },
+          [this](const request::Land&) -> Result<Done> { return land(), Done{}; },
+          [this](const request::Figure8& c) -> Result<Done> { return fly_figure_8(c), Done{}; },
+          [this](const request::Cruise& c) -> Result<Done> { return cruise(c), Done{}; },
+          [this](const request::Sticks& c) -> Result<Done> { return transmitter_.set(c), Done{}; },
+          [this](const request::SetParameter& c) -> Result<Done> {
+            station_.request_parameter(
+                c.name, c.value ? std::optional(static_cast<float>(*c.value)) : std::nullopt);
+            return Done{};
+          },
+          [&](const auto&) -> Result<Done> { return not_understood("a flight", word(command)); }},
       command);
 }
 

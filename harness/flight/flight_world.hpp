@@ -2,7 +2,7 @@
 //
 //   Step     controllers and station take what the target did; then everything moves 1 ms; then what is
 //            sensed goes out: body_motion, esc_state of each motor, uart_frame to the radio
-//   Command  Arm, TakeOff, GoTo, Figure8, Cruise, Land. Take-off also streams the point above where the vehicle stands
+//   Command  Arm, TakeOff, GoTo, Figure8, Cruise, Land, Sticks, SetParameter. Take-off also streams the point above where the vehicle stands
 //            as its target; land and disarm end the stream
 //   Begins   standing at W's origin, or as the plan's `start` says (surroundings.hpp)
 //   Disturbed by Wind with a duration, Jet, Magnet
@@ -18,6 +18,7 @@
 #include "harness/flight/estimates.hpp"
 #include "harness/flight/flight_params.hpp"
 #include "harness/flight/station.hpp"
+#include "harness/flight/transmitter.hpp"
 #include "harness/world/world.hpp"
 #include "plant/vehicle.hpp"
 
@@ -77,6 +78,7 @@ class FlightWorld : public World {
   Capture capture_;
   Station station_;
   Estimates estimates_;
+  Transmitter transmitter_;
   TimedFaults faults_;
   std::vector<Signal> signals_;
   std::vector<std::function<double()>> values_;

@@ -38,7 +38,7 @@ int named_bus(lua_State* L, const std::string& bus) {
 fault_at::Device device_at(lua_State* L, const std::string& name, const BoardDescription& board) {
   const BoardDevice* device = board.find(name);
   if (device == nullptr) raise(L, "unknown device '" + name + "' on " + board.name);
-  return {name, named_bus(L, device->bus),
+  return {name, bus_number(device->bus).value_or(-1),  // of one on a pin there is none
           device->address != -1 ? device->address : board.number(name), device->motor};
 }
 

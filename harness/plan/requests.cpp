@@ -55,6 +55,19 @@ Cruise read_cruise(const Table& t) {
           maybe(t, "height", Dimension::length, above(0.0))};
 }
 
+// { roll = "20 %", thrust = "50 %", mode = 2 }
+Sticks read_sticks(const Table& t) {
+  Sticks sticks;
+  const lua::Range travel = between(-1.0, 1.0);
+  sticks.roll = maybe(t, "roll", Dimension::ratio, travel);
+  sticks.pitch = maybe(t, "pitch", Dimension::ratio, travel);
+  sticks.yaw = maybe(t, "yaw", Dimension::ratio, travel);
+  sticks.thrust = maybe(t, "thrust", Dimension::ratio, between(0.0, 1.0));
+  if (t.has("mode")) sticks.mode = static_cast<int>(t.integer("mode", 1, 3));
+  sticks.transmitter_on = t.flag_or("on", true);
+  return sticks;
+}
+
 // { bytes = "5A 03 C1", read = 6, times = 10, every = "20 ms", shift = "7 us" }
 RawTransfer read_raw(const Table& t) {
   RawTransfer raw;
@@ -114,6 +127,7 @@ void read_flying(const Table& t, std::vector<Command>& all) {
   if (t.has("velocity")) all.emplace_back(read_cruise(t.table("velocity")));
   if (t.has("land") && t.flag_or("land", true)) all.emplace_back(Land{});
   if (t.has("parameter")) all.emplace_back(read_parameter(t.table("parameter")));
+  if (t.has("rc")) all.emplace_back(read_sticks(t.table("rc")));
 }
 
 void read_turning(const Table& t, std::vector<Command>& all) {

@@ -10,6 +10,7 @@ const char* word(const Command& command) {
                           [](const request::Figure8&) { return "figure_8"; },
                           [](const request::Cruise&) { return "velocity"; },
                           [](const request::SetParameter&) { return "parameter"; },
+                          [](const request::Sticks&) { return "rc"; },
                           [](const request::SetPoint& s) {
                             constexpr const char* kWords[] = {"duty", "speed", "thrust", "power"};
                             return kWords[static_cast<std::size_t>(s.kind)];

@@ -38,6 +38,13 @@ struct SetParameter {           // of the firmware, over the radio
   std::string name;             // 1 to 16 characters
   std::optional<double> value;  // within a float's range; left out: only asked for
 };
+struct Sticks {  // of a radio-control transmitter; what is left out stays as it was
+  std::optional<double> roll, pitch,
+      yaw;                       // shares of full travel, -1..1; right, back and right are +
+  std::optional<double> thrust;  // 0..1 from the lower stop
+  std::optional<int> mode;       // position 1..3 of a switch
+  bool transmitter_on = true;
+};
 
 enum class SetPointKind { duty, speed, thrust, power };
 struct SetPoint {
@@ -91,9 +98,9 @@ struct Magnet {
 
 using Command =
     std::variant<request::Arm, request::TakeOff, request::GoTo, request::Land, request::Figure8,
-                 request::Cruise, request::SetParameter, request::SetPoint, request::Stop,
-                 request::Silence, request::SetPointRate, request::RawTransfer, request::Pulses,
-                 request::Line, request::Brake>;
+                 request::Cruise, request::SetParameter, request::Sticks, request::SetPoint,
+                 request::Stop, request::Silence, request::SetPointRate, request::RawTransfer,
+                 request::Pulses, request::Line, request::Brake>;
 using Disturbance = std::variant<request::Wind, request::Jet, request::Magnet>;
 
 const char* word(const Command& command);          // "takeoff"

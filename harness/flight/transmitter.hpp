@@ -1,0 +1,29 @@
+// The pilot's radio-control transmitter: sticks and a switch, sent at 50 Hz as rc_channels.
+//
+//   Channels  1 roll, 2 pitch, 3 thrust, 4 yaw, 5 mode switch; 6 to 16 stay centred
+//   Start     off; the first request switches it on, with roll, pitch and yaw centred, thrust at its
+//             lower stop and the switch in position 1
+//   Off       nothing is sent: what a receiver does then is its failsafe
+#pragma once
+#include <cstdint>
+
+#include "harness/world/request.hpp"
+#include "io_bridges/messages/messages.hpp"
+
+namespace whirl::flight {
+
+class Transmitter {
+ public:
+  Transmitter();
+
+  void set(const request::Sticks& sticks);
+  // What is due at t_ns.
+  void step(std::int64_t t_ns, io::Batch& sensed);
+
+ private:
+  bool on_ = false;
+  io::RcChannels channels_;
+  std::int64_t next_ns_ = 0;
+};
+
+}  // namespace whirl::flight
