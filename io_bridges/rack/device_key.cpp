@@ -1,5 +1,6 @@
 #include "io_bridges/rack/device_key.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -47,7 +48,7 @@ bool is_bus(const std::string& text, const std::string& kind) {
   return prefix == kind || (kind == "usart" && prefix == "uart");
 }
 
-std::vector<std::string> kinds_of_bus(const DeviceKey& key) {
+std::vector<std::string> alternatives(const DeviceKey& key) {
   static const std::string kOr = " or ";
   std::vector<std::string> kinds;
   std::size_t from = 0;
@@ -61,7 +62,7 @@ std::vector<std::string> kinds_of_bus(const DeviceKey& key) {
 
 std::string bus_complaint(const DeviceKey& key, const std::string& text) {
   std::string examples;
-  for (const std::string& kind : kinds_of_bus(key)) {
+  for (const std::string& kind : alternatives(key)) {
     if (is_bus(text, kind)) return "";
     examples += (examples.empty() ? "\"" : " or \"") + kind + "1\"";
   }
@@ -84,7 +85,9 @@ std::string text_complaint(const DeviceKey& key, const KeyValue& value) {
     return is_pin(*text) ? "" : "'" + *text + "' is no pin: write it as \"PB0\"";
   }
   if (key.kind == KeyKind::word) {
-    return *text == key.unit ? "" : "'" + *text + "' is not \"" + key.unit + "\"";
+    const std::vector<std::string> words = alternatives(key);
+    if (std::find(words.begin(), words.end(), *text) != words.end()) return "";
+    return "'" + *text + "' is not " + unit_text(key);
   }
   return bus_complaint(key, *text);
 }
@@ -204,6 +207,13 @@ DeviceKey quantity_key(std::string path, Dimension dimension, std::string unit, 
           .limits = limits};
 }
 
+DeviceKey word_key(std::string path, std::string words, std::string about) {
+  return {.path = std::move(path),
+          .about = std::move(about),
+          .kind = KeyKind::word,
+          .unit = std::move(words)};
+}
+
 DeviceKey triple_key(std::string path, Dimension dimension, std::string unit, Limits limits,
                      std::string about) {
   DeviceKey key =
@@ -242,15 +252,20 @@ std::string unit_text(const DeviceKey& key) {
   switch (key.kind) {
     case KeyKind::bus: {
       std::string text;
-      for (const std::string& kind : kinds_of_bus(key)) {
+      for (const std::string& kind : alternatives(key)) {
         text += (text.empty() ? "bus " : " or ") + kind + "N";
       }
       return text;
     }
     case KeyKind::pin:
       return "pin";
-    case KeyKind::word:
-      return "\"" + key.unit + "\"";
+    case KeyKind::word: {
+      const std::vector<std::string> words = alternatives(key);
+      if (words.size() == 1) return "\"" + key.unit + "\"";
+      std::string text;
+      for (const std::string& word : words) text += (text.empty() ? "" : "/") + word;
+      return text;
+    }
     case KeyKind::address:
     case KeyKind::whole:
       return "whole";

@@ -18,7 +18,7 @@ namespace whirl::rack {
 enum class KeyKind : std::uint8_t {
   bus,       // "i2c3": `unit` is the kind of bus, or several: "i2c or spi"
   pin,       // "PB0"
-  word,      // the one word `unit`
+  word,      // the one word `unit`, or one of several: "stop or hold"
   address,   // on I2C
   whole,     // a whole number
   quantity,  // a number with a unit, or a bare one where the dimension is none
@@ -66,6 +66,7 @@ DeviceKey flag_key(std::string path, std::string about);
 DeviceKey axes_key(std::string path, std::string about);
 DeviceKey quantity_key(std::string path, Dimension dimension, std::string unit, Limits limits,
                        std::string about);
+DeviceKey word_key(std::string path, std::string words, std::string about);  // "stop or hold"
 DeviceKey triple_key(std::string path, Dimension dimension, std::string unit, Limits limits,
                      std::string about);
 

@@ -250,7 +250,12 @@ bool DeviceRack::Wiring::on_message(const io::Reader& message) {
     taken = true;
   }
   const auto one = taker_of_port_.find({head.kind, head.port});
-  if (one == taker_of_port_.end()) return taken;
+  if (one == taker_of_port_.end()) {
+    if (!taken && head.kind == Kind::rc_channels) {
+      report_once(head.t_ns, "transmitter", "sticks are sent, but no receiver is on the board");
+    }
+    return taken;
+  }
   one->second->on_message(message);
   return true;
 }

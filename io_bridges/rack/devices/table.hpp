@@ -10,6 +10,10 @@
   TYPE(ms5611)                   \
   TYPE(hmc5883l)                 \
   TYPE(esc_i2c)                  \
+  TYPE(ublox_6)                  \
+  TYPE(ublox_m8)                 \
+  TYPE(cppm)                     \
+  TYPE(sbus)                     \
   TYPE(mavlink_link)             \
   TYPE(serial)                   \
   TYPE(i2c_master)               \

@@ -30,12 +30,18 @@ class BenchRack final : public Rack {
     if (slot.error()) error = slot.error()->what;
     return slot.error() ? nullptr : devices_.back().get();
   }
-  void send(const io::BodyMotion& motion) {
+  void send(const io::BodyMotion& motion) { send(io::Kind::body_motion, motion); }
+  template <typename T>
+  void send(io::Kind kind, const T& message) {
     io::Batch batch;
-    batch.add(io::Kind::body_motion, 0, queue.now(), motion);
+    batch.add(kind, 0, queue.now(), message);
     io::Reader reader(batch.bytes());
     if (!reader.next()) return;
-    for (const auto& device : devices_) device->on_message(reader);
+    for (const auto& device : devices_) {
+      for (const Intake& intake : device->intakes()) {
+        if (intake.kind == kind) device->on_message(reader);
+      }
+    }
   }
   void run_ms(double ms) { queue.run_until(queue.now() + static_cast<Nanoseconds>(ms * 1e6)); }
 
@@ -83,13 +89,23 @@ class BenchRack final : public Rack {
     if (bus == 1) spi_bus.add(target, chip_select);
     return bus == 1;
   }
-  bool join_uart(int, io::UartPeer&) override { return false; }
+  bool join_uart(int number, io::UartPeer& peer) override {
+    peer.join([this](const io::UartByte& byte, const io::UartFormat& format) {
+      uart_bytes.push_back(byte.value);
+      uart_format = format;
+    });
+    uart = &peer;
+    return number == 6;
+  }
 
   io::EventQueue queue;
   io::FaultBook book;
   io::Batch posted;
   io::I2cBus i2c_bus{"I2C1"};
   io::SpiBus spi_bus{"SPI1"};
+  io::UartPeer* uart = nullptr;  // USART6
+  Bytes uart_bytes;              // from it
+  io::UartFormat uart_format;
   std::vector<std::string> findings;
   std::string error;
   bool write_refused = false;

@@ -30,7 +30,7 @@ TEST(CheckBoard, WhatIsWrongWithADeviceIsSaidWithWhatThereIs) {
   EXPECT_EQ(of({serial("", "usart1")}), "name: is empty (give it one)");
   EXPECT_EQ(of({{.name = "x", .type = "toaster"}}),
             "type: unknown type 'toaster' (use one of mpu6000, ms5611, hmc5883l, esc_i2c, "
-            "mavlink_link, serial, "
+            "ublox_6, ublox_m8, cppm, sbus, mavlink_link, serial, "
             "i2c_master, power_stage, pulse_source, volts, jumper)");
   BoardDevice device = serial("t", "usart1");
   device.keys["colour"] = "red";

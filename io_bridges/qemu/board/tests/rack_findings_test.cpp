@@ -74,6 +74,20 @@ TEST(RackFindings, TwoSelectedDevicesOnOneBusAreNamedOnce) {
   EXPECT_EQ(b.found[0].what, "imu and spare are selected at once");
 }
 
+TEST(RackFindings, SticksWithoutAReceiverAreToldOnce) {
+  const auto count = [](std::vector<BoardDevice> devices) {
+    Bench b;
+    b.build(std::move(devices));
+    io::Batch sticks;
+    sticks.add(io::Kind::rc_channels, 0, 5, io::RcChannels{});
+    sticks.add(io::Kind::rc_channels, 0, 6, io::RcChannels{});
+    for (io::Reader r(sticks.bytes()); r.next();) b.rack.on_message(r);
+    return b.found.size();
+  };
+  EXPECT_EQ(count({}), 1u);
+  EXPECT_EQ(count({{.name = "rc", .type = "cppm", .bus = "PA10"}}), 0u);
+}
+
 TEST(RackFindings, AJumperCopiesTheLevelFromTheStart) {
   Bench b;
   b.build({jumper("PC1", "PC2")}, {{.name = "low", .pin = "PC1", .pull = "down"},
