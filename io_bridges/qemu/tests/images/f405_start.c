@@ -36,11 +36,14 @@ HANDLER(WWDG_Handler);
 HANDLER(EXTI0_Handler);
 HANDLER(ADC_Handler);
 HANDLER(CAN1_RX0_Handler);
+HANDLER(TIM1_CC_Handler);
 HANDLER(TIM2_Handler);
 HANDLER(TIM3_Handler);
 HANDLER(TIM4_Handler);
 HANDLER(USART2_Handler);
 HANDLER(RTC_Alarm_Handler);
+HANDLER(UART4_Handler);
+HANDLER(USART6_Handler);
 HANDLER(DMA2_Stream0_Handler);
 
 typedef void (*vector)(void);
@@ -65,9 +68,12 @@ const vector vectors[16 + 82] = {(vector)stack_top,
                                  [16 + 6] = EXTI0_Handler,
                                  [16 + 18] = ADC_Handler,
                                  [16 + 20] = CAN1_RX0_Handler,
+                                 [16 + 27] = TIM1_CC_Handler,
                                  [16 + 28] = TIM2_Handler,
                                  [16 + 29] = TIM3_Handler,
                                  [16 + 30] = TIM4_Handler,
                                  [16 + 38] = USART2_Handler,
                                  [16 + 41] = RTC_Alarm_Handler,
-                                 [16 + 56] = DMA2_Stream0_Handler};
+                                 [16 + 52] = UART4_Handler,
+                                 [16 + 56] = DMA2_Stream0_Handler,
+                                 [16 + 71] = USART6_Handler};
