@@ -71,6 +71,17 @@ TEST(Cppm, NegativePolarityTurnsTheLineAndNotTheDistances) {
   EXPECT_EQ(bench.rises[3] - bench.falls[2], 300'000);  // it idles high: its first edge is a rise
 }
 
+TEST(Cppm, ASlowClockMakesAllTimesLonger) {
+  CppmReceiver::Params params = steady();
+  params.clock_error = 0.01;
+  Bench bench(params);
+  bench.run_ms(200);
+  EXPECT_EQ(bench.last_frame(bench.rises)[2], 2020.0);
+  const auto n = bench.falls.size();
+  EXPECT_EQ(bench.falls[n - 1] - bench.rises[n - 1], 303'000);
+  EXPECT_EQ(bench.rises[n - 1] - bench.rises[n - 10], 22'725'000);
+}
+
 TEST(Cppm, TravelBeyondFullIsCutAndTheGapStays) {
   CppmReceiver::Params params = steady();
   params.channels = 12;

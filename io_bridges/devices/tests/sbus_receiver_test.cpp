@@ -23,6 +23,11 @@ struct Bench {
       queue.run_until(queue.now() + 1'000'000);
     }
   }
+  // Of the last whole frame: bits 22 to 32 of its channels.
+  unsigned thrust() const {
+    const auto& f = frames[frames.size() - (frames.back().size() == 25 ? 1 : 2)];
+    return (f.at(3) >> 6 | f.at(4) << 2 | f.at(5) << 10) & 0x7FF;
+  }
   int flags() const {  // of the last whole frame
     return frames[frames.size() - (frames.back().size() == 25 ? 1 : 2)].at(23);
   }
@@ -81,6 +86,7 @@ TEST(SbusReceiver, BeforeItHearsAnythingItSaysFailsafe) {
   Bench bench;
   bench.run_ms(300, false);
   EXPECT_EQ(bench.flags(), 0x0C);
+  EXPECT_EQ(bench.thrust(), 172u);  // its lower stop
 }
 
 TEST(SbusReceiver, FailsafeStylesStopOrLowerTheThrust) {
@@ -96,10 +102,7 @@ TEST(SbusReceiver, FailsafeStylesStopOrLowerTheThrust) {
   Bench fixed(params);
   fixed.run_ms(1000);
   fixed.run_ms(700, false);
-  const auto& f = fixed.frames[fixed.frames.size() - 2];
-  // Channel 3: bits 22..32 of the channels, from bit 6 of the third byte on.
-  const unsigned thrust = (f[3] >> 6 | f[4] << 2 | f[5] << 10) & 0x7FF;
-  EXPECT_EQ(thrust, 8u);  // 991.5 - 1.2 x 819.5
+  EXPECT_EQ(fixed.thrust(), 8u);  // 991.5 - 1.2 x 819.5
 }
 
 TEST(SbusReceiver, AGlitchCarriesAnyValuesInAGoodFrame) {

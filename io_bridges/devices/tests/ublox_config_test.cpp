@@ -118,6 +118,25 @@ TEST(UbloxConfig, RefusedPortSettingsChangeNothing) {
   EXPECT_EQ(bench.gps().baud(), 9600.0);
 }
 
+TEST(UbloxConfig, AnM8KnowsFasterRatesAndCountsCycles) {
+  QuietBench six, m8(UbloxModel::m8);
+  Bytes fast(kPort_38400.begin() + 6, kPort_38400.end() - 2);
+  fast[8] = 0x00, fast[9] = 0x84, fast[10] = 0x03;  // 230400
+  EXPECT_FALSE(six.acked({0x06, 0x00, fast}));
+  EXPECT_TRUE(m8.acked({0x06, 0x00, fast}));
+  EXPECT_EQ(m8.gps().baud(), 230400.0);
+  QuietBench slow_six, slow_m8(UbloxModel::m8);
+  for (QuietBench* bench : {&slow_six, &slow_m8}) {
+    EXPECT_TRUE(bench->acked({0x06, 0x08, {0xE8, 0x03, 2, 0, 0, 0}}));  // each second measurement
+    bench->switch_on(0x02);
+    bench->queue.run_until(10'900'000'000);
+    bench->forget();
+    bench->run(8.0);
+  }
+  EXPECT_EQ(slow_six.of(1, 2).size(), 8u);  // of a 6 navRate is 1
+  EXPECT_EQ(slow_m8.of(1, 2).size(), 4u);
+}
+
 TEST(UbloxConfig, PollsTellWhatIsSet) {
   QuietBench bench;
   bench.answer(kRate_200);

@@ -90,6 +90,16 @@ TEST(UbloxFaults, DropoutsTakeTheirShareAndShiftNoOther) {
   EXPECT_TRUE(near(came / 1002.0, 0.7, stated(0.045, "three standard deviations of 1000 draws")));
 }
 
+TEST(UbloxFaults, APartThatDropsSolutionsDoesSoByItself) {
+  UbloxBench bench;
+  bench.params.dropout_chance = 0.5;
+  bench.ubx_only();
+  bench.switch_on(0x02);
+  bench.queue.run_until(1001 * kSecond);
+  const double came = static_cast<double>(bench.of(1, 2).size());
+  EXPECT_TRUE(near(came / 1000.0, 0.5, stated(0.05, "three standard deviations of 1000 draws")));
+}
+
 TEST(UbloxFaults, LateItsSolutionsComeLater) {
   FaultBench bench;
   bench.add(FaultKind::sensor_late, 0.1);
