@@ -5,7 +5,7 @@
 namespace whirl::io {
 
 UartTransmitter::UartTransmitter(EventQueue& queue, const UartFormat& format, UartPeer::Sink sink)
-    : queue_(queue), format_(format), sink_(std::move(sink)), passed_(queue, [this] { sent(); }) {}
+    : format_(format), sink_(std::move(sink)), passed_(queue, [this] { sent(); }) {}
 
 Nanoseconds UartTransmitter::character_ns() const {
   const double bits = 1 + format_.data_bits + (format_.parity != 'N' ? 1 : 0) + format_.stop_bits;

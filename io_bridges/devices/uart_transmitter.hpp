@@ -30,7 +30,6 @@ class UartTransmitter {
   void sent();
   Nanoseconds character_ns() const;
 
-  EventQueue& queue_;
   UartFormat format_;
   UartPeer::Sink sink_;
   std::deque<Entry> waiting_;  // the first is on the line while passed_ is pending
