@@ -37,6 +37,8 @@ class SpiTarget {
   // One frame has passed, full duplex, at sck_Hz and in mode (CPOL << 1 | CPHA). Returns MISO.
   virtual std::uint8_t transfer(std::uint8_t mosi, std::uint32_t sck_Hz, int mode,
                                 Nanoseconds now) = 0;
+  // One frame has passed on the bus while this target was not selected.
+  virtual void passed_by(std::uint8_t /*mosi*/, Nanoseconds /*now*/) {}
 };
 
 // A character on an asynchronous line, as the receiver found it.

@@ -36,6 +36,11 @@ constexpr KindName kNames[] = {
     {FaultKind::gnss_dropout, "gnss_dropout"},
     {FaultKind::rc_link_lost, "rc_link_lost"},
     {FaultKind::rc_glitch, "rc_glitch"},
+    {FaultKind::memory_removed, "memory_removed"},
+    {FaultKind::memory_cut, "memory_cut"},
+    {FaultKind::memory_write_error, "memory_write_error"},
+    {FaultKind::memory_crc_error, "memory_crc_error"},
+    {FaultKind::memory_busy, "memory_busy"},
 };
 
 bool matches(int wanted, int here) {

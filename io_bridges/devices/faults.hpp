@@ -46,6 +46,11 @@ enum class FaultKind : std::uint32_t {
   gnss_dropout,  // value: probability of each solution not to come out
   rc_link_lost,  // the receiver no longer hears its transmitter
   rc_glitch,     // value: probability of each frame to carry nonsense
+  memory_removed,         // a card pulled out, a part without supply; what it was writing is torn
+  memory_cut,          // the same from the middle of its next write on (value: share of that write)
+  memory_write_error,  // writes fail and leave the old bytes
+  memory_crc_error,    // a card's blocks have a wrong bit on the wire, both ways
+  memory_busy,         // a write does not end before the fault does
 };
 
 std::optional<FaultKind> fault_kind(std::string_view name);  // "i2c_nack"

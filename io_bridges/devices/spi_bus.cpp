@@ -15,7 +15,10 @@ std::uint8_t SpiBus::transfer(std::uint8_t mosi, std::uint32_t sck_Hz, int mode,
   std::uint8_t miso = 0xFF;
   const Wire* selected = nullptr;
   for (const auto& seat : seats_) {
-    if (!seat->selected) continue;
+    if (!seat->selected) {
+      seat->target->passed_by(mosi, now);
+      continue;
+    }
     if (selected != nullptr) {
       ++clashes_;
       if (clash_) clash_(*selected, *seat->chip_select, now);

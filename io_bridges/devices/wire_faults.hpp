@@ -45,6 +45,7 @@ class SpiWireFaults : public SpiTarget {
   void select(bool selected, Nanoseconds now) override;
   std::uint8_t transfer(std::uint8_t mosi, std::uint32_t sck_Hz, int mode,
                         Nanoseconds now) override;
+  void passed_by(std::uint8_t mosi, Nanoseconds now) override { target_.passed_by(mosi, now); }
 
  private:
   FaultBook& book_;
