@@ -6,6 +6,8 @@
 //   Timing   the part's own clock (CLKSEL 0: internal, 1..3: PLL) with its error; registers answer
 //            register_start_ns after power-up or reset, first sample gyro_start_ns after SLEEP is
 //            cleared, then every (1 + SMPLRT_DIV) ticks of 8 or 1 kHz. DLPF as in dlpf.hpp.
+//   FIFO     1024 bytes in the order of the registers; when full the oldest bytes go, and FIFO_OFLOW
+//            says so in INT_STATUS and, if enabled, on INT. Out of reach while USER_CTRL.FIFO_EN is 0
 //   Limits   SPI 1 MHz, but 20 MHz for reading sensor, interrupt and FIFO registers: beyond is a
 //            finding. SPI mode 0 or 3.
 //   Source   PS-MPU-6000A-00 rev 3.4, RM-MPU-6000A-00 rev 4.2; PRODUCT_ID from Betaflight's driver
@@ -100,6 +102,9 @@ class Mpu6000 : public SpiTarget, public I2cTarget {
   void store(std::uint8_t address, long counts);
 
   // FIFO and interrupt.
+  bool fifo_reachable(Nanoseconds now);
+  std::uint8_t read_fifo(Nanoseconds now);
+  void write_fifo(std::uint8_t value, Nanoseconds now);
   void fill_fifo();
   void push_fifo(std::uint8_t byte);
   std::uint8_t pop_fifo();

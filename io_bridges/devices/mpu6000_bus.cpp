@@ -58,8 +58,7 @@ std::uint8_t Mpu6000::read_register(std::uint8_t address, Nanoseconds now) {
     registers_.poke(FIFO_COUNT_H, static_cast<std::uint8_t>(fifo_.size() >> 8));
     registers_.poke(FIFO_COUNT_L, static_cast<std::uint8_t>(fifo_.size() & 0xFF));
   }
-  if (address == FIFO_R_W) return pop_fifo();
-  std::uint8_t value = registers_.read(address, now);
+  std::uint8_t value = address == FIFO_R_W ? read_fifo(now) : registers_.read(address, now);
   if (address == WHO_AM_I) {
     const Fault* wrong = fault(FaultKind::sensor_wrong_identity, now);
     if (wrong != nullptr) value = static_cast<std::uint8_t>(wrong->value);
@@ -69,13 +68,27 @@ std::uint8_t Mpu6000::read_register(std::uint8_t address, Nanoseconds now) {
   return value;
 }
 
+bool Mpu6000::fifo_reachable(Nanoseconds now) {
+  if ((registers_.peek(USER_CTRL) & kFIFO_ENABLE) != 0) return true;
+  registers_.report(now, "FIFO_R_W while USER_CTRL.FIFO_EN is 0: no byte passes");
+  return false;
+}
+
+std::uint8_t Mpu6000::read_fifo(Nanoseconds now) {
+  return fifo_reachable(now) ? pop_fifo() : fifo_last_;
+}
+
+void Mpu6000::write_fifo(std::uint8_t value, Nanoseconds now) {
+  if (fifo_reachable(now)) push_fifo(value);
+}
+
 void Mpu6000::write_register(std::uint8_t address, std::uint8_t value, Nanoseconds now) {
   if (now < ready_ns_) {
     registers_.report(now, "written while starting up: the write is lost");
     return;
   }
   const std::uint8_t before = registers_.peek(address);
-  if (address == FIFO_R_W) return push_fifo(value);
+  if (address == FIFO_R_W) return write_fifo(value, now);
   if (!registers_.write(address, value, now)) return;
   check_unmodelled(address, value, now);
   act_on_write(address, before, value, now);
