@@ -119,10 +119,10 @@ void FlightWorld::send(std::int64_t t_ns, io::Batch& sensed) {
     motion.rotor_unbalance_m[i] = unbalance_m_[i];
     motion.rotor_bus_current_A[i] = s.motors[i].bus_current_A;
   }
-  motion.battery_current_A = s.battery_current_A;
   motion.static_pressure_Pa = s.static_pressure_Pa;
   motion.air_temperature_K = s.air_temperature_K;
   motion.bus_voltage_V = s.bus_voltage_V;
+  motion.battery_current_A = s.battery_current_A;
   copy(s.p_WB_W_m, motion.p_WB_W_m);
   copy(s.v_WB_W_mps, motion.v_WB_W_mps);
   copy(s.q_WB.conjugate() * (s.v_WB_W_mps - s.wind_W_mps), motion.v_AB_B_mps);
