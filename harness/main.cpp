@@ -60,7 +60,11 @@ Result<std::unique_ptr<World>> make_world(const cli::Setup& setup) {
 Result<std::unique_ptr<Target>> make_target(const cli::Setup& setup) {
   VirtualBoardOptions options;
   options.board = {setup.board,
-                   {.image = setup.image, .seed = setup.seed, .gdb_port = setup.gdb_port}};
+                   {.image = setup.image,
+                    .seed = setup.seed,
+                    .gdb_port = setup.gdb_port,
+                    .folder = setup.folder,
+                    .node = setup.plan.nodes[setup.node].name}};
   if (setup.plan.stand && setup.node == 0) {
     const auto params = stand_of(setup);
     if (!params) return params.error();

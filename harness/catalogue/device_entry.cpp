@@ -13,6 +13,10 @@ KeyValue read_value(const lua::Table& t, const std::string& key, const DeviceKey
     case KeyKind::pin:
     case KeyKind::word:
       return t.text(key);
+    case KeyKind::file: {
+      const std::string path = t.text(key);
+      return path.empty() ? path : t.sibling(path);
+    }
     case KeyKind::address:
     case KeyKind::whole:
       return static_cast<double>(t.integer(key));

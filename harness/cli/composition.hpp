@@ -26,6 +26,7 @@ struct Setup {  // of a run; of one board of it, where a target is made
   std::uint64_t seed = 1;
   int gdb_port = 0;  // 0: no gdb
   Settings settings = {};
+  std::string folder = {};  // of the run, for what the board's parts leave; empty: nothing is left
 };
 
 struct Composition {

@@ -113,8 +113,9 @@ Result<std::unique_ptr<Target>> make_target(const plan::Plan& plan,
   return std::unique_ptr<Target>(std::make_unique<NodeSet>(std::move(entries), std::move(wires)));
 }
 
+// `folder`: where the parts of the boards leave their files; empty: nowhere.
 Result<Prepared> prepare(const plan::Plan& plan, const RunOptions& options,
-                         const Composition& composition) {
+                         const Composition& composition, const std::string& folder) {
   const std::string& root = composition.root;
   const Asker who{plan.file, plan.place};
   std::string vehicle_file;
@@ -143,7 +144,7 @@ Result<Prepared> prepare(const plan::Plan& plan, const RunOptions& options,
     all.nodes.push_back(std::move(node.value()));
     const int port = options.gdb ? options.gdb_port : 0;
     all.setups.push_back({plan, i, all.nodes.back().board, root, image.value(), vehicle_file,
-                          options.seed.value_or(plan.seed), port, options.settings});
+                          options.seed.value_or(plan.seed), port, options.settings, folder});
   }
   if (const auto joined = check_wires(plan, all.nodes); !joined) return joined.error();
   auto world = composition.world(all.setups.front());
@@ -185,7 +186,7 @@ Result<RunRecord> run_record(const PlanChoice& choice, const RunOptions& options
     if (p.name == choice.name) plan = &p;
   }
   WHIRL_CHECK(plan != nullptr, choice.name);
-  auto prepared = prepare(*plan, options, composition);
+  auto prepared = prepare(*plan, options, composition, folder == nullptr ? "" : folder->path());
   if (!prepared) return prepared.error();
   const Prepared& parts = prepared.value();
   for (const Setup& setup : parts.setups) {

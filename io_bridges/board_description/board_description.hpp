@@ -76,6 +76,9 @@ struct BoardRun {  // what differs from run to run
   std::string image = {};
   std::uint64_t seed = 1;
   int gdb_port = 0;  // 0: no gdb
+  // Where the board's parts leave files (the run's folder), and whose they are in a run of several
+  // boards. Empty: nothing is left.
+  std::string folder = {}, node = {};
 
   bool operator==(const BoardRun&) const = default;
 };

@@ -198,6 +198,8 @@ std::string board_text(const BoardStart& start) {
               {"image", start.run.image},
               {"seed", start.run.seed},
               {"gdb_port", start.run.gdb_port},
+              {"folder", start.run.folder},
+              {"node", start.run.node},
               {"devices", json::array()},
               {"pins", json::array()},
               {"watch", board.watch}};
@@ -233,6 +235,8 @@ Result<BoardStart> read_board_text(std::string_view text) {
   keys.read("image", start.run.image);
   keys.read("seed", start.run.seed);
   keys.read("gdb_port", start.run.gdb_port);
+  keys.read("folder", start.run.folder);
+  keys.read("node", start.run.node);
   read_objects(keys, "devices", board.devices, first, read_device);
   read_objects(keys, "pins", board.pins, first, read_pin);
   for (const json& entry : keys.list("watch")) {

@@ -84,6 +84,7 @@ std::string text_complaint(const DeviceKey& key, const KeyValue& value) {
   if (key.kind == KeyKind::pin) {
     return is_pin(*text) ? "" : "'" + *text + "' is no pin: write it as \"PB0\"";
   }
+  if (key.kind == KeyKind::file) return text->empty() ? "is no path" : "";
   if (key.kind == KeyKind::word) {
     const std::vector<std::string> words = alternatives(key);
     if (std::find(words.begin(), words.end(), *text) != words.end()) return "";
@@ -193,6 +194,10 @@ DeviceKey flag_key(std::string path, std::string about) {
   return {.path = std::move(path), .about = std::move(about), .kind = KeyKind::flag};
 }
 
+DeviceKey file_key(std::string path, std::string about) {
+  return {.path = std::move(path), .about = std::move(about), .kind = KeyKind::file};
+}
+
 DeviceKey axes_key(std::string path, std::string about) {
   return {.path = std::move(path), .about = std::move(about), .kind = KeyKind::axes};
 }
@@ -227,6 +232,7 @@ std::string complaint(const DeviceKey& key, const KeyValue& value) {
     case KeyKind::bus:
     case KeyKind::pin:
     case KeyKind::word:
+    case KeyKind::file:
       return text_complaint(key, value);
     case KeyKind::address:
     case KeyKind::whole:
@@ -275,6 +281,8 @@ std::string unit_text(const DeviceKey& key) {
       return "3 x " + key.unit;
     case KeyKind::flag:
       return "true, false";
+    case KeyKind::file:
+      return "path";
     case KeyKind::axes:
       return "3 axes";
   }

@@ -24,6 +24,7 @@ enum class KeyKind : std::uint8_t {
   quantity,  // a number with a unit, or a bare one where the dimension is none
   triple,    // three of them, along x, y, z
   flag,      // true or false
+  file,      // a path; in a board file it counts from there
   axes,      // { "+x", "-y", "-z" }: where the part's axes point to, in the body's
 };
 
@@ -63,6 +64,7 @@ DeviceKey pin_key(std::string path, std::string about);  // own
 DeviceKey address_key();
 DeviceKey motor_key();  // 1..io::kMostMotors, own in its type
 DeviceKey flag_key(std::string path, std::string about);
+DeviceKey file_key(std::string path, std::string about);
 DeviceKey axes_key(std::string path, std::string about);
 DeviceKey quantity_key(std::string path, Dimension dimension, std::string unit, Limits limits,
                        std::string about);

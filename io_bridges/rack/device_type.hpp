@@ -49,6 +49,8 @@ class Rack {
   virtual io::Batch& happened() = 0;  // messages to the harness, in order of time
   virtual io::FindingSink finding() = 0;
   virtual std::uint64_t seed() const = 0;
+  // The path of a file that the device leaves in the run's folder; empty: this run leaves none.
+  virtual std::string file_to_leave(const std::string& device) const = 0;
 
   virtual io::Wire* pin(const std::string& name) = 0;
   virtual bool set_analog(const std::string& pin, std::function<double(Nanoseconds)> volts) = 0;

@@ -64,6 +64,19 @@ TEST(BoardFile, ABootLoaderLiesBesideTheFileAndTheStartIsAnAddress) {
   EXPECT_EQ(board.start, 0x08004000u);
 }
 
+TEST(BoardFile, AnImageLiesBesideTheFile) {
+  const BoardDescription board =
+      read(R"(devices = { { name = "e", type = "eeprom_24xx", bus = "i2c2", address = 0x50,
+                            image = "blank.bin" } })")
+          .value();
+  const std::string image = std::get<std::string>(*board.devices[0].value("image"));
+  EXPECT_EQ(image, board.file.substr(0, board.file.rfind('/') + 1) + "blank.bin");
+  EXPECT_NE(complaint(R"(devices = { { name = "e", type = "eeprom_24xx", bus = "i2c2",
+                                       address = 0x50, image = "" } })")
+                .find("no path"),
+            std::string::npos);
+}
+
 TEST(BoardFile, WhatSharesAPinIsRefused) {
   const std::string imu =
       R"({ name = "a", type = "mpu6000", bus = "spi1", cs = "PB0", int = "PC5" })";
@@ -262,7 +275,7 @@ TEST(BoardFile, AMistakeIsToldWithItsLineAndWithWhatThereIs) {
   };
   EXPECT_EQ(said("{ name = 'b',\n type = 'toaster' }"),
             "b.lua:4: devices[2].type: unknown type 'toaster' (use one of mpu6000, ms5611, "
-            "hmc5883l, esc_i2c, "
+            "hmc5883l, sd_card, eeprom_24xx, battery_sense, current_sense, esc_i2c, "
             "mavlink_link, serial, i2c_master, power_stage, pulse_source, volts, jumper)");
   EXPECT_EQ(said("{ name = 'b', type = 'serial', bus = 'usart2', baud = '1 baud' }"),
             "b.lua:3: devices[2].baud: 1 baud is outside 50..1.2e+07 baud");

@@ -15,7 +15,11 @@ Result<BoardStart> read(const std::string& pairs) {
 
 BoardStart everything() {
   BoardStart start;
-  start.run = {.image = "a.elf", .seed = 18446744073709551615u, .gdb_port = 1234};
+  start.run = {.image = "a.elf",
+               .seed = 18446744073709551615u,
+               .gdb_port = 1234,
+               .folder = "runs/1",
+               .node = "fc"};
   BoardDescription& board = start.board;
   board.file = "boards/b.lua";
   board.name = "b";

@@ -42,7 +42,7 @@ Board::Board(Setup setup, io::Channel channel, Emulator& emulator)
            setup_.description.hse_Hz, setup_.description.lse_Hz, setup_.description.hse_start_ns,
            setup_.description.hsi_error, setup_.description.hse_error})),
       devices_({events_, *chip_, happened_, [this](const io::Finding& f) { report(f); },
-                setup_.run.seed, rack::device_types()}),
+                setup_.run.seed, rack::device_types(), setup_.run.folder, setup_.run.node}),
       hangs_(events_, emulator, happened_),
       systick_(
           events_, chip_->clocks(), [this] { return emulator_.ahead_ns(); },

@@ -33,6 +33,10 @@ class DeviceRack::Wiring final : public rack::Rack {
   io::Batch& happened() override { return site_.happened; }
   io::FindingSink finding() override { return site_.finding; }
   std::uint64_t seed() const override { return site_.seed; }
+  std::string file_to_leave(const std::string& device) const override {
+    if (site_.folder.empty()) return "";
+    return site_.folder + "/" + device + (site_.node.empty() ? "" : "_" + site_.node) + ".img";
+  }
   io::Wire* pin(const std::string& name) override;
   bool set_analog(const std::string& pin, std::function<double(io::Nanoseconds)> volts) override {
     analog_.push_back(pin);

@@ -6,9 +6,11 @@
 //   Messages  go to the devices that take their kind and port; faults into the book that all share
 //   Findings  two that drive one pin or a line of an I2C bus against each other, and two devices selected at once on one SPI
 //             bus (once for each two), a pin of the board file that nothing ever drove (at the end)
+//   Files     of memory parts: NAME.img in the run's folder, NAME_NODE.img of a board with a name
 //   Errors    bad_input: what check_board.hpp refuses, a bus or pin that the part does not have
 #pragma once
 #include <memory>
+#include <string>
 
 #include "base/result.hpp"
 #include "io_bridges/board_description/board_description.hpp"
@@ -27,6 +29,7 @@ class DeviceRack {
     io::FindingSink finding;
     std::uint64_t seed;
     const rack::DeviceTypes& types;
+    std::string folder = {}, node = {};  // BoardRun
   };
 
   explicit DeviceRack(Site site);

@@ -9,6 +9,10 @@
   TYPE(mpu6000)                  \
   TYPE(ms5611)                   \
   TYPE(hmc5883l)                 \
+  TYPE(sd_card)                  \
+  TYPE(eeprom_24xx)              \
+  TYPE(battery_sense)            \
+  TYPE(current_sense)            \
   TYPE(esc_i2c)                  \
   TYPE(ublox_6)                  \
   TYPE(ublox_m8)                 \

@@ -74,6 +74,9 @@ class BenchRack final : public Rack {
     return [this](const io::Finding& f) { findings.push_back(f.where + ": " + f.what); };
   }
   std::uint64_t seed() const override { return seed_; }
+  std::string file_to_leave(const std::string& device) const override {
+    return folder.empty() ? "" : folder + "/" + device + ".img";
+  }
   io::Wire* pin(const std::string& name) override {
     auto& wire = pins_[name];
     if (!wire) {
@@ -82,7 +85,11 @@ class BenchRack final : public Rack {
     }
     return wire.get();
   }
-  bool set_analog(const std::string&, std::function<double(Nanoseconds)>) override { return false; }
+  bool set_analog(const std::string& pin, std::function<double(Nanoseconds)> volts) override {
+    if (!pin.starts_with("PC")) return false;
+    analog[pin] = std::move(volts);
+    return true;
+  }
   io::I2cBus* i2c(int number) override { return number == 1 ? &i2c_bus : nullptr; }
   bool join_spi(int bus, io::Wire& chip_select, io::SpiTarget& target, const BoardDevice&,
                 int) override {
@@ -107,6 +114,8 @@ class BenchRack final : public Rack {
   Bytes uart_bytes;              // from it
   io::UartFormat uart_format;
   std::vector<std::string> findings;
+  std::map<std::string, std::function<double(Nanoseconds)>> analog;
+  std::string folder;  // where devices leave their files
   std::string error;
   bool write_refused = false;
 
