@@ -176,6 +176,44 @@ TEST(DriverImages, ChibiosStyle) {
   EXPECT_EQ(got["rtc_alarms"], Values{3});  // in 3.5 s
 }
 
+// The wiring of the PX4FMU v1; parts without the spread of real ones.
+TEST(DriverImages, StorageStyle) {
+  ImageRun run = run_image(
+      "storage_style",
+      R"(,{"name":"card","type":"sd_card","bus":"spi3","cs":"PA4","size":268435456})"
+      R"(,{"name":"params","type":"eeprom_24xx","bus":"i2c2","address":80})"
+      R"(,{"name":"imu","type":"mpu6000","bus":"spi1","cs":"PB0"})"
+      R"(,{"name":"battery","type":"battery_sense","bus":"PC0","params.tolerance":0,"params.noise":0})",
+      2000);
+  ASSERT_EQ(run.error, "") << run.findings;
+  EXPECT_EQ(run.faults, 0) << run.findings;
+  Report& got = run.report;
+  EXPECT_EQ(got["cmd0"], Values{1});
+  EXPECT_EQ(got["cmd8"], Values{1});
+  EXPECT_EQ(got["echo"], Values{0x1AA});
+  EXPECT_EQ(got["acmd41"], Values{0});
+  EXPECT_EQ(got["waited"], Values{1});
+  EXPECT_EQ(got["ocr"], Values{0xC0FF8000});
+  EXPECT_EQ(got["csd_token"], Values{0xFE});
+  EXPECT_EQ(got["mebibytes"], Values{256});
+  EXPECT_EQ(got["cmd25"], Values{0});
+  EXPECT_EQ(got["accepted"], Values{4});
+  EXPECT_EQ(got["right_bytes"], Values{4 * 512});
+  expect_between(0, got["blank_bytes"], 8);  // zeros: the pattern has few
+  EXPECT_EQ(got["ee_found"], Values{1});
+  expect_between(4900, got["ee_cycle_us"], 5100);  // from the STOP on
+  EXPECT_EQ(got["ee_refused"], Values{1});
+  EXPECT_EQ(got["ee_first"], Values{0x40});
+  EXPECT_EQ(got["ee_last"], Values{0x5F});
+  EXPECT_EQ(got["ee_beyond"], Values{0xFF});
+  expect_between(9 * 6, got["fifo_bytes"], 11 * 6);  // 10.2 ms at 1 kHz
+  EXPECT_EQ(got["fifo_samples_near_g"], Values{got["fifo_bytes"].at(0) / 6});
+  EXPECT_EQ(got["fifo_rest"], Values{1});
+  // 16.4 V (nothing was told) by 10 / 57 of 3.3 V.
+  expect_between(3570, got["battery"], 3572);
+  EXPECT_EQ(run.findings, "");
+}
+
 TEST(DriverImages, EscStyleOnTheF103) {
   ImageRun run = run_image("esc_style",
                            R"(,{"name":"v1","type":"volts","bus":"PA1","params.volts":0.55})"
