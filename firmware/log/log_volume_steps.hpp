@@ -171,7 +171,7 @@ bool LogVolume<Card, kBuffer_bytes>::next_root_sector() {
 
 template <BlockCard Card, std::size_t kBuffer_bytes>
 void LogVolume<Card, kBuffer_bytes>::begin_search() {
-  wanted_clusters_ = std::max(1u, sizes_.file_bytes / cluster_bytes());
+  wanted_clusters_ = std::max<std::uint32_t>(1, sizes_.file_bytes / cluster_bytes());
   run_clusters_ = fat_sector_ = 0;
   fat_copy_ = 1;  // nothing read yet
   step_ = highest_ >= 99'999 ? Step::refused : Step::search;

@@ -2,7 +2,10 @@
 // measured as "name value" lines on USART2. What is expected follows from the settings in the image
 // (dividers, volts on pins, ISO 11898) and the data sheet, never from the models.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <filesystem>
+#include <fstream>
 #include <map>
 #include <sstream>
 #include <string>
@@ -29,14 +32,15 @@ struct ImageRun {
 };
 
 // Runs until the image says that it is done, at most so many virtual milliseconds.
+// `folder`: where its parts leave their files.
 ImageRun run_image(const std::string& image, const std::string& devices, int milliseconds,
-                   const PartUnderTest& part = kF405) {
+                   const PartUnderTest& part = kF405, const std::string& folder = "") {
   VirtualBoardOptions options;
-  const auto start =
-      read_board_text(std::string(R"({"board":"driver images","mcu":")") + part.mcu +
-                      R"(","hse_Hz":)" + part.hse_Hz + R"(,"image":")" + WHIRL_IMAGES + "/" +
-                      image + R"(.elf","devices":[{"name":"terminal","type":"serial","bus":")" +
-                      part.terminal + R"(","baud":115200})" + devices + "]}");
+  const auto start = read_board_text(
+      std::string(R"({"board":"driver images","mcu":")") + part.mcu + R"(","hse_Hz":)" +
+      part.hse_Hz + R"(,"folder":")" + folder + R"(","image":")" + WHIRL_IMAGES + "/" + image +
+      R"(.elf","devices":[{"name":"terminal","type":"serial","bus":")" + part.terminal +
+      R"(","baud":115200})" + devices + "]}");
   EXPECT_TRUE(start) << devices;
   if (start) options.board = start.value();
   VirtualBoard board(options);
@@ -73,6 +77,14 @@ ImageRun run_image(const std::string& image, const std::string& devices, int mil
   while (lines >> name >> value) run.report[name].push_back(value);
   if (run.report.count("done") == 0) run.error += "never done; it said:\n" + text + run.findings;
   return run;
+}
+
+std::string bytes_at(const std::string& path, std::streamoff at, std::size_t count) {
+  std::ifstream in(path, std::ios::binary);
+  in.seekg(at);
+  std::string bytes(count, '?');
+  in.read(bytes.data(), static_cast<std::streamsize>(count));
+  return bytes;
 }
 
 using Values = std::vector<std::uint32_t>;
@@ -178,13 +190,15 @@ TEST(DriverImages, ChibiosStyle) {
 
 // The wiring of the PX4FMU v1; parts without the spread of real ones.
 TEST(DriverImages, StorageStyle) {
+  const std::string folder = testing::TempDir() + "storage_style." + std::to_string(getpid());
+  std::filesystem::create_directories(folder);
   ImageRun run = run_image(
       "storage_style",
       R"(,{"name":"card","type":"sd_card","bus":"spi3","cs":"PA4","size":268435456})"
       R"(,{"name":"params","type":"eeprom_24xx","bus":"i2c2","address":80})"
       R"(,{"name":"imu","type":"mpu6000","bus":"spi1","cs":"PB0"})"
       R"(,{"name":"battery","type":"battery_sense","bus":"PC0","params.tolerance":0,"params.noise":0})",
-      2000);
+      2000, kF405, folder);
   ASSERT_EQ(run.error, "") << run.findings;
   EXPECT_EQ(run.faults, 0) << run.findings;
   Report& got = run.report;
@@ -212,6 +226,12 @@ TEST(DriverImages, StorageStyle) {
   // 16.4 V (nothing was told) by 10 / 57 of 3.3 V.
   expect_between(3570, got["battery"], 3572);
   EXPECT_EQ(run.findings, "");
+  // What the parts held is left behind: block 5001's pattern, the page.
+  const std::string card = bytes_at(folder + "/card.img", 5001 * 512, 2);
+  EXPECT_EQ(card, std::string({static_cast<char>(5001 * 31 & 0xFF),
+                               static_cast<char>((5001 * 31 + 7) & 0xFF)}));
+  EXPECT_EQ(bytes_at(folder + "/params.img", 0x0120, 3), "\x40\x41\x42");
+  std::filesystem::remove_all(folder);
 }
 
 TEST(DriverImages, EscStyleOnTheF103) {
