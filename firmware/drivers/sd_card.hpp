@@ -8,6 +8,7 @@
 //   Streams   each write that continues the one before goes on in the same CMD25; anything else, or
 //             finish(), ends it and asks the card by CMD13 whether all was well. Until then a written
 //             block is accepted, not yet safe
+//   Bus       the card's alone: it stays selected between exchanges
 //   Faults    what fails ends its request, and the card is started anew, every 250 ms for ever: so does
 //             a card that was pulled and put in again. starts() counts: what was open is gone then
 //   CRC       on in both directions (CMD59), as no wire on a vehicle is quiet

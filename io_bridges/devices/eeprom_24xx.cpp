@@ -8,8 +8,7 @@ namespace whirl::io {
 
 Eeprom24xx::Eeprom24xx(EventQueue& queue, const Params& params, MemoryFile contents,
                        const Wire* write_protect, FaultBook* faults, FindingSink findings)
-    : queue_(queue),
-      params_(params),
+    : params_(params),
       contents_(std::move(contents)),
       write_protect_(write_protect),
       faults_(faults),

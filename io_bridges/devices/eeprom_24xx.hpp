@@ -81,7 +81,6 @@ class Eeprom24xx : public I2cTarget {
     return apply(faults_, kind, params_.bus, params_.i2c_address, now);
   }
 
-  EventQueue& queue_;
   Params params_;
   MemoryFile contents_;
   const Wire* write_protect_;

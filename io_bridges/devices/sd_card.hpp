@@ -174,8 +174,8 @@ class SdCard : public SpiTarget {
   std::int64_t written_ = 0;
 
   struct Programming {
-    std::int64_t block = 0;
-    Block bytes{};
+    std::int64_t block;
+    Block bytes;
   };
   std::optional<Programming> programming_;
   Nanoseconds busy_until_ns_ = 0;

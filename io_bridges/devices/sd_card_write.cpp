@@ -81,9 +81,9 @@ Nanoseconds SdCard::busy_time(bool many) {
 }
 
 void SdCard::program(Nanoseconds now) {
-  programming_.emplace();
-  programming_->block = write_block_++;
-  std::copy_n(data_.begin(), sd::kBlock_bytes, programming_->bytes.begin());
+  Block bytes{};
+  std::copy_n(data_.begin(), bytes.size(), bytes.begin());
+  programming_ = Programming{write_block_++, bytes};
   const Nanoseconds time_ns = busy_time(write_many_);
   busy_until_ns_ = now + time_ns;
   if (const Fault* stuck = fault(FaultKind::memory_busy, now)) busy_until_ns_ = stuck->end_ns;
