@@ -38,8 +38,10 @@ int named_bus(lua_State* L, const std::string& bus) {
 fault_at::Device device_at(lua_State* L, const std::string& name, const BoardDescription& board) {
   const BoardDevice* device = board.find(name);
   if (device == nullptr) raise(L, "unknown device '" + name + "' on " + board.name);
-  return {name, bus_number(device->bus).value_or(-1),  // of one on a pin there is none
-          device->address != -1 ? device->address : board.number(name), device->motor};
+  // One on a pin ("PA10") has its number on the board alone.
+  const bool on_pin = device->bus.starts_with('P');
+  const int bus = on_pin ? -1 : named_bus(L, device->bus);
+  return {name, bus, device->address != -1 ? device->address : board.number(name), device->motor};
 }
 
 fault_at::Wire wire_at(lua_State* L, const lua::Table& asked, const std::string& bus) {
