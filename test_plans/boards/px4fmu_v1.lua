@@ -1,6 +1,7 @@
 -- PX4FMU v1, wired as its schematics say: STM32F405RG, 24 MHz crystal. The IMU's interrupt reaches PC3
 -- through the jumper JP6. The ESCs hang on the expansion header's I2C3, as in the thesis (PX4 used I2C1).
--- Not on it: L3GD20, BMA180, EEPROM, micro-SD, GPS, PPM, battery voltage, buzzer.
+-- What the flight image has no driver for yet is left out: EEPROM (i2c2, 0x50), micro-SD (spi3, CS PA4), GPS
+-- (usart6), PPM (PA10), battery voltage (PC0); L3GD20, BMA180 and buzzer are not modelled.
 return {
   board = "px4fmu_v1",
   mcu = "stm32f405rg",

@@ -15,7 +15,7 @@ plan "filter_convergence" {
       t:step(words)
       set_parameter(t, "EST_START_TILT", start.tilt)
       set_parameter(t, "EST_START_SCALE", start.scale)
-      t:expect(t:value("attitude_error_2", "deg"), words .. "it is wrong"):at_least(10)
+      t:within("300 ms", function(s) return s.attitude_error_2_rad > t:quantity "10 deg" end, words .. "it is wrong")
       local r = t:record({ "told_scale_1", "told_scale_2" }, "25 s")
       t:expect(r:settled("0.05", { told_scale_1 = "1" }), words .. "scale of filter 1 within 5 %"):at_most "10 s"
       t:expect(r:settled("0.05", { told_scale_2 = "1" }), words .. "scale of filter 2 within 5 %"):at_most "10 s"
