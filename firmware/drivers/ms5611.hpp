@@ -4,7 +4,8 @@
 //   Output    pressure and temperature by the sheet's compensation of second order, OSR 4096: three
 //             pressures, then a temperature, each of a step, so 75 pressures a second
 //   Checks    the PROM by its CRC at start; in flight one of its words is read again each second. An
-//             ADC of 0 (no conversion, or cut short) is no sample. Five failures in a row: reset anew
+//             ADC of 0 (no conversion, or cut short) is no sample, nor is what lies beyond the sheet's
+//             range. Five failures in a row: reset anew
 //   Source    MS5611-01BA03 data sheet: commands, PROM, compensation; AN520 for the CRC
 #pragma once
 #include <array>
@@ -17,6 +18,10 @@ namespace fw {
 
 struct BaroSample {
   float pressure_Pa = 0.0f, temperature_degC = 0.0f;
+  bool within_range() const {
+    return pressure_Pa > 1e3f && pressure_Pa < 120e3f && temperature_degC > -40.0f &&
+           temperature_degC < 85.0f;
+  }
 };
 
 // The PROM's eight words and what follows from them.
@@ -204,18 +209,18 @@ template <I2cQueue Bus>
 void Ms5611<Bus>::take_adc(bool pressure) {
   const std::uint32_t raw = static_cast<std::uint32_t>(answer_[0]) << 16 |
                             static_cast<std::uint32_t>(answer_[1]) << 8 | answer_[2];
-  if (raw == 0) {
+  const bool known = pressure && temperature_raw_ != 0;
+  const BaroSample sample = known ? prom_.compensate(raw, temperature_raw_) : BaroSample{};
+  if (raw == 0 || (known && !sample.within_range())) {
     ++failures_;
     if (++bad_ >= kMostFailures) start_over();
     return;
   }
   bad_ = 0;
-  if (!pressure) {
-    temperature_raw_ = raw;
-  } else if (temperature_raw_ != 0) {
-    sample_ = prom_.compensate(raw, temperature_raw_);
-    fresh_ = true;
-  }
+  if (!pressure) temperature_raw_ = raw;
+  if (!known) return;
+  sample_ = sample;
+  fresh_ = true;
 }
 
 // Collects what the last step has started, and starts the next. Before a check of the PROM a step

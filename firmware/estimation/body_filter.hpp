@@ -35,6 +35,10 @@ class BodyFilter {
   const Quaternion& q_WB() const { return q_WB_; }
   const Vector3& v_AB_B_mps() const { return v_B_mps_; }
   float scale() const { return scale_; }
+  bool finite() const {
+    return std::isfinite(q_WB_.coeffs().sum() + v_B_mps_.sum() + scale_ + gyro_bias_B_radps_.sum() +
+                         accel_bias_B_mps2_.sum());
+  }
   const Vector3& gyro_bias_B_radps() const { return gyro_bias_B_radps_; }
   const Vector3& accel_bias_B_mps2() const { return accel_bias_B_mps2_; }
 

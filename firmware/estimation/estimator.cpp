@@ -147,6 +147,8 @@ __attribute__((noinline)) void Estimator::step_aided(const Vector3& w_B) {
   }
   body_.step(w_B, a_B_mps2_, velocity_measured_B(), to_body, kStep_s);
   inertial_.predict(w_B, a_B_mps2_, to_inertial, kStep_s);
+  // Whatever it was that they swallowed: they fly.
+  if (!body_.finite() || !inertial_.finite()) restart_aided();
 }
 
 // Where a component is not measured, the filter's own stands for it: no innovation.

@@ -6,6 +6,7 @@ namespace {
 constexpr float kPole_radps = 0.8f;
 constexpr float kK4 = 3.0f * kPole_radps, kK5 = 3.0f * kPole_radps * kPole_radps,
                 kK6 = kPole_radps * kPole_radps * kPole_radps;
+constexpr float kUnlikely_m = 5.0f, kConvinced_s = 1.0f;
 constexpr float kLongest_s = 0.1f;  // after a gap the old error is not its length
 
 // International standard atmosphere, troposphere: h = 44330.8 m (1 - (p / 101325 Pa)^0.190263).
@@ -30,6 +31,15 @@ void HeightFilter::correct(float pressure_Pa, float since_last_s) {
   const float dt_s = std::min(since_last_s, kLongest_s);
   const float measured_m = altitude_m(zero_Pa_) - altitude_m(pressure_Pa);
   const float error_m = z_m_ - measured_m;
+  if (!(std::abs(error_m) < kUnlikely_m)) {
+    doubted_s_ += dt_s;
+    if (doubted_s_ < kConvinced_s || !std::isfinite(measured_m)) return;
+    z_m_ = measured_m;
+    vz_mps_ = 0.0f;
+    doubted_s_ = 0.0f;
+    return;
+  }
+  doubted_s_ = 0.0f;
   z_m_ -= dt_s * kK4 * error_m;
   vz_mps_ -= dt_s * kK5 * error_m;
   bias_mps2_ += dt_s * kK6 * error_m;

@@ -3,6 +3,8 @@
 //   Frame    z and vz along W's third axis, so down is positive; z is 0 where zero() was called
 //   Source   z' = vz - k4 (z - zm), vz' = e3'(R a) + g - b - k5 (z - zm), b' = k6 (z - zm)
 //            [Bangura 2017, 6.12]; zm by the standard atmosphere's gradient at the pressure of zero()
+//   Nonsense a height more than 5 m off is not believed, until it has been so for a second: then the
+//            filter starts anew from it
 //   Gains    a triple pole at 0.8 rad/s: noise of 10 cm a sample leaves 3 cm and 4 cm/s
 //   Valid    within some hundred metres of the place of zero()
 #pragma once
@@ -25,6 +27,7 @@ class HeightFilter {
   float bias_mps2() const { return bias_mps2_; }
 
  private:
+  float doubted_s_ = 0.0f;  // how long the pressure has not been believed
   float zero_Pa_ = 0.0f, z_m_ = 0.0f, vz_mps_ = 0.0f, bias_mps2_ = 0.0f;
 };
 

@@ -37,6 +37,10 @@ class InertialFilter {
   const Vector3& v_WB_W_mps() const { return v_W_mps_; }
   const Vector3& wind_W_mps() const { return wind_W_mps_; }
   float scale() const { return scale_; }
+  bool finite() const {
+    return std::isfinite(q_WB_.coeffs().sum() + v_W_mps_.sum() + wind_W_mps_.sum() + scale_ +
+                         gyro_bias_B_radps_.sum() + accel_bias_B_mps2_.sum());
+  }
   const Vector3& accel_bias_B_mps2() const { return accel_bias_B_mps2_; }
 
  private:

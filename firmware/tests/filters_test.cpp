@@ -213,6 +213,27 @@ TEST(HeightFilter, FollowsAClimbThroughNoiseAndAnAccelerometersBias) {
   EXPECT_TRUE(near(filter.bias_mps2(), 0.2, stated(0.05, "the noise's share")));
 }
 
+TEST(HeightFilter, DoesNotBelieveNonsenseButASteadyChange) {
+  HeightFilter filter;
+  filter.zero(101325.0f);
+  const auto feed = [&](float pressure_Pa, int samples) {
+    for (int i = 0; i < 3 * samples; ++i) {
+      filter.predict(0.0f, kStep_s);
+      if (i % 3 == 0) filter.correct(pressure_Pa, 0.015f);
+    }
+  };
+  feed(101325.0f, 100);
+  for (const float nonsense : {-4e5f, std::nanf(""), 0.0f, 5e4f}) {
+    feed(nonsense, 10);
+    EXPECT_TRUE(near(filter.z_m(), 0.0, stated(1e-3, "float"))) << nonsense;
+    feed(101325.0f, 10);
+  }
+  feed(std::nanf(""), 1000);
+  EXPECT_TRUE(near(filter.z_m(), 0.0, stated(1e-3, "float")));
+  feed(101205.0f, 300);  // 10 m up
+  EXPECT_TRUE(near(filter.z_m(), -10.0, stated(0.1, "12 Pa a metre")));
+}
+
 TEST(DesiredAttitude, ItsRateIsThatOfTheAttitudeAlongTheTrajectory) {
   const auto wanted = [](double t) {
     WantedForce force;

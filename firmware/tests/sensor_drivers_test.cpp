@@ -139,6 +139,19 @@ TEST(Ms5611, StartsOverAfterAnAbsenceAndTakesNoZero) {
   EXPECT_EQ(samples(driver, bus, part, 3), 0);
 }
 
+TEST(Ms5611, APressureBeyondItsRangeIsNoSample) {
+  FakeI2c bus;
+  FakeMs5611 part;
+  Ms5611<FakeI2c> driver(bus);
+  samples(driver, bus, part, 100);
+  for (const std::uint32_t nonsense : {100'000u, 16'777'215u}) {
+    part.d1 = nonsense;
+    samples(driver, bus, part, 2);  // what was converted before
+    EXPECT_EQ(samples(driver, bus, part, 3), 0) << nonsense;
+  }
+  EXPECT_GT(driver.failures(), 0u);
+}
+
 TEST(Ms5611, AnotherPartInItsPlaceIsSeenWithinItsRound) {
   FakeI2c bus;
   FakeMs5611 part;
