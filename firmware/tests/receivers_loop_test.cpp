@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "base/near.hpp"
 #include "firmware/drivers/cppm_receiver.hpp"
 #include "firmware/drivers/sbus_receiver.hpp"
 #include "firmware/drivers/ublox_gps.hpp"
@@ -142,7 +143,8 @@ TEST(CppmLoop, SticksBecomePulseWidthsAndALostLinkIsSeen) {
   const int want_us[] = {1000, 1750, 2000, 1500, 1500, 1500, 1500, 1500};
   EXPECT_EQ(driver.frame().count, 8);
   for (unsigned i = 0; i < 8; ++i) {
-    EXPECT_NEAR(driver.frame().channels_us[i], want_us[i], 21)
+    EXPECT_TRUE(whirl::near(driver.frame().channels_us[i], want_us[i],
+                            whirl::stated(21, "jitter of 10 us at both edges, and a count")))
         << i;  // two edges of 10 us of jitter
   }
   EXPECT_EQ(driver.bad_intervals(), 0u);

@@ -42,11 +42,11 @@ enum class FaultKind : std::uint32_t {
   sensor_late,            // each measurement takes value seconds longer
   reset_pin,              // board: NRST goes low for an instant, at the start
   gnss_jammed,            // no fix while it lasts
-  gnss_spoofed,  // the fix drifts away at value m/s along Fault::axis (0..2 north east down)
-  gnss_dropout,  // value: probability of each solution not to come out
-  rc_link_lost,  // the receiver no longer hears its transmitter
-  rc_glitch,     // value: probability of each frame to carry nonsense
-  memory_removed,         // a card pulled out, a part without supply; what it was writing is torn
+  gnss_spoofed,        // the fix drifts away at value m/s along Fault::axis (0..2 north east down)
+  gnss_dropout,        // value: probability of each solution not to come out
+  rc_link_lost,        // the receiver no longer hears its transmitter
+  rc_glitch,           // value: probability of each frame to carry nonsense
+  memory_removed,      // a card pulled out, a part without supply; what it was writing is torn
   memory_cut,          // the same from the middle of its next write on (value: share of that write)
   memory_write_error,  // writes fail and leave the old bytes
   memory_crc_error,    // a card's blocks have a wrong bit on the wire, both ways

@@ -1,92 +1,9 @@
-// The whole flight with a pilot of ten lines in the firmware's place: he reads truth and writes
-// set-points at 50 Hz, as the flight image will through its buses.
-#include "harness/flight/flight_world.hpp"
-
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-
+// The world of a flight, flown by a pilot of our own (piloted_flight.hpp).
 #include "base/near.hpp"
-#include "harness/catalogue/vehicle_file.hpp"
-#include "harness/flight/tests/paths.hpp"
-#include "harness/lua/table.hpp"
-#include "harness/plan/requests.hpp"
-#include "io_bridges/protocols/esc_codec.hpp"
+#include "harness/flight/tests/piloted_flight.hpp"
 
 namespace whirl::flight {
 namespace {
-
-constexpr std::int64_t kMs = 1'000'000;
-
-FlightParams hp_quad_file() {
-  auto params =
-      catalogue::read_vehicle(std::string(kSourceFolder) + "/test_plans/vehicles/hp_quad.lua");
-  EXPECT_TRUE(params.ok()) << (params.ok() ? "" : params.error().message());
-  return params.value();
-}
-
-lua::Table table(const std::string& text) {
-  return lua::read_text("return " + text, "plan.lua").value();
-}
-
-struct Flight {
-  FlightWorld world;
-  io::Batch happened, sensed;
-  std::int64_t t_ns = 0;
-  double height_m = 0.0;  // wanted; 0: motors stopped
-  double height_integral_N = 0.0;
-
-  explicit Flight(const FlightParams& params = hp_quad_file()) : world(params, 1) {
-    world.step(0, happened, sensed);
-  }
-
-  double value(const std::string& name) const {
-    const auto& signals = world.signals();
-    std::vector<double> values(signals.size());
-    world.read(values);
-    for (std::size_t i = 0; i < signals.size(); ++i) {
-      if (signals[i].name == name) return values[i];
-    }
-    ADD_FAILURE() << "no signal " << name;
-    return std::nan("");
-  }
-  // T from the height, torques from position and attitude; geometry as in the vehicle file.
-  std::array<double, 4> pilot() {
-    const plant::VehicleState& s = world.truth();
-    const Eigen::Vector3d rpy = roll_pitch_yaw_rad(s.q_WB);
-    const double error = height_m + s.p_WB_W_m.z();
-    height_integral_N = std::clamp(height_integral_N + 0.05 * error, -2.0, 2.0);
-    const double T = 0.9 * 9.81 + 6.0 * error + 5.0 * s.v_WB_W_mps.z() + height_integral_N;
-    const auto tilt = [](double x, double v) {
-      return std::clamp(0.08 * x + 0.12 * v, -0.25, 0.25);
-    };
-    const double roll = -tilt(s.p_WB_W_m.y(), s.v_WB_W_mps.y());
-    const double pitch = tilt(s.p_WB_W_m.x(), s.v_WB_W_mps.x());
-    const double tau_x = 0.35 * (roll - rpy.x()) - 0.10 * s.w_WB_B_radps.x();
-    const double tau_y = 0.35 * (pitch - rpy.y()) - 0.10 * s.w_WB_B_radps.y();
-    const double yaw = -0.3 * rpy.z() - 1.0 * s.w_WB_B_radps.z();  // in newtons of each pair
-    const double x = tau_y / 0.25 / 2, y = tau_x / 0.25 / 2;
-    return {T / 4 + x + yaw, T / 4 - y - yaw, T / 4 - x + yaw, T / 4 + y - yaw};
-  }
-  void step() {
-    happened.clear();
-    sensed.clear();
-    if (t_ns / kMs % 20 == 0) {
-      const auto wanted = pilot();
-      for (std::uint16_t m = 1; m <= 4; ++m) {
-        const std::uint16_t v =
-            height_m > 0.0 ? io::setpoint_of_value(io::EscMode::thrust_by_rpm, wanted[m - 1u]) : 0;
-        happened.add(io::Kind::esc_setpoint, m, t_ns, io::EscSetpoint{v, 1, {}, t_ns});
-      }
-    }
-    t_ns += kMs;
-    world.step(t_ns, happened, sensed);
-  }
-  void run(double seconds) {
-    for (int i = 0; i < std::lround(seconds * 1000.0); ++i) step();
-  }
-};
 
 TEST(FlightWorld, StandsStillUntilItIsFlown) {
   Flight flight;
@@ -228,67 +145,6 @@ TEST(FlightWorld, TellsTheBoardHowItMovesThroughTheAir) {
   EXPECT_TRUE(near(motion.v_WB_W_mps[1], 0.0, stated(0.05, "stands on its gear")));
 }
 
-TEST(FlightWorld, SendsPosesAndCommandsOverTheRadio) {
-  Flight flight;
-  ASSERT_TRUE(plan::command(flight.world, table("{ arm = true }"), 0).ok());
-  ASSERT_TRUE(plan::command(flight.world, table("{ takeoff = '1.1 m' }"), 0).ok());
-  int poses = 0, commands = 0, targets = 0;
-  io::MavlinkParser parser([&](const io::MavlinkFrame& frame, std::span<const std::uint8_t>) {
-    poses += frame.msgid == 104 ? 1 : 0;
-    commands += frame.msgid == 76 ? 1 : 0;
-    targets += frame.msgid == 84 ? 1 : 0;
-  });
-  for (int i = 0; i < 1000; ++i) {
-    flight.step();
-    io::Reader reader(flight.sensed.bytes());
-    while (reader.next()) {
-      if (reader.header().kind != io::Kind::uart_frame) continue;
-      for (const std::uint8_t byte : reader.payload()) parser.add(byte);
-    }
-  }
-  EXPECT_EQ(poses, 40);
-  EXPECT_EQ(targets, 10);
-  EXPECT_EQ(commands, 4);
-}
-
-TEST(FlightWorld, SetsAndReadsParametersOverTheRadio) {
-  Flight flight;
-  const char* set = "{ parameter = { name = 'EST_FILTER', value = 1 } }";
-  ASSERT_TRUE(plan::command(flight.world, table(set), 0).ok());
-  ASSERT_TRUE(plan::command(flight.world, table("{ parameter = { name = 'B' } }"), 0).ok());
-  std::vector<std::uint32_t> sent;
-  io::MavlinkParser parser([&](const io::MavlinkFrame& frame, std::span<const std::uint8_t>) {
-    if (frame.msgid >= 20 && frame.msgid <= 23) sent.push_back(frame.msgid);
-  });
-  io::MavlinkSender vehicle{1, 1, 0};
-  const auto step = [&](const io::Batch& happened) {
-    io::Batch sensed;
-    flight.world.step(flight.t_ns += kMs, happened, sensed);
-    io::Reader reader(sensed.bytes());
-    while (reader.next()) {
-      if (reader.header().kind != io::Kind::uart_frame) continue;
-      for (const std::uint8_t byte : reader.payload()) parser.add(byte);
-    }
-  };
-  step({});
-  EXPECT_EQ(flight.value("parameter_result"), -1.0);
-  for (const char* name : {"EST_FILTER", "B"}) {
-    EXPECT_EQ(flight.value("parameter_pending"), 1.0);
-    io::ParamValue answer;
-    answer.param_id = io::to_param_id(name);
-    answer.param_value = 3.0f;
-    const auto bytes = io::encode(io::pack(answer, vehicle));
-    io::Batch happened;
-    happened.add(io::Kind::uart_received, kRadioPort, flight.t_ns, bytes.data(),
-                 static_cast<std::uint32_t>(bytes.size()));
-    step(happened);
-    EXPECT_EQ(flight.value("parameter_result"), name[0] == 'E' ? 2.0 : 0.0);
-    EXPECT_EQ(flight.value("parameter_value"), 3.0);
-  }
-  EXPECT_EQ(flight.value("parameter_pending"), 0.0);
-  EXPECT_EQ(sent, (std::vector<std::uint32_t>{23, 20}));
-}
-
 TEST(FlightWorld, AJetBlowsWhereItIsAndNowhereElse) {
   Flight flight;
   flight.run(0.1);
@@ -302,31 +158,6 @@ TEST(FlightWorld, AJetBlowsWhereItIsAndNowhereElse) {
       plan::disturb(flight.world, table("{ jet = { up = '1 m/s', radius = '35 cm' } }"), 0).ok());
   flight.run(0.1);
   EXPECT_TRUE(near(flight.value("wind_down"), -1.0, round_off(4, 1)));
-}
-
-TEST(FlightWorld, TellsWhenACommandHasReachedTheVehiclesUart) {
-  Flight flight;
-  flight.run(0.1);
-  EXPECT_LT(flight.world.command_on_wire_ns(), 0);
-  ASSERT_TRUE(
-      plan::command(flight.world, table("{ position = { height = '1 m' } }"), flight.t_ns).ok());
-  std::vector<std::uint8_t> carrier;
-  for (int i = 0; i < 10 && carrier.empty(); ++i) {
-    flight.step();
-    io::Reader reader(flight.sensed.bytes());
-    while (reader.next()) {
-      const bool target =
-          reader.header().kind == io::Kind::uart_frame && reader.payload()[7] == 84;  // message id
-      if (target) carrier.assign(reader.payload().begin(), reader.payload().end());
-    }
-  }
-  ASSERT_FALSE(carrier.empty());
-  EXPECT_LT(flight.world.command_on_wire_ns(), 0);
-  io::Batch happened, sensed;
-  happened.add(io::Kind::uart_delivered, kRadioPort, flight.t_ns + 123'456, carrier.data(),
-               static_cast<std::uint32_t>(carrier.size()));
-  flight.world.step(flight.t_ns + kMs, happened, sensed);
-  EXPECT_EQ(flight.world.command_on_wire_ns(), flight.t_ns + 123'456);
 }
 
 TEST(FlightWorld, RefusesCommandsItDoesNotUnderstand) {

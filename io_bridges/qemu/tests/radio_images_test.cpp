@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "base/near.hpp"
 #include "harness/target/virtual_board.hpp"
 #include "io_bridges/board_description/board_text.hpp"
 
@@ -91,13 +92,14 @@ TEST(RadioImages, GpsSumSignalAndSbusAreReadByInterrupts) {
   EXPECT_EQ(got["gps_fix"], Values{3});
   EXPECT_EQ(got["gps_bad"], Values{0});
   // 0.5 rad; 1 rad and 100 m over N cos(0.5) = 5605.7 km, in 1e-7 deg, within the white noise of 5 cm.
-  EXPECT_NEAR(got["gps_latitude"].at(0), 286478898, 100);
-  EXPECT_NEAR(got["gps_longitude"].at(0), 572957795 + 10221, 100);
+  EXPECT_TRUE(near(got["gps_latitude"].at(0), 286478898, stated(100, "5 cm, twenty times over")));
+  EXPECT_TRUE(
+      near(got["gps_longitude"].at(0), 572957795 + 10221, stated(100, "5 cm, twenty times over")));
   EXPECT_EQ(got["gps_north_cmps"], Values{200});
   EXPECT_EQ(got["cppm_frames"], Values{40});  // of 22.5 ms in 900
   EXPECT_EQ(got["cppm_count"], Values{8});
   EXPECT_EQ(got["cppm"], (Values{1000, 1500, 2000, 1750, 1250}));
-  EXPECT_NEAR(got["sbus_frames"].at(0), 64, 1);  // of 14 ms
+  EXPECT_TRUE(near(got["sbus_frames"].at(0), 64, stated(1, "a frame of 14 ms at either end")));
   EXPECT_EQ(got["sbus"], (Values{172, 992, 1811, 1401, 582}));
   EXPECT_EQ(got["sbus_flags"], Values{0});
   EXPECT_EQ(got["line_errors"], Values{0});
