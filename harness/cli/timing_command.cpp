@@ -47,6 +47,7 @@ Result<std::string> run_image(const Subject& subject, const Composition& composi
   plan::Plan plan;
   plan.name = "timing";
   plan.file = plan.place = "--timing";
+  plan.nodes.emplace_back();
   const auto target = composition.target({plan, 0, board.value(), root, image.value(), ""});
   if (!target) return target.error();
   return timing::capture(*target.value(), subject.uart);
