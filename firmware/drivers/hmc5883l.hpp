@@ -13,7 +13,7 @@
 #include <array>
 #include <cstdint>
 
-#include "firmware/drivers/i2c_queue.hpp"
+#include "firmware/drivers/i2c_dialogue.hpp"
 
 namespace fw {
 
@@ -26,10 +26,10 @@ class Hmc5883l {
  public:
   static constexpr std::uint8_t kAddress = 0x1E;
 
-  explicit constexpr Hmc5883l(Bus& bus) : bus_(bus) {}
+  explicit constexpr Hmc5883l(Bus& bus) : part_(bus) {}
 
   void step();
-  void job_done(const hal::I2cJob& job, Status status);
+  void job_done(const hal::I2cJob& job, Status status) { part_.job_done(job, status); }
 
   bool running() const { return phase_ == Phase::run; }
   // True: a new measurement since the last call.
@@ -58,20 +58,14 @@ class Hmc5883l {
   static constexpr unsigned kPowerUp_steps = 10, kCheckEvery = 10, kFrozen = 30, kMostFailures = 5;
 
   void ask(Address from, std::uint8_t length, Waits what) {
-    const hal::I2cJob pointer{.address = kAddress, .read = false, .length = 1, .bytes = {from}};
-    if (bus_.submit(pointer) != Status::ok) return;
-    if (bus_.submit({.address = kAddress, .read = true, .length = length}) == Status::ok) {
-      waits_ = what;
-    }
+    if (part_.ask(from, length)) waits_ = what;
   }
   void write_settings() {
     // One by one: the sheet does not say what a longer write does.
     constexpr std::uint8_t kSettings[][2] = {
         {CONF_A, kRate75Hz}, {CONF_B, kGain1_3Ga}, {MODE, kContinuous}};
     for (const auto& [address, value] : kSettings) {
-      const hal::I2cJob job{
-          .address = kAddress, .read = false, .length = 2, .bytes = {address, value}};
-      if (bus_.submit(job) != Status::ok) return;
+      if (part_.write(address, value) != Status::ok) return;
     }
     phase_ = Phase::run;
     same_ = 0;
@@ -84,7 +78,8 @@ class Hmc5883l {
   void take_answer();
   void take_data();
 
-  Bus& bus_;
+  using Dialogue = I2cDialogue<Bus, kAddress, 6>;
+  Dialogue part_;
   Phase phase_ = Phase::power_up;
   unsigned steps_ = 0, bad_ = 0, same_ = 0, skip_ = 0;
   std::uint32_t failures_ = 0, reconfigured_ = 0;
@@ -92,36 +87,21 @@ class Hmc5883l {
   bool fresh_ = false;
   std::array<std::uint8_t, 6> last_{};
   Waits waits_ = Waits::nothing;
-  // Set in the interrupt, read a step later.
-  volatile bool answered_ = false, failed_ = false;
-  std::array<std::uint8_t, 6> answer_{};
 };
 
 template <I2cQueue Bus>
-void Hmc5883l<Bus>::job_done(const hal::I2cJob& job, Status status) {
-  if (status != Status::ok) {
-    failed_ = true;
-    return;
-  }
-  if (!job.read) return;
-  for (unsigned i = 0; i < answer_.size(); ++i) answer_[i] = job.bytes[i];
-  answered_ = true;
-}
-
-template <I2cQueue Bus>
 void Hmc5883l<Bus>::step() {
-  if (failed_ || (waits_ != Waits::nothing && !answered_)) {
+  const auto outcome = part_.take();
+  if (outcome == Dialogue::Outcome::failed) {
     ++failures_;
     if (++bad_ >= kMostFailures) {
       bad_ = 0;
       phase_ = Phase::identify;
     }
-  } else if (waits_ != Waits::nothing) {
+  } else if (outcome == Dialogue::Outcome::answered) {
     bad_ = 0;
     take_answer();
   }
-  failed_ = false;
-  answered_ = false;
   waits_ = Waits::nothing;
   ++steps_;
   switch (phase_) {
@@ -140,16 +120,17 @@ void Hmc5883l<Bus>::step() {
 
 template <I2cQueue Bus>
 void Hmc5883l<Bus>::take_answer() {
+  const auto& answer = part_.answer();
   switch (waits_) {
     case Waits::identity:
-      if (answer_[0] == 'H' && answer_[1] == '4' && answer_[2] == '3') {
+      if (answer[0] == 'H' && answer[1] == '4' && answer[2] == '3') {
         phase_ = Phase::write;
       } else {
         ++failures_;
       }
       return;
     case Waits::settings:
-      if (answer_[0] != kRate75Hz || answer_[1] != kGain1_3Ga) lose_settings();
+      if (answer[0] != kRate75Hz || answer[1] != kGain1_3Ga) lose_settings();
       return;
     case Waits::data:
       return take_data();
@@ -160,19 +141,20 @@ void Hmc5883l<Bus>::take_answer() {
 
 template <I2cQueue Bus>
 void Hmc5883l<Bus>::take_data() {
-  if (answer_ == last_) {  // read faster than it measures, or it does not measure any more
+  if (part_.answer() == last_) {  // read faster than it measures, or it does not measure any more
     if (++same_ >= kFrozen) lose_settings();
     return;
   }
-  last_ = answer_;
+  last_ = part_.answer();
   same_ = 0;
   if (skip_ > 0) {
     --skip_;
     return;
   }
+  const auto& answer = part_.answer();
   std::array<std::int16_t, 3> counts{};
   for (unsigned i = 0; i < 3; ++i) {
-    counts[i] = static_cast<std::int16_t>(answer_[2 * i] << 8 | answer_[2 * i + 1]);
+    counts[i] = static_cast<std::int16_t>(answer[2 * i] << 8 | answer[2 * i + 1]);
     if (counts[i] == kOverflow) return;
   }
   sample_ = {{kMicrotesla_per_count * counts[0], kMicrotesla_per_count * counts[2],

@@ -12,7 +12,7 @@
 #include <cstdint>
 #include <tuple>
 
-#include "firmware/drivers/i2c_queue.hpp"
+#include "firmware/drivers/i2c_dialogue.hpp"
 
 namespace fw {
 
@@ -81,10 +81,10 @@ class Ms5611 {
  public:
   static constexpr std::uint8_t kAddress = 0x76;
 
-  explicit constexpr Ms5611(Bus& bus) : bus_(bus) {}
+  explicit constexpr Ms5611(Bus& bus) : part_(bus) {}
 
   void step();
-  void job_done(const hal::I2cJob& job, Status status);
+  void job_done(const hal::I2cJob& job, Status status) { part_.job_done(job, status); }
 
   bool running() const { return phase_ == Phase::run; }
   // True: a new pressure since the last call.
@@ -109,15 +109,8 @@ class Ms5611 {
   };
   static constexpr unsigned kCycle = 4, kCheckEvery = 100, kMostFailures = 5;
 
-  Status command(std::uint8_t code) {
-    return bus_.submit({.address = kAddress, .read = false, .length = 1, .bytes = {code}});
-  }
   void ask(std::uint8_t code, std::uint8_t length, Waits what) {
-    // A read must not follow a command that never went out.
-    if (command(code) != Status::ok) return;
-    if (bus_.submit({.address = kAddress, .read = true, .length = length}) == Status::ok) {
-      waits_ = what;
-    }
+    if (part_.ask(code, length)) waits_ = what;
   }
   void start_over() {
     ++restarts_;
@@ -128,7 +121,8 @@ class Ms5611 {
   void take_adc(bool pressure);
   void convert();
 
-  Bus& bus_;
+  using Dialogue = I2cDialogue<Bus, kAddress, 3>;
+  Dialogue part_;
   Phase phase_ = Phase::reset;
   Ms5611Prom prom_;
   unsigned next_word_ = 0, slot_ = 0, steps_ = 0, bad_ = 0;
@@ -136,37 +130,22 @@ class Ms5611 {
   BaroSample sample_;
   bool fresh_ = false, converting_pressure_ = false, converting_ = false, check_due_ = false;
   Waits waits_ = Waits::nothing;
-  // Set in the interrupt, read a step later.
-  volatile bool answered_ = false, failed_ = false;
-  std::array<std::uint8_t, 3> answer_{};
 };
 
 template <I2cQueue Bus>
-void Ms5611<Bus>::job_done(const hal::I2cJob& job, Status status) {
-  if (status != Status::ok) {
-    failed_ = true;
-    return;
-  }
-  if (!job.read) return;
-  for (unsigned i = 0; i < answer_.size(); ++i) answer_[i] = job.bytes[i];
-  answered_ = true;
-}
-
-template <I2cQueue Bus>
 void Ms5611<Bus>::step() {
-  if (failed_ || (waits_ != Waits::nothing && !answered_)) {
+  const auto outcome = part_.take();
+  if (outcome == Dialogue::Outcome::failed) {
     ++failures_;
     converting_ = false;
     if (++bad_ >= kMostFailures) start_over();
-  } else if (waits_ != Waits::nothing) {
+  } else if (outcome == Dialogue::Outcome::answered) {
     take_answer();
   }
-  failed_ = false;
-  answered_ = false;
   waits_ = Waits::nothing;
   switch (phase_) {
     case Phase::reset:
-      if (command(kReset) == Status::ok) phase_ = Phase::settle;
+      if (part_.write(kReset) == Status::ok) phase_ = Phase::settle;
       return;
     case Phase::settle:  // 2.8 ms; a step is 10
       next_word_ = 0;
@@ -181,7 +160,8 @@ void Ms5611<Bus>::step() {
 
 template <I2cQueue Bus>
 void Ms5611<Bus>::take_answer() {
-  const auto word = static_cast<std::uint16_t>(answer_[0] << 8 | answer_[1]);
+  const auto& answer = part_.answer();
+  const auto word = static_cast<std::uint16_t>(answer[0] << 8 | answer[1]);
   switch (waits_) {
     case Waits::prom_word:
       prom_.words[next_word_++] = word;
@@ -207,8 +187,9 @@ void Ms5611<Bus>::take_answer() {
 
 template <I2cQueue Bus>
 void Ms5611<Bus>::take_adc(bool pressure) {
-  const std::uint32_t raw = static_cast<std::uint32_t>(answer_[0]) << 16 |
-                            static_cast<std::uint32_t>(answer_[1]) << 8 | answer_[2];
+  const auto& answer = part_.answer();
+  const std::uint32_t raw = static_cast<std::uint32_t>(answer[0]) << 16 |
+                            static_cast<std::uint32_t>(answer[1]) << 8 | answer[2];
   const bool known = pressure && temperature_raw_ != 0;
   const BaroSample sample = known ? prom_.compensate(raw, temperature_raw_) : BaroSample{};
   if (raw == 0 || (known && !sample.within_range())) {
@@ -239,7 +220,8 @@ void Ms5611<Bus>::convert() {
     return;
   }
   converting_pressure_ = slot_ != 0;
-  if (command(converting_pressure_ ? kConvertPressure : kConvertTemperature) != Status::ok) return;
+  if (part_.write(converting_pressure_ ? kConvertPressure : kConvertTemperature) != Status::ok)
+    return;
   converting_ = true;
   slot_ = (slot_ + 1) % kCycle;
 }

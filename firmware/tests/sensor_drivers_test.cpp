@@ -73,18 +73,22 @@ struct FakeMs5611 {
   }
 };
 
-int samples(Ms5611<FakeI2c>& driver, FakeI2c& bus, FakeMs5611& part, int steps,
-            BaroSample* last = nullptr) {
+// How many samples come in so many steps of 10 ms.
+template <typename Driver, typename Part, typename Sample>
+int taken(Driver& driver, FakeI2c& bus, Part& part, int steps, Sample& last) {
   int got = 0;
   for (int i = 0; i < steps; ++i) {
     driver.step();
     part.serve(driver, bus);
-    BaroSample sample;
-    if (!driver.take(sample)) continue;
-    ++got;
-    if (last != nullptr) *last = sample;
+    got += driver.take(last) ? 1 : 0;
   }
   return got;
+}
+
+int samples(Ms5611<FakeI2c>& driver, FakeI2c& bus, FakeMs5611& part, int steps,
+            BaroSample* last = nullptr) {
+  BaroSample sample;
+  return taken(driver, bus, part, steps, last != nullptr ? *last : sample);
 }
 
 TEST(Ms5611Prom, CompensatesAsTheSheetDoes) {
@@ -209,16 +213,8 @@ struct FakeHmc5883l {
 
 int fields(Hmc5883l<FakeI2c>& driver, FakeI2c& bus, FakeHmc5883l& part, int steps,
            MagSample* last = nullptr) {
-  int got = 0;
-  for (int i = 0; i < steps; ++i) {
-    driver.step();
-    part.serve(driver, bus);
-    MagSample sample;
-    if (!driver.take(sample)) continue;
-    ++got;
-    if (last != nullptr) *last = sample;
-  }
-  return got;
+  MagSample sample;
+  return taken(driver, bus, part, steps, last != nullptr ? *last : sample);
 }
 
 TEST(Hmc5883l, SetsItUpAndReadsTheFieldInTheOrderOfItsAxes) {

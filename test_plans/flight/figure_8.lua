@@ -5,7 +5,7 @@ include "include/parameter.lua"
 
 plan "figure_8" {
   image = "flight", board = "px4fmu_v1", vehicle = "hp_quad",
-  tags = { "quick", "flight" }, timeout = "120 s",
+  tags = { "flight" }, timeout = "120 s",
   run = function(t)
     hover(t)
     t:step "to its start"
