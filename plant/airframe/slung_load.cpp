@@ -80,9 +80,10 @@ void SlungLoad::step(const BodyState& body, Forcing& forcing, double density_kgp
   end.mobility_pkg = 1.0 / body_.mass_kg + arm_B.dot(arm_B.cwiseQuotient(body_.inertia_kgm2));
 
   const Vector3d against_W = v_W_mps_ - wind_W_mps;
-  const Vector3d drag_W_N =
-      -0.5 * density_kgpm3 * params_.drag_area_m2 * against_W.norm() * against_W;
-  const Vector3d a_free_W_mps2 = kGravity_W_mps2 + drag_W_N / params_.mass_kg;
+  const double drag_ps =
+      0.5 * density_kgpm3 * params_.drag_area_m2 * against_W.norm() / params_.mass_kg;
+  // At most as much as takes away what there is: of a feather's, more would throw it back faster.
+  const Vector3d a_free_W_mps2 = kGravity_W_mps2 - drag_ps / (1.0 + drag_ps * dt_s) * against_W;
   tension_N_ = tension_of(end, a_free_W_mps2);
   const Vector3d pull_W_N = tension_N_ * end.along_W;  // on the body
   forcing.f_W_N += pull_W_N;

@@ -46,6 +46,21 @@ TEST(SlungLoad, HangsWithItsWeightOnTheLine) {
   EXPECT_TRUE(near(pair.load.p_W_m().z(), pair.body.p_WB_W_m.z() + 1.0, stated(1e-6, "taut")));
 }
 
+TEST(SlungLoad, AFeatherIsCaughtByTheAirAndNotThrownBack) {
+  const MassProperties mass{0.9, {0.0125, 0.0125, 0.0235}};
+  SlungLoad feather({.mass_kg = 1e-3, .line_m = 100.0, .drag_area_m2 = 10.0}, mass);
+  BodyState body;
+  body.p_WB_W_m.z() = -200.0;
+  body.v_WB_W_mps.x() = 100.0;
+  feather.hang(body);
+  for (int k = 0; k < 100; ++k) {
+    Forcing forcing;
+    feather.step(body, forcing, 1.225, Vector3d::Zero(), kStep_s);
+    EXPECT_LE(feather.v_W_mps().norm(), 100.0);
+  }
+  EXPECT_LT(feather.v_W_mps().norm(), 0.1);
+}
+
 TEST(SlungLoad, SwingsAsAPendulum) {
   Pair pair(Vector3d::Zero(), 1e6);  // as good as fixed
   pair.lift_W_N.z() = -1e6 * kGravity_mps2;
