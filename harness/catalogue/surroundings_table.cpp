@@ -138,6 +138,13 @@ bool stands_free(const plant::VehicleParams& v, const flight::Start& start) {
   return true;
 }
 
+// What the vehicle does by itself: on its gear at W's origin.
+flight::Start standing(const plant::VehicleParams& v) {
+  flight::Start start;
+  start.p_WB_W_m.z() = plant::clearance_m(v.airframe, {}, Vector3d::Zero(), start.q_WB);
+  return start;
+}
+
 flight::Start read_start(const Table& t, const plant::VehicleParams& vehicle) {
   const auto speed = [&t](const char* key) {
     return t.quantity_or(key, Dimension::speed, 0.0, between(-kFastest_mps, kFastest_mps));
@@ -185,7 +192,11 @@ Result<Done> read_surroundings(const Table& plan, flight::FlightParams& params) 
   if (plan.has("load")) params.vehicle.load = read_load(plan.table("load"));
   // A start is looked at only where all before it is sound.
   if (const auto good = plan.finish_except({"start"}); !good) return good.error();
-  if (plan.has("start")) params.place.start = read_start(plan.table("start"), params.vehicle);
+  if (plan.has("start")) {
+    params.place.start = read_start(plan.table("start"), params.vehicle);
+  } else if (const auto& v = params.vehicle; !v.obstacles.empty() && !stands_free(v, standing(v))) {
+    plan.refuse("start", kIn_the_way, "say where it starts");
+  }
   return plan.finish();
 }
 

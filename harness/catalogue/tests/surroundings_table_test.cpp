@@ -120,6 +120,15 @@ TEST(Surroundings, ALoadHangsOnALine) {
   EXPECT_EQ(p.vehicle.load->attach_B_m.z(), 0.04);
 }
 
+TEST(Surroundings, WhereNothingIsSaidOfTheStartItIsLookedAtToo) {
+  const std::string box = R"(obstacles = { { kind = "box", size = { "1 m", "1 m", "40 cm" } } })";
+  const auto within = around(box);
+  ASSERT_FALSE(within.ok());
+  EXPECT_NE(within.error().message().find("start: feet, hubs or propellers"), std::string::npos);
+  EXPECT_FALSE(around(R"(room = { size = { "1 cm", "1 cm", "1 cm" }, solid = true })").ok());
+  EXPECT_TRUE(around(box + R"(, start = { height = "80 cm" })").ok());
+}
+
 TEST(Surroundings, EachMistakeIsOneSentenceWithItsPlace) {
   const struct {
     const char *text, *expected;
