@@ -103,7 +103,7 @@ void Flight::on_trajectory(const TrajectoryPoint& told) {
   const bool goes_on = aim_ == Aim::trajectory && target_age_ms_ < kTargetFresh_ms;
   if (!accept_target(point.p_W_m, point.yaw_rad)) return;
   const bool near = (point.p_W_m - reference_.p_W_m()).norm() < kJoin_m;
-  if (aim_ != Aim::trajectory && !near) {
+  if (!near) {
     aim_ = Aim::place;
     return;
   }

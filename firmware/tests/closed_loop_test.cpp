@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "base/near.hpp"
+#include "firmware/config/vehicle.hpp"
 #include "firmware/tests/vehicle_model.hpp"
 
 namespace fw::test {
@@ -89,6 +90,18 @@ TEST(Flight, FollowsATargetASideWithoutOvershoot) {
   EXPECT_LT(furthest, 1.1);
   EXPECT_TRUE(near(yaw_of(hover.vehicle.q_WB_.cast<float>()), 0.5,
                    stated(0.05, "3 deg: the sensors' noise and bias")));
+}
+
+TEST(Flight, FliesToATrajectoryThatJumpsBeforeItFollows) {
+  Hovering hover({});
+  double fastest_mps = 0.0;
+  for (int i = 0; i < 4000; ++i) {
+    const Vector3 p_W_m(i < 1000 ? 0.0f : 5.0f, 0.0f, -1.1f);
+    if (i % 100 == 0) hover.flight.on_trajectory({.p_W_m = p_W_m});
+    hover.vehicle.step(hover.flight);
+    fastest_mps = std::max(fastest_mps, hover.vehicle.v_W_.norm());
+  }
+  EXPECT_LT(fastest_mps, 1.5 * config::kSpeedLimit_mps);
 }
 
 TEST(Flight, LosesTheCaptureAndLandsBlind) {
