@@ -26,6 +26,11 @@ inline Vector3 clamp_each(const Vector3& v, const Vector3& limit) {
   return v.cwiseMin(limit).cwiseMax(-limit);
 }
 
+inline Vector3 clamp_norm(const Vector3& v, float norm) {
+  const float is = v.norm();
+  return is > norm ? Vector3(norm / is * v) : v;
+}
+
 inline float yaw_of(const Quaternion& q_WB) {
   return std::atan2(2.0f * (q_WB.w() * q_WB.z() + q_WB.x() * q_WB.y()),
                     1.0f - 2.0f * (q_WB.y() * q_WB.y() + q_WB.z() * q_WB.z()));

@@ -50,7 +50,8 @@ void Reference::turn_to(float goal_yaw_rad, float dt_s) {
   yaw_rad_ = wrap_pi(yaw_rad_ + std::clamp(turn, -kYawRate_radps * dt_s, kYawRate_radps * dt_s));
 }
 
-void Reference::follow(const TrajectoryPoint& point, const Vector3& jerk_W_mps3, float age_s) {
+void Reference::follow(const TrajectoryPoint& point, const Vector3& jerk_W_mps3, float age_s,
+                       float dt_s) {
   tracking_ = true;
   const float half = 0.5f * age_s * age_s;
   jerk_W_mps3_ = jerk_W_mps3;
@@ -58,7 +59,7 @@ void Reference::follow(const TrajectoryPoint& point, const Vector3& jerk_W_mps3,
   v_W_mps_ = point.v_W_mps + age_s * point.a_W_mps2 + half * jerk_W_mps3;
   p_W_m_ = point.p_W_m + age_s * point.v_W_mps + half * point.a_W_mps2 +
            half * age_s / 3.0f * jerk_W_mps3;
-  yaw_rad_ = point.yaw_rad;
+  turn_to(point.yaw_rad, dt_s);
 }
 
 void Reference::cruise(const Vector3& p_WB_W_m, const Vector3& v_wanted_W_mps, float z_m,

@@ -8,6 +8,9 @@ namespace fw {
 
 // A point of a trajectory: valid when it was told, and to be carried on from there.
 struct TrajectoryPoint {
+  // Within what is flown along a trajectory: 3 m/s, 4 m/s^2.
+  bool flyable() const { return v_W_mps.norm() <= 3.0f && a_W_mps2.norm() <= 4.0f; }
+
   Vector3 p_W_m = Vector3::Zero(), v_W_mps = Vector3::Zero(), a_W_mps2 = Vector3::Zero();
   float yaw_rad = 0.0f;
 };
@@ -17,7 +20,7 @@ class Reference {
   void start(const Vector3& p_W_m, float yaw_rad);
   void step(const Vector3& goal_W_m, float goal_yaw_rad, float dt_s);
   // Along the trajectory, age_s after the point; jerk between the last two points.
-  void follow(const TrajectoryPoint& point, const Vector3& jerk_W_mps3, float age_s);
+  void follow(const TrajectoryPoint& point, const Vector3& jerk_W_mps3, float age_s, float dt_s);
   // A horizontal velocity, approached within the limit of acceleration, at this height.
   void cruise(const Vector3& p_WB_W_m, const Vector3& v_wanted_W_mps, float z_m, float yaw_rad,
               float dt_s);

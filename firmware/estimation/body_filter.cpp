@@ -12,6 +12,8 @@ constexpr float kAccelBias_ps = 0.002f;
 constexpr float kHeading_ps = 0.5f;
 constexpr float kVelocityCoupling_ps = 0.5f, kAttitudeCoupling_ps = 0.5f, kBiasCoupling_ps = 0.05f;
 constexpr float kSmallestScale = 0.3f;
+// Of the innovation that the gyro's bias learns from: a wrong start is no bias.
+constexpr float kMostForBias = 2.0f;
 
 }  // namespace
 
@@ -45,7 +47,7 @@ void BodyFilter::step(const Vector3& w_B_radps, const Vector3& a_B_mps2,
   v_B_mps_ += dt_s * v_dot;
   q_WB_ = turned(q_WB_, turn_B, dt_s);
   scale_ = std::max(scale_ - dt_s * kScale * kG * error.dot(down_B), kSmallestScale);
-  gyro_bias_B_radps_ += dt_s * kGyroBias * tilt_B;
+  gyro_bias_B_radps_ += dt_s * kGyroBias * clamp_norm(tilt_B, kMostForBias);
   accel_bias_B_mps2_ += dt_s * bias_dot;
 }
 

@@ -92,7 +92,7 @@ void Estimator::on_field(const Vector3& field_B_uT) {
 
 void Estimator::set_start(float scale, float tilt_rad) {
   if (scale == start_scale_ && tilt_rad == start_tilt_rad_) return;
-  const bool flown_by = situation_.in_flight && source_ == AttitudeSource::velocity_aided;
+  const bool flown_by = !situation_.resting && source_ == AttitudeSource::velocity_aided;
   if (flown_by) return;
   start_scale_ = scale;
   start_tilt_rad_ = tilt_rad;

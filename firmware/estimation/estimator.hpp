@@ -57,7 +57,7 @@ class Estimator {
   void choose(AttitudeSource source) { source_ = source; }
   void set_declination(float declination_rad) { declination_rad_ = declination_rad; }
   // How filters 1 and 2 start: with this scale, tilted by this much about the nose from the explicit
-  // filter's attitude. A change starts them anew, unless they are flown by.
+  // filter's attitude. A change starts them anew, unless the vehicle is armed and flies by them.
   void set_start(float scale, float tilt_rad);
 
   const Quaternion& q_WB() const;

@@ -2,7 +2,7 @@
 // anything moved meanwhile.
 //
 //   Gyro    the mean is its bias
-//   Accel   the mean minus what an ideal one reads in the attitude that the capture system reports
+//   Accel   the mean minus what an ideal one reads in the attitudes that the capture system reports
 #pragma once
 #include "firmware/math.hpp"
 
@@ -22,7 +22,7 @@ class GroundCalibration {
   static constexpr float kStillRate_radps = 0.03f, kStillAcceleration_mps2 = 0.5f;
 
   int count_ = 0;
-  Vector3 w_first_, a_first_, w_sum_, a_sum_;
+  Vector3 w_first_, a_first_, w_sum_, a_sum_, ideal_sum_;
   Vector3 gyro_bias_ = Vector3::Zero(), accel_bias_ = Vector3::Zero();
 };
 

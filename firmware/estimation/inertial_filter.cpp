@@ -15,6 +15,8 @@ constexpr float kVelocityCoupling_ps = 0.1f, kAttitudeCoupling_ps = 0.1f;
 constexpr float kWind_ps = 0.5f;
 constexpr float kLongest_s = 0.25f;  // after a gap the old error is not its length
 constexpr float kSmallestScale = 0.3f;
+// Of the innovation that the gyro's bias learns from: a wrong start is no bias.
+constexpr float kMostForBias = 2.0f;
 
 }  // namespace
 
@@ -45,7 +47,8 @@ void InertialFilter::predict(const Vector3& w_B_radps, const Vector3& a_B_mps2,
 }
 
 const Vector3& InertialFilter::v_ago(float delay_s) const {
-  const auto steps = static_cast<unsigned>(std::min(delay_s, kLongestDelay_s) / kStep_s + 0.5f);
+  const auto steps =
+      static_cast<unsigned>(std::lround(std::min(delay_s, kLongestDelay_s) / kStep_s));
   return history_[(newest_ + kHistory - steps) % kHistory];
 }
 
@@ -57,7 +60,7 @@ void InertialFilter::correct(const Vector3& v_WB_W_mps, float delay_s, float sin
   Vector3 bias = dt_s * kAccelBias_ps * kVelocity_ps * (to_B * error);
   bias.z() = 0.0f;
   accel_bias_B_mps2_ += bias;
-  gyro_bias_B_radps_ += dt_s * kGyroBias * (to_B * tilt_W);
+  gyro_bias_B_radps_ += dt_s * kGyroBias * (to_B * clamp_norm(tilt_W, kMostForBias));
   v_W_mps_ -= dt_s * kVelocity_ps * error;
   scale_ = std::max(scale_ - dt_s * kScale * kG * error.z(), kSmallestScale);
   q_WB_ = turned(q_WB_, to_B * (-kTilt * tilt_W), dt_s);

@@ -97,6 +97,7 @@ void Flight::on_target(const Vector3& p_W_m, float yaw_rad) {
 }
 
 void Flight::on_trajectory(const TrajectoryPoint& told) {
+  if (!told.flyable()) return;
   TrajectoryPoint point = told;
   if (!parameters_.is_on(Parameter::ctl_feedforward)) point.a_W_mps2.setZero();
   const float since_last_s = 1e-3f * static_cast<float>(target_age_ms_);
@@ -108,9 +109,11 @@ void Flight::on_trajectory(const TrajectoryPoint& told) {
     return;
   }
   // Two points that came together are no time apart.
-  jerk_W_mps3_ = goes_on && since_last_s > 0.02f
-                     ? Vector3((point.a_W_mps2 - point_.a_W_mps2) / since_last_s)
-                     : Vector3::Zero();
+  constexpr float kMostJerk_mps3 = 5.0f;
+  jerk_W_mps3_.setZero();
+  if (goes_on && since_last_s > 0.02f) {
+    jerk_W_mps3_ = clamp_norm((point.a_W_mps2 - point_.a_W_mps2) / since_last_s, kMostJerk_mps3);
+  }
   point_ = point;
   aim_ = Aim::trajectory;
 }
@@ -297,9 +300,14 @@ void Flight::advance_reference() {
     case Aim::place:
       return reference_.step(target_W_m_, target_yaw_rad_, kPositionStep_s);
     case Aim::trajectory:
-      return reference_.follow(
-          point_, jerk_W_mps3_,
-          kTargetDelay_s + 1e-3f * static_cast<float>(std::min(target_age_ms_, kTargetFresh_ms)));
+      if (target_age_ms_ > kTargetFresh_ms) {  // nobody leads any more: stay
+        aim_ = Aim::place;
+        target_W_m_ = reference_.p_W_m();
+        return reference_.step(target_W_m_, target_yaw_rad_, kPositionStep_s);
+      }
+      return reference_.follow(point_, jerk_W_mps3_,
+                               kTargetDelay_s + 1e-3f * static_cast<float>(target_age_ms_),
+                               kPositionStep_s);
     case Aim::velocity:
       return reference_.cruise(estimator_.p_WB_W_m(), target_v_W_mps_, target_W_m_.z(),
                                target_yaw_rad_, kPositionStep_s);

@@ -263,12 +263,13 @@ TEST(DesiredAttitude, ItsRateIsThatOfTheAttitudeAlongTheTrajectory) {
 TEST(Reference, CarriesATrajectoryOnBetweenItsPoints) {
   Reference reference;
   const TrajectoryPoint point{{1, 2, -1}, {0.5f, 0, 0}, {0, 0.2f, 0}, 0.1f};
-  reference.follow(point, {0.3f, 0, 0}, 0.1f);
+  reference.follow(point, {0.3f, 0, 0}, 0.1f, 0.025f);
   EXPECT_TRUE(reference.tracking());
   EXPECT_TRUE(near(reference.p_W_m().x(), 1.05 + 0.3 * 0.001 / 6, stated(1e-5, "float")));
   EXPECT_TRUE(near(reference.p_W_m().y(), 2.001, stated(1e-5, "float")));
   EXPECT_TRUE(near(reference.v_W_mps().y(), 0.02, stated(1e-6, "float")));
   EXPECT_TRUE(near(reference.a_W_mps2().x(), 0.03, stated(1e-6, "float")));
+  EXPECT_TRUE(near(reference.yaw_rad(), 0.015, stated(1e-5, "0.6 rad/s for a step")));
   reference.step({1, 2, -1}, 0.1f, 0.025f);
   EXPECT_FALSE(reference.tracking());
 }

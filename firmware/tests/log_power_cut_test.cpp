@@ -89,7 +89,7 @@ TEST(LogPowerCut, LosesAtMostASecondAndHurtsNothingElse) {
                           : i % 4 == 1 ? t.closing_ms + (t.closed_ms - t.closing_ms) * u
                                        : t.opening_ms + (t.closed_ms - t.opening_ms) * u;
     io::SdCard::Params params = CardRig::quick();
-    params.seed = static_cast<std::uint64_t>(i + 1);
+    params.seed = static_cast<std::uint64_t>(i) + 1;
     params.stall_every = 300.0;
     LogRig rig(folder, "base.img", params);
     const Cut cut = run_session(rig, cut_ms);

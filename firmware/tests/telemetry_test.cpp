@@ -153,8 +153,8 @@ TEST(Telemetry, ATargetIsAPlaceAVelocityOrAPointOfATrajectoryByItsMask) {
       whirl::near(flight.reference().p_W_m().x(), 0.5, whirl::stated(0.05, "the approach's end")));
   fly(0x0800, 0.5f, 0.0f);
   EXPECT_TRUE(flight.reference().tracking());
-  fly(0x0800, 3.0f, 0.0f);  // a trajectory may jump once it is flown; nothing else can be told
-  EXPECT_TRUE(flight.reference().tracking());
+  fly(0x0800, 3.0f, 0.0f);  // too far to be joined: it goes there first
+  EXPECT_FALSE(flight.reference().tracking());
 }
 
 TEST(Telemetry, ATrajectoryFarAwayIsAPlaceToGoToFirst) {
@@ -173,6 +173,32 @@ TEST(Telemetry, ATrajectoryFarAwayIsAPlaceToGoToFirst) {
     vehicle.run(flight, 0.1);
   }
   EXPECT_TRUE(flight.reference().tracking());
+}
+
+// What no vehicle flies is no point of a trajectory; and where the points stop, it stays.
+TEST(Telemetry, AnAbsurdTrajectoryIsNotFlownAndOneThatStopsIsLeft) {
+  Flight flight;
+  Telemetry telemetry(flight);
+  test::VehicleModel vehicle({});
+  vehicle.run(flight, 3.0);
+  ASSERT_EQ(flight.arm(), Reason::none);
+  ASSERT_EQ(flight.take_off(1.1f), Reason::none);
+  vehicle.run(flight, 6.0);
+  for (const float vx : {40.0f, -1e25f}) {
+    for (int i = 0; i < 10; ++i) {
+      send_target(telemetry, 0x0800, flight.reference().p_W_m().x(), vx);
+      vehicle.run(flight, 0.1);
+    }
+    EXPECT_FALSE(flight.reference().tracking()) << vx;
+    EXPECT_LT(vehicle.v_W_.norm(), 0.2) << vx;
+  }
+  send_target(telemetry, 0x0800, 0.0f, 0.8f);
+  vehicle.run(flight, 0.1);
+  EXPECT_TRUE(flight.reference().tracking());
+  vehicle.run(flight, 1.9);
+  EXPECT_FALSE(flight.reference().tracking());
+  EXPECT_LT(vehicle.v_W_.norm(), 0.3);
+  EXPECT_LT(vehicle.p_W_.x(), 1.2);
 }
 
 TEST(Telemetry, ANonFinitePoseIsNotFlown) {

@@ -76,7 +76,7 @@ Unknown unknown_below(const Node& node, const std::vector<std::string>& except =
     if (const Unknown found = unknown_below(*child); found.value != nullptr) return found;
   }
   for (const auto& child : node.list) {
-    if (!child->asked) continue;  // a list is read as a whole or not at all
+    if (!child->asked) return {&node, child.get()};
     if (const Unknown found = unknown_below(*child); found.value != nullptr) return found;
   }
   return {};
@@ -196,6 +196,7 @@ std::vector<double> Table::quantities(std::string_view key, Dimension dimension,
     return values;
   }
   for (const auto& item : node->list) {
+    item->asked = true;
     values.push_back(read_quantity(*item, key, dimension, range));
   }
   return values;
@@ -271,6 +272,7 @@ std::vector<std::string> Table::texts(std::string_view key) const {
   const Node* node = find(key);
   if (node == nullptr) return values;
   for (const auto& item : node->list) {
+    item->asked = true;
     if (item->type == Node::Type::text) values.push_back(item->text);
   }
   if (node->type != Node::Type::table || values.size() != node->list.size() ||

@@ -59,6 +59,13 @@ TEST(DataFile, UnknownKeysAreErrorsAtAnyDepth) {
   EXPECT_EQ(complaint(deep), "quad.lua:1: unknown key 'list[1].b' (known here: a)");
 }
 
+TEST(DataFile, AnItemThatNobodyReadsIsRefusedToo) {
+  const Table t = read_good("return { air = { '35 degC', height = '2 m' }, tags = { 'a', 'b' } }");
+  EXPECT_EQ(t.texts("tags").size(), 2u);
+  t.table("air").quantity("height", Dimension::length);
+  EXPECT_EQ(complaint(t), "quad.lua:1: unknown key 'air[1]' (known here: height)");
+}
+
 TEST(DataFile, AnUnknownKeyIsRefusedWithThoseThatAreRead) {
   const Table t = read_good("return { mass = \"1 kg\", inner = { armm = 1, far = 2 } }");
   t.quantity("mass", Dimension::mass);
