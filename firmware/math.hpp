@@ -26,9 +26,11 @@ inline Vector3 clamp_each(const Vector3& v, const Vector3& limit) {
   return v.cwiseMin(limit).cwiseMax(-limit);
 }
 
-inline Vector3 clamp_norm(const Vector3& v, float norm) {
+template <int kSize>
+Eigen::Matrix<float, kSize, 1> clamp_norm(const Eigen::Matrix<float, kSize, 1>& v, float norm) {
   const float is = v.norm();
-  return is > norm ? Vector3(norm / is * v) : v;
+  if (is > norm) return norm / is * v;
+  return v;
 }
 
 inline float yaw_of(const Quaternion& q_WB) {

@@ -14,11 +14,14 @@ inline constexpr float kMass_kg = 0.900f;
 inline constexpr float kInertia_kgm2[3] = {0.0125f, 0.0125f, 0.0235f};
 inline constexpr float kArm_m = 0.25f;
 inline constexpr float kRotorHeight_m = 0.03f;  // above the centre of mass
-// How the IMU is soldered: x forward, y left, z up. Along B's axes its own count so:
-inline constexpr float kImuSign[3] = {1.0f, -1.0f, -1.0f};
-// The magnetometer's x points right, its y backwards, its z down: which of its axes is along B's.
-inline constexpr unsigned kMagAxis[3] = {1, 0, 2};
-inline constexpr float kMagSign[3] = {-1.0f, 1.0f, 1.0f};
+// How a sensor is soldered: along each of B's axes, which of its own counts and with what sign.
+struct Mounting {
+  unsigned axis[3];
+  float sign[3];
+};
+inline constexpr Mounting kImuMounting{{0, 1, 2}, {1.0f, -1.0f, -1.0f}};  // x forward, y left, z up
+inline constexpr Mounting kMagMounting{{1, 0, 2},
+                                       {-1.0f, 1.0f, 1.0f}};  // x right, y backwards, z down
 // Torque over thrust at hover: shaft power of a figure of merit of 0.69 at 2.21 N, 3950 RPM.
 inline constexpr float kTorquePerThrust_m = 0.0165f;
 inline constexpr float kDrag_spm = 0.04f;  // rotor drag: force = -kDrag T v, sideways

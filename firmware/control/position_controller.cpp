@@ -8,7 +8,7 @@ using config::kGravity_mps2, config::kMass_kg;
 }
 
 Vector3 PositionController::force(const Vector3& p_WB_W_m, const Vector3& v_WB_W_mps,
-                                  const Reference& reference, float lift) {
+                                  const Reference& reference, float lift) const {
   const Vector3 kp(config::kPositionGain_ps2), kd(config::kVelocityGain_ps);
   const Vector3 p_error = p_WB_W_m - reference.p_W_m();
   const Vector3 v_error = v_WB_W_mps - reference.v_W_mps();
@@ -19,35 +19,31 @@ Vector3 PositionController::force(const Vector3& p_WB_W_m, const Vector3& v_WB_W
   return f_W;
 }
 
+void PositionController::integrate(const Vector3& p_error_W_m, float dt_s) {
+  const Vector3 ki(config::kPositionIntegral_ps3), limit(config::kIntegralLimit_mps2);
+  integral_W_mps2_ = clamp_each(integral_W_mps2_ + dt_s * ki.cwiseProduct(p_error_W_m), limit);
+}
+
 ThrustAndAttitude PositionController::step(const Vector3& p_WB_W_m, const Vector3& v_WB_W_mps,
                                            const Quaternion& q_WB, const Reference& reference,
-                                           float lift, float dt_s, bool integrate) {
-  if (integrate) {
-    const Vector3 ki(config::kPositionIntegral_ps3), limit(config::kIntegralLimit_mps2);
-    const Vector3 p_error = p_WB_W_m - reference.p_W_m();
-    integral_W_mps2_ = clamp_each(integral_W_mps2_ + dt_s * ki.cwiseProduct(p_error), limit);
-  }
+                                           float lift, float dt_s, bool integrating) {
+  if (integrating) integrate(p_WB_W_m - reference.p_W_m(), dt_s);
   WantedForce wanted{.f_W_mps2 = force(p_WB_W_m, v_WB_W_mps, reference, lift)};
-  Vector3 drag = config::kDrag_spm * kGravity_mps2 * Vector3(1.0f, 1.0f, 0.0f);
-  wanted.jerk_W_mps3 = -reference.jerk_W_mps3() - drag.cwiseProduct(reference.a_W_mps2());
-  wanted.snap_W_mps4 = -drag.cwiseProduct(reference.jerk_W_mps3());
+  if (reference.tracking()) {  // what is shaped by steps of acceleration has no jerk to follow
+    const Vector3 drag = config::kDrag_spm * kGravity_mps2 * Vector3(1.0f, 1.0f, 0.0f);
+    wanted.jerk_W_mps3 = -reference.jerk_W_mps3() - drag.cwiseProduct(reference.a_W_mps2());
+    wanted.snap_W_mps4 = -drag.cwiseProduct(reference.jerk_W_mps3());
+  }
   ThrustAndAttitude out = resolve(wanted, q_WB, reference.yaw_rad());
   out.v_B_mps = out.q_WB.conjugate() * reference.v_W_mps();
-  if (reference.tracking()) return out;
-  out.w_B_radps.setZero();  // what is shaped by steps of acceleration has no jerk to follow
-  out.w_dot_B_radps2.setZero();
   return out;
 }
 
 float PositionController::height_force(const Vector3& p_WB_W_m, const Vector3& v_WB_W_mps,
                                        const Reference& reference, float lift, float dt_s,
-                                       bool integrate) {
-  if (integrate) {
-    const float error = p_WB_W_m.z() - reference.p_W_m().z();
-    integral_W_mps2_.z() =
-        std::clamp(integral_W_mps2_.z() + dt_s * config::kPositionIntegral_ps3[2] * error,
-                   -config::kIntegralLimit_mps2[2], config::kIntegralLimit_mps2[2]);
-  }
+                                       bool integrating) {
+  const float error = p_WB_W_m.z() - reference.p_W_m().z();
+  if (integrating) integrate({0.0f, 0.0f, error}, dt_s);
   return force(p_WB_W_m, v_WB_W_mps, reference, lift).z();
 }
 

@@ -15,10 +15,10 @@ class PositionController {
   void reset() { integral_W_mps2_.setZero(); }
   // lift: share of the weight that is carried (below 1 while taking off and touching down).
   ThrustAndAttitude step(const Vector3& p_WB_W_m, const Vector3& v_WB_W_mps, const Quaternion& q_WB,
-                         const Reference& reference, float lift, float dt_s, bool integrate);
+                         const Reference& reference, float lift, float dt_s, bool integrating);
   // Its vertical part alone, per mass.
   float height_force(const Vector3& p_WB_W_m, const Vector3& v_WB_W_mps, const Reference& reference,
-                     float lift, float dt_s, bool integrate);
+                     float lift, float dt_s, bool integrating);
   // Without a position: the trim found so far, level but for it, sinking at the given speed.
   ThrustAndAttitude sink(float speed_mps, const Vector3& v_WB_W_mps, const Quaternion& q_WB,
                          float yaw_rad, float lift) const;
@@ -27,7 +27,8 @@ class PositionController {
 
  private:
   Vector3 force(const Vector3& p_WB_W_m, const Vector3& v_WB_W_mps, const Reference& reference,
-                float lift);
+                float lift) const;
+  void integrate(const Vector3& p_error_W_m, float dt_s);
   Vector3 integral_W_mps2_ = Vector3::Zero();
 };
 

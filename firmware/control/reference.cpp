@@ -7,10 +7,15 @@ namespace {
 
 // Limits the horizontal part as a vector, so that its direction stays, and the vertical by itself.
 Vector3 limited(Vector3 v, float horizontal, float vertical) {
-  const float norm = v.head<2>().norm();
-  if (norm > horizontal) v.head<2>() *= horizontal / norm;
+  v.head<2>() = clamp_norm<2>(v.head<2>(), horizontal);
   v.z() = std::clamp(v.z(), -vertical, vertical);
   return v;
+}
+
+// Far off, brake so that the limit of acceleration suffices: v^2 = 2 a d.
+float climb_limit(float error_m) {
+  return std::min(config::kClimbLimit_mps,
+                  std::sqrt(config::kClimbAccelerationLimit_mps2 * std::abs(error_m)));
 }
 
 }  // namespace
@@ -35,11 +40,8 @@ void Reference::drive(const Vector3& v_wanted_W_mps, float dt_s) {
 }
 
 void Reference::step(const Vector3& goal_W_m, float goal_yaw_rad, float dt_s) {
-  // Far off, brake so that the limit of acceleration suffices: v^2 = 2 a d.
   const Vector3 error = goal_W_m - p_W_m_;
-  const float braking = std::sqrt(config::kClimbAccelerationLimit_mps2 * std::abs(error.z()));
-  drive(limited(config::kReferenceGain_ps * error, config::kSpeedLimit_mps,
-                std::min(config::kClimbLimit_mps, braking)),
+  drive(limited(config::kReferenceGain_ps * error, config::kSpeedLimit_mps, climb_limit(error.z())),
         dt_s);
   turn_to(goal_yaw_rad, dt_s);
 }
@@ -65,10 +67,9 @@ void Reference::follow(const TrajectoryPoint& point, const Vector3& jerk_W_mps3,
 void Reference::cruise(const Vector3& p_WB_W_m, const Vector3& v_wanted_W_mps, float z_m,
                        float yaw_rad, float dt_s) {
   const float error_m = z_m - p_W_m_.z();
-  const float braking = std::sqrt(config::kClimbAccelerationLimit_mps2 * std::abs(error_m));
   Vector3 wanted = v_wanted_W_mps;
   wanted.z() = config::kReferenceGain_ps * error_m;
-  drive(limited(wanted, config::kSpeedLimit_mps, std::min(config::kClimbLimit_mps, braking)), dt_s);
+  drive(limited(wanted, config::kSpeedLimit_mps, climb_limit(error_m)), dt_s);
   p_W_m_.head<2>() = p_WB_W_m.head<2>();  // nowhere to be
   turn_to(yaw_rad, dt_s);
 }

@@ -6,7 +6,7 @@ namespace fw {
 namespace {
 
 constexpr float kVelocity_ps = 2.8f, kIntegral_ps2 = 1.2f, kForget_ps = 0.05f;
-constexpr float kMost_mps2 = 0.6f;  // of what goes into the integral
+constexpr float kMost_mps = 0.6f;  // of what goes into the integral
 
 }  // namespace
 
@@ -14,9 +14,8 @@ ThrustAndAttitude VelocityController::step(const Vector3& v_WB_W_mps, const Quat
                                            const Reference& reference, float f_height_mps2,
                                            float dt_s) {
   const Eigen::Vector2f error = (v_WB_W_mps - reference.v_W_mps()).head<2>();
-  Eigen::Vector2f into = error + kForget_ps / kIntegral_ps2 * delta_W_mps2_;
-  const float norm = into.norm();
-  if (norm > kMost_mps2) into *= kMost_mps2 / norm;
+  const Eigen::Vector2f into =
+      clamp_norm<2>(error + kForget_ps / kIntegral_ps2 * delta_W_mps2_, kMost_mps);
   delta_W_mps2_ += dt_s * (kIntegral_ps2 * into - kForget_ps * delta_W_mps2_);
   const float drag = config::kDrag_spm * config::kGravity_mps2;
   const Eigen::Vector2f level = kVelocity_ps * error + delta_W_mps2_ -

@@ -67,13 +67,9 @@ inline BaroSample Ms5611Prom::compensate(std::uint32_t d1, std::uint32_t d2) con
     offset -= offset2;
     sensitivity -= sensitivity2;
   }
-  const std::int64_t pressure =
-      ((static_cast<std::int64_t>(d1) * sensitivity >> 21) - offset) >> 15;  // Pa
-  // Below a pascal the integers of the sheet do not go; what is left over does.
-  const std::int64_t fine =
-      (((static_cast<std::int64_t>(d1) * sensitivity >> 21) - offset) & 0x7FFF);
-  return {static_cast<float>(pressure) + static_cast<float>(fine) / 32768.0f,
-          0.01f * static_cast<float>(temperature)};
+  // The sheet cuts what is below a pascal off by a shift of 15.
+  const std::int64_t pressure = (static_cast<std::int64_t>(d1) * sensitivity >> 21) - offset;
+  return {static_cast<float>(pressure) / 32768.0f, 0.01f * static_cast<float>(temperature)};
 }
 
 template <I2cQueue Bus>

@@ -20,8 +20,7 @@ float seconds(std::uint32_t ms) {
 }  // namespace
 
 Estimator::Estimator() {
-  body_.start(Quaternion::Identity(), 1.0f);
-  inertial_.start(Quaternion::Identity(), Vector3::Zero(), 1.0f);
+  restart_aided();
 }
 
 void Estimator::tick() {

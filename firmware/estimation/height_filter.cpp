@@ -17,7 +17,8 @@ float altitude_m(float pressure_Pa) {
 }  // namespace
 
 void HeightFilter::zero(float pressure_Pa) {
-  zero_Pa_ = pressure_Pa;
+  zero_m_ = altitude_m(pressure_Pa);
+  ready_ = true;
   z_m_ = vz_mps_ = 0.0f;
 }
 
@@ -29,7 +30,7 @@ void HeightFilter::predict(float a_down_mps2, float dt_s) {
 
 void HeightFilter::correct(float pressure_Pa, float since_last_s) {
   const float dt_s = std::min(since_last_s, kLongest_s);
-  const float measured_m = altitude_m(zero_Pa_) - altitude_m(pressure_Pa);
+  const float measured_m = zero_m_ - altitude_m(pressure_Pa);
   const float error_m = z_m_ - measured_m;
   if (!(std::abs(error_m) < kUnlikely_m)) {
     doubted_s_ += dt_s;

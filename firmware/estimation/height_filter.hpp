@@ -21,14 +21,15 @@ class HeightFilter {
   // A pressure, since_last_s after the one before.
   void correct(float pressure_Pa, float since_last_s);
 
-  bool ready() const { return zero_Pa_ > 0.0f; }
+  bool ready() const { return ready_; }
   float z_m() const { return z_m_; }
   float vz_mps() const { return vz_mps_; }
   float bias_mps2() const { return bias_mps2_; }
 
  private:
+  bool ready_ = false;
   float doubted_s_ = 0.0f;  // how long the pressure has not been believed
-  float zero_Pa_ = 0.0f, z_m_ = 0.0f, vz_mps_ = 0.0f, bias_mps2_ = 0.0f;
+  float zero_m_ = 0.0f, z_m_ = 0.0f, vz_mps_ = 0.0f, bias_mps2_ = 0.0f;
 };
 
 }  // namespace fw

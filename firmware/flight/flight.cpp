@@ -112,7 +112,7 @@ void Flight::on_trajectory(const TrajectoryPoint& told) {
   constexpr float kMostJerk_mps3 = 5.0f;
   jerk_W_mps3_.setZero();
   if (goes_on && since_last_s > 0.02f) {
-    jerk_W_mps3_ = clamp_norm((point.a_W_mps2 - point_.a_W_mps2) / since_last_s, kMostJerk_mps3);
+    jerk_W_mps3_ = clamp_norm<3>((point.a_W_mps2 - point_.a_W_mps2) / since_last_s, kMostJerk_mps3);
   }
   point_ = point;
   aim_ = Aim::trajectory;

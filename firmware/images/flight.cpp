@@ -88,9 +88,9 @@ void sensor_job_done(const hal::I2cJob& job, Status status) {
 }
 
 // From the sensor's axes to the body's.
-static Vector3 mounted(const float (&of_sensor)[3]) {
-  const auto& sign = config::kImuSign;
-  return {sign[0] * of_sensor[0], sign[1] * of_sensor[1], sign[2] * of_sensor[2]};
+static Vector3 mounted(const float (&of_sensor)[3], const config::Mounting& m) {
+  return {m.sign[0] * of_sensor[m.axis[0]], m.sign[1] * of_sensor[m.axis[1]],
+          m.sign[2] * of_sensor[m.axis[2]]};
 }
 
 __attribute__((noinline)) void imu_task() {
@@ -110,7 +110,8 @@ __attribute__((noinline)) void imu_task() {
     return flight().on_imu_missing();
   }
   const ImuReading r = burst.decode();
-  flight().on_imu({mounted(r.acceleration_mps2), mounted(r.rate_radps), r.temperature_degC});
+  flight().on_imu({mounted(r.acceleration_mps2, config::kImuMounting),
+                   mounted(r.rate_radps, config::kImuMounting), r.temperature_degC});
   faults.imu_reconfigured = imu.reconfigured();
 }
 
@@ -125,12 +126,7 @@ __attribute__((noinline)) void sensor_task() {
   barometer.step();
   magnetometer.step();
   if (barometer.take(pressure)) flight().on_pressure(pressure.pressure_Pa);
-  if (magnetometer.take(field)) {
-    const auto& f = field.field_uT;
-    flight().on_field({config::kMagSign[0] * f[config::kMagAxis[0]],
-                       config::kMagSign[1] * f[config::kMagAxis[1]],
-                       config::kMagSign[2] * f[config::kMagAxis[2]]});
-  }
+  if (magnetometer.take(field)) flight().on_field(mounted(field.field_uT, config::kMagMounting));
   faults.baro_failures = barometer.failures();
   faults.mag_failures = magnetometer.failures();
   faults.sensor_reconfigured = barometer.restarts() + magnetometer.reconfigured();

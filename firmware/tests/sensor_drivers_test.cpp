@@ -30,6 +30,7 @@ class FakeI2c {
 constexpr std::uint16_t kProm[8] = {0x0000, 40127, 36924, 23317, 23282, 33464, 28312, 0x0000};
 
 struct FakeMs5611 {
+  using Sample = BaroSample;
   FakeMs5611() {
     for (unsigned i = 0; i < 8; ++i) prom[i] = kProm[i];
     for (unsigned crc = 0; crc < 16; ++crc) {  // the one of sixteen that is right
@@ -73,9 +74,9 @@ struct FakeMs5611 {
   }
 };
 
-// How many samples come in so many steps of 10 ms.
+// How many samples come in so many steps of 10 ms; the last of them.
 template <typename Driver, typename Part, typename Sample>
-int taken(Driver& driver, FakeI2c& bus, Part& part, int steps, Sample& last) {
+int samples(Driver& driver, FakeI2c& bus, Part& part, int steps, Sample& last) {
   int got = 0;
   for (int i = 0; i < steps; ++i) {
     driver.step();
@@ -84,11 +85,10 @@ int taken(Driver& driver, FakeI2c& bus, Part& part, int steps, Sample& last) {
   }
   return got;
 }
-
-int samples(Ms5611<FakeI2c>& driver, FakeI2c& bus, FakeMs5611& part, int steps,
-            BaroSample* last = nullptr) {
-  BaroSample sample;
-  return taken(driver, bus, part, steps, last != nullptr ? *last : sample);
+template <typename Driver, typename Part>
+int samples(Driver& driver, FakeI2c& bus, Part& part, int steps) {
+  typename Part::Sample last;
+  return samples(driver, bus, part, steps, last);
 }
 
 TEST(Ms5611Prom, CompensatesAsTheSheetDoes) {
@@ -120,7 +120,7 @@ TEST(Ms5611, Gives75PressuresASecond) {
   samples(driver, bus, part, 20);
   ASSERT_TRUE(driver.running());
   BaroSample last;
-  EXPECT_TRUE(near(samples(driver, bus, part, 1000, &last), 742, stated(3, "the phase")));
+  EXPECT_TRUE(near(samples(driver, bus, part, 1000, last), 742, stated(3, "the phase")));
   EXPECT_TRUE(near(last.pressure_Pa, 100009, stated(1.0, "the sheet rounds down")));
   EXPECT_EQ(driver.failures(), 0u);
 }
@@ -181,6 +181,7 @@ TEST(Ms5611, AFullQueueIsNoSample) {
 // ---- Magnetometer
 
 struct FakeHmc5883l {
+  using Sample = MagSample;
   std::map<std::uint8_t, std::uint8_t> registers{{0x00, 0x10}, {0x01, 0x20}, {0x02, 0x01},
                                                  {0x0A, 'H'},  {0x0B, '4'},  {0x0C, '3'}};
   std::uint8_t pointer = 0;
@@ -211,18 +212,12 @@ struct FakeHmc5883l {
   }
 };
 
-int fields(Hmc5883l<FakeI2c>& driver, FakeI2c& bus, FakeHmc5883l& part, int steps,
-           MagSample* last = nullptr) {
-  MagSample sample;
-  return taken(driver, bus, part, steps, last != nullptr ? *last : sample);
-}
-
 TEST(Hmc5883l, SetsItUpAndReadsTheFieldInTheOrderOfItsAxes) {
   FakeI2c bus;
   FakeHmc5883l part;
   Hmc5883l<FakeI2c> driver(bus);
   MagSample last;
-  EXPECT_GT(fields(driver, bus, part, 100, &last), 60);
+  EXPECT_GT(samples(driver, bus, part, 100, last), 60);
   EXPECT_EQ(part.registers[0x00], 0x18);  // 75 Hz
   EXPECT_EQ(part.registers[0x01], 0x20);  // 1090 counts per gauss
   EXPECT_EQ(part.registers[0x02], 0x00);
@@ -236,22 +231,22 @@ TEST(Hmc5883l, RestoresSettingsThatABrownOutTook) {
   FakeI2c bus;
   FakeHmc5883l part;
   Hmc5883l<FakeI2c> driver(bus);
-  fields(driver, bus, part, 50);
+  samples(driver, bus, part, 50);
   part.registers[0x00] = 0x10;
   part.registers[0x02] = 0x01;
-  fields(driver, bus, part, 20);
+  samples(driver, bus, part, 20);
   EXPECT_EQ(driver.reconfigured(), 1u);
   EXPECT_EQ(part.registers[0x02], 0x00);
-  EXPECT_GT(fields(driver, bus, part, 100), 60);
+  EXPECT_GT(samples(driver, bus, part, 100), 60);
 }
 
 TEST(Hmc5883l, FrozenDataHaveItSetUpAnew) {
   FakeI2c bus;
   FakeHmc5883l part;
   Hmc5883l<FakeI2c> driver(bus);
-  fields(driver, bus, part, 50);
+  samples(driver, bus, part, 50);
   part.measures = false;
-  EXPECT_LE(fields(driver, bus, part, 60), 1);
+  EXPECT_LE(samples(driver, bus, part, 60), 1);
   EXPECT_GT(driver.reconfigured(), 0u);
 }
 
@@ -259,10 +254,10 @@ TEST(Hmc5883l, AnOverflowIsNoSample) {
   FakeI2c bus;
   FakeHmc5883l part;
   Hmc5883l<FakeI2c> driver(bus);
-  fields(driver, bus, part, 50);
+  samples(driver, bus, part, 50);
   part.xyz[1] = -4096;
-  fields(driver, bus, part, 1);
-  EXPECT_LE(fields(driver, bus, part, 50), 1);
+  samples(driver, bus, part, 1);
+  EXPECT_LE(samples(driver, bus, part, 50), 1);
 }
 
 TEST(Hmc5883l, SomethingElseThatAnswersIsNotIt) {
@@ -270,7 +265,7 @@ TEST(Hmc5883l, SomethingElseThatAnswersIsNotIt) {
   FakeHmc5883l part;
   part.registers[0x0B] = '5';
   Hmc5883l<FakeI2c> driver(bus);
-  EXPECT_EQ(fields(driver, bus, part, 100), 0);
+  EXPECT_EQ(samples(driver, bus, part, 100), 0);
   EXPECT_FALSE(driver.running());
   EXPECT_GT(driver.failures(), 0u);
 }

@@ -129,20 +129,26 @@ void send_target(Telemetry& telemetry, std::uint16_t mask, float x, float vx) {
   telemetry.receive(m.frame(255, 190, 0));
 }
 
-TEST(Telemetry, ATargetIsAPlaceAVelocityOrAPointOfATrajectoryByItsMask) {
+// 1.1 m high, 6 s after the take-off.
+struct TelemetryAloft : ::testing::Test {
+  TelemetryAloft() {
+    vehicle.run(flight, 3.0);
+    EXPECT_EQ(flight.arm(), Reason::none);
+    EXPECT_EQ(flight.take_off(1.1f), Reason::none);
+    vehicle.run(flight, 6.0);
+  }
   Flight flight;
-  Telemetry telemetry(flight);
-  test::VehicleModel vehicle({});
-  vehicle.run(flight, 3.0);
-  ASSERT_EQ(flight.arm(), Reason::none);
-  ASSERT_EQ(flight.take_off(1.1f), Reason::none);
+  Telemetry telemetry{flight};
+  test::VehicleModel vehicle{{}};
+};
+
+TEST_F(TelemetryAloft, ATargetIsAPlaceAVelocityOrAPointOfATrajectoryByItsMask) {
   const auto fly = [&](std::uint16_t mask, float x, float vx) {
     for (int i = 0; i < 10; ++i) {
       send_target(telemetry, mask, x, vx);
       vehicle.run(flight, 0.1);
     }
   };
-  vehicle.run(flight, 6.0);
   fly(0x09C3, 5.0f, 0.5f);  // velocity: the place along the floor counts for nothing
   EXPECT_TRUE(
       whirl::near(flight.reference().v_W_mps().x(), 0.5, whirl::stated(0.02, "1 s of 1.2 m/s2")));
@@ -157,14 +163,7 @@ TEST(Telemetry, ATargetIsAPlaceAVelocityOrAPointOfATrajectoryByItsMask) {
   EXPECT_FALSE(flight.reference().tracking());
 }
 
-TEST(Telemetry, ATrajectoryFarAwayIsAPlaceToGoToFirst) {
-  Flight flight;
-  Telemetry telemetry(flight);
-  test::VehicleModel vehicle({});
-  vehicle.run(flight, 3.0);
-  ASSERT_EQ(flight.arm(), Reason::none);
-  ASSERT_EQ(flight.take_off(1.1f), Reason::none);
-  vehicle.run(flight, 6.0);
+TEST_F(TelemetryAloft, ATrajectoryFarAwayIsAPlaceToGoToFirst) {
   send_target(telemetry, 0x0800, 1.0f, 0.0f);
   vehicle.run(flight, 0.1);
   EXPECT_FALSE(flight.reference().tracking());
@@ -176,14 +175,7 @@ TEST(Telemetry, ATrajectoryFarAwayIsAPlaceToGoToFirst) {
 }
 
 // What no vehicle flies is no point of a trajectory; and where the points stop, it stays.
-TEST(Telemetry, AnAbsurdTrajectoryIsNotFlownAndOneThatStopsIsLeft) {
-  Flight flight;
-  Telemetry telemetry(flight);
-  test::VehicleModel vehicle({});
-  vehicle.run(flight, 3.0);
-  ASSERT_EQ(flight.arm(), Reason::none);
-  ASSERT_EQ(flight.take_off(1.1f), Reason::none);
-  vehicle.run(flight, 6.0);
+TEST_F(TelemetryAloft, AnAbsurdTrajectoryIsNotFlownAndOneThatStopsIsLeft) {
   for (const float vx : {40.0f, -1e25f}) {
     for (int i = 0; i < 10; ++i) {
       send_target(telemetry, 0x0800, flight.reference().p_W_m().x(), vx);

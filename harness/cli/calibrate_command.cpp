@@ -37,10 +37,8 @@ Result<Done> compose(const catalogue::CalibrationFile& file, const Composition& 
   if (!board) return board.error();
   parts.board = board.value();
   parts.board.watch.clear();
-  parts.plan.name = "calibration";
-  parts.plan.file = parts.plan.place = setup.file;
+  parts.plan = plan::plan_of_one_board("calibration", setup.file);
   parts.plan.stand = file.stand;
-  parts.plan.nodes.emplace_back();
   const auto image = find_file(setup.image, who, {root + "/build/firmware"}, ".elf");
   if (!image) return image.error();
   const Setup all{parts.plan, 0, parts.board, root, image.value(), "", setup.seed, 0};

@@ -44,10 +44,7 @@ Result<std::string> run_image(const Subject& subject, const Composition& composi
   if (!image) return image.error();
   const auto board = read_board(root + "/test_plans/boards/" + subject.image + ".lua");
   if (!board) return board.error();
-  plan::Plan plan;
-  plan.name = "timing";
-  plan.file = plan.place = "--timing";
-  plan.nodes.emplace_back();
+  const plan::Plan plan = plan::plan_of_one_board("timing", "--timing");
   const auto target = composition.target({plan, 0, board.value(), root, image.value(), ""});
   if (!target) return target.error();
   return timing::capture(*target.value(), subject.uart);

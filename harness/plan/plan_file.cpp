@@ -127,6 +127,14 @@ const char* fault_of_name(const std::string& name) {
 
 }  // namespace
 
+Plan plan_of_one_board(const std::string& name, const std::string& place) {
+  Plan plan;
+  plan.name = name;
+  plan.file = plan.place = place;
+  plan.nodes.emplace_back();
+  return plan;
+}
+
 bool Plan::has_tag(const std::string& tag) const {
   return std::find(tags.begin(), tags.end(), tag) != tags.end();
 }

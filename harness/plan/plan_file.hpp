@@ -56,6 +56,9 @@ struct Plan {
   bool has_tag(const std::string& tag) const;
 };
 
+// For a command that runs one board without a plan of the user's; `place` is what its messages name.
+Plan plan_of_one_board(const std::string& name, const std::string& place);
+
 class PlanFile {
  public:
   // settings: those of "plan." and "stand." take the place of what each plan of the file says.

@@ -2,6 +2,7 @@
 
 #include <cstring>
 
+#include "firmware/crc32.hpp"
 #include "firmware/esc/image/registers.hpp"
 
 namespace fw::esc::settings {
@@ -18,18 +19,9 @@ struct Stored {
 static_assert(sizeof(Stored) % 4 == 0 && sizeof(Stored) <= 1024);
 constexpr std::uint32_t kMagic = 0x5E77'0002;
 
-std::uint32_t crc32(const void* data, std::uint32_t size) {
-  const auto* bytes = static_cast<const std::uint8_t*>(data);
-  std::uint32_t crc = 0xFFFF'FFFFu;
-  for (std::uint32_t i = 0; i < size; ++i) {
-    crc ^= bytes[i];
-    for (int k = 0; k < 8; ++k) crc = (crc >> 1) ^ ((crc & 1) != 0 ? 0xEDB8'8320u : 0u);
-  }
-  return ~crc;
-}
-
 std::uint32_t crc_of(const Stored& stored) {
-  return crc32(&stored, sizeof stored - sizeof stored.crc);
+  const auto* bytes = static_cast<const char*>(static_cast<const void*>(&stored));
+  return crc32_of({bytes, sizeof stored - sizeof stored.crc});
 }
 
 bool wait_done() {

@@ -4,41 +4,23 @@
 
 #include <vector>
 
-#include "harness/flight/station.hpp"
+#include "harness/flight/tests/station_air.hpp"
 
 namespace whirl::flight {
 namespace {
 
-constexpr std::int64_t kMs = 1'000'000;
-
-// A station, what it sends, and a vehicle that answers by hand.
-struct Air {
-  Station station;
-  std::vector<io::MavlinkFrame> sent;
-  std::vector<std::int64_t> times;
-  io::MavlinkSender vehicle{1, 1, 0};
-  io::MavlinkParser parser{
-      [this](const io::MavlinkFrame& f, std::span<const std::uint8_t>) { sent.push_back(f); }};
-
-  void run(std::int64_t from_ms, std::int64_t to_ms) {
-    for (std::int64_t ms = from_ms; ms < to_ms; ++ms) {
-      station.step(ms * kMs, [this](std::int64_t t_ns, std::span<const std::uint8_t> frame) {
-        times.push_back(t_ns);
-        for (const std::uint8_t byte : frame) parser.add(byte);
-      });
-    }
-  }
+struct ParameterAir : Air {
   void answer(const std::string& name, float value) {
     io::ParamValue message;
     message.param_id = io::to_param_id(name);
     message.param_value = value;
-    station.receive(io::encode(io::pack(message, vehicle)), 0);
+    vehicle_says(message, 0);
   }
   const ParameterRequests& parameters() const { return station.parameters(); }
 };
 
 TEST(ParameterRequests, AValueIsSentEvery300msUntilItsNameAnswers) {
-  Air air;
+  ParameterAir air;
   air.station.request_parameter("EST_START_SCALE", 1.25f);
   air.run(0, 700);
   ASSERT_EQ(air.sent.size(), 3u);
@@ -62,7 +44,7 @@ TEST(ParameterRequests, AValueIsSentEvery300msUntilItsNameAnswers) {
 }
 
 TEST(ParameterRequests, AnotherValueInTheAnswerIsARefusal) {
-  Air air;
+  ParameterAir air;
   air.station.request_parameter("EST_FILTER", 5.0f);
   air.run(0, 1);
   air.answer("EST_FILTER", 1.0f);
@@ -71,7 +53,7 @@ TEST(ParameterRequests, AnotherValueInTheAnswerIsARefusal) {
 }
 
 TEST(ParameterRequests, WithoutAValueItIsAskedForByName) {
-  Air air;
+  ParameterAir air;
   air.station.request_parameter("EST_FILTER", std::nullopt);
   air.run(0, 1);
   ASSERT_EQ(air.sent.size(), 1u);
@@ -85,7 +67,7 @@ TEST(ParameterRequests, WithoutAValueItIsAskedForByName) {
 }
 
 TEST(ParameterRequests, WhatIsNeverAnsweredIsGivenUpAfterTwentyTries) {
-  Air air;
+  ParameterAir air;
   air.station.request_parameter("NOBODY", 1.0f);
   air.run(0, 6000);
   EXPECT_EQ(air.parameters().last_result(), -1);
@@ -96,7 +78,7 @@ TEST(ParameterRequests, WhatIsNeverAnsweredIsGivenUpAfterTwentyTries) {
 }
 
 TEST(ParameterRequests, GoOneAfterTheOtherAndANewOneForgetsTheOldAnswer) {
-  Air air;
+  ParameterAir air;
   air.station.request_parameter("EST_FILTER", 1.0f);
   air.run(0, 1);
   air.answer("EST_FILTER", 1.0f);
