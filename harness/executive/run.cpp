@@ -153,10 +153,20 @@ class Run {
     if (!arrived) return ended_by(arrived.error());
     stage_.now_ns = lockstep_.now_ns();
     file_row();
+    log_texts();
     if (!file_batch(lockstep_.happened()) || !firmware_is_well()) return false;
     if (interrupted_by() != 0) return interrupted();
     if (arrived.value() == TargetState::running) return true;
     return stopped_early(arrived.value());
+  }
+
+  // What the firmware says of itself, for the page and run.json.
+  void log_texts() {
+    const std::vector<std::string>& texts = parts_.world.told_texts();
+    for (; texts_logged_ < texts.size(); ++texts_logged_) {
+      record_.report.log.push_back(
+          {static_cast<double>(stage_.now_ns) * 1e-9, "firmware", texts[texts_logged_]});
+    }
   }
 
   // The target gave up. What it still told counts; its time stays where it last was, since nothing is
@@ -353,7 +363,8 @@ class Run {
   plan::Script script_;
   Lockstep lockstep_;
   Digest digest_;
-  bool completed_ = false;   // the script has returned
+  bool completed_ = false;  // the script has returned
+  std::size_t texts_logged_ = 0;
   std::vector<bool> acted_;  // of the nodes: their firmware was seen to run
 };
 

@@ -38,6 +38,7 @@ class FlightWorld : public World {
   void step(std::int64_t t_ns, const io::Batch& happened, io::Batch& sensed) override;
   Result<Done> command(const Command& command, std::int64_t now_ns) override;
   Result<Done> disturb(const Disturbance& disturbance, std::int64_t now_ns) override;
+  const std::vector<std::string>& told_texts() const override { return station_.texts(); }
   std::int64_t command_on_wire_ns() const override { return station_.on_wire_ns(); }
   Result<bool> take_fault(const FaultSpec& fault) override;
   std::vector<std::uint32_t> applied_faults() const override { return faults_.acted(); }

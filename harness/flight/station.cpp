@@ -191,7 +191,7 @@ void Station::hear(const io::MavlinkFrame& frame) {
     const double x = attitude->q2, y = attitude->q3;
     telemetry_.tilt_rad = std::acos(std::clamp(1.0 - 2.0 * (x * x + y * y), -1.0, 1.0));
   } else if (const auto text = io::unpack<io::Statustext>(frame)) {
-    last_text_ = text->string();
+    texts_.push_back(text->string());
   }
 }
 

@@ -74,8 +74,8 @@ class Station {
   bool command_pending() const { return !commands_.empty(); }
   // Of the last COMMAND_ACK since a command was given; or one of the two below.
   int last_result() const { return last_result_; }
-  static constexpr int kWaiting = -1, kUnanswered = -2;        // given up after 20 tries
-  const std::string& last_text() const { return last_text_; }  // of STATUSTEXT
+  static constexpr int kWaiting = -1, kUnanswered = -2;             // given up after 20 tries
+  const std::vector<std::string>& texts() const { return texts_; }  // of STATUSTEXT, all
 
  private:
   struct Pending {
@@ -108,7 +108,7 @@ class Station {
   ParameterRequests parameters_;
   int last_result_ = kWaiting;
   Telemetry telemetry_;
-  std::string last_text_;
+  std::vector<std::string> texts_;
   OnFrame on_frame_;
   std::int64_t heard_ns_ = 0, heartbeat_ns_ = -1;
 };

@@ -135,6 +135,11 @@ Script::Script(PlanFile& file, const Plan& plan, Stage& stage) : file_(file), st
   if (!started) broken_ = started.error();
 }
 
+RandomStream& Script::chance() {
+  if (!chance_) chance_.emplace(stage_.report.seed, "plan.drawn");
+  return *chance_;
+}
+
 void Script::start(lua_State* L, const Plan& plan) {
   lua_pushlightuserdata(L, this);
   lua_setfield(L, LUA_REGISTRYINDEX, kOwnerKey);

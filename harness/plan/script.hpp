@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "base/random.hpp"
 #include "harness/board/node.hpp"
 #include "harness/plan/plan_file.hpp"
 #include "harness/plan/signal_rows.hpp"
@@ -139,6 +140,8 @@ class Script {
   void add_window(std::int64_t to_ns, Window window);
   std::size_t windows() const { return windows_.size(); }
 
+  RandomStream& chance();  // the plan's, by the run's seed
+
   std::vector<Measurement> measurements;  // all that Lua holds a table of
   std::vector<RecordInfo> records;
   std::vector<Guard> guards;
@@ -167,6 +170,7 @@ class Script {
   bool condition_met_ = false;
   bool started_ = false;
   bool looked_ = false;
+  std::optional<RandomStream> chance_;
   std::string step_name_;
   std::vector<OpenWindow> windows_;
   std::string unfilled_;  // of the window that is being judged: how; empty: it was watched whole
