@@ -41,6 +41,14 @@ const Quaternion& Estimator::q_WB() const {
   return fix_fresh() ? inertial_.q_WB() : body_.q_WB();
 }
 
+bool Estimator::converged() const {
+  constexpr float kScaleOff = 0.15f, kApart_rad = 0.1f;
+  if (source_ == AttitudeSource::explicit_filter) return true;
+  const bool scales = std::abs(body_.scale() - 1.0f) < kScaleOff &&
+                      std::abs(inertial_.scale() - 1.0f) < kScaleOff;
+  return scales && body_.q_WB().angularDistance(inertial_.q_WB()) < kApart_rad;
+}
+
 void Estimator::on_fix(const CaptureFix& fix) {
   const bool first = fix_age_ms_ >= kFixLost_ms && !situation_.in_flight;
   const float since_last_s = seconds(fix_age_ms_);

@@ -65,6 +65,9 @@ class Estimator {
   const Vector3& p_WB_W_m() const { return position_.p_WB_W_m(); }
   const Vector3& v_WB_W_mps() const { return position_.v_WB_W_mps(); }
 
+  bool position_known() const { return fix_fresh(); }
+  // What is flown by has settled: latent scales near 1, both velocity-aided attitudes of one mind.
+  bool converged() const;
   bool fix_fresh() const { return fix_age_ms_ < kFixLost_ms; }
   std::uint32_t fix_age_ms() const { return fix_age_ms_; }
   bool calibrated() const { return calibrated_; }

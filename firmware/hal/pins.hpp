@@ -26,6 +26,7 @@ struct Pin {
     Port::MODER::replace(3u << (2 * kPin), 0);
     Port::PUPDR::replace(3u << (2 * kPin), static_cast<std::uint32_t>(pull) << (2 * kPin));
   }
+  static void analog() { Port::MODER::set(3u << (2 * kPin)); }
   static void set(bool level) { Port::BSRR::write(1u << (level ? kPin : kPin + 16)); }
   static bool level() { return Port::IDR::has(1u << kPin); }
 
@@ -43,6 +44,7 @@ using SpiMiso = Pin<hw::GPIOA, 6>;
 using SpiMosi = Pin<hw::GPIOA, 7>;
 using ImuSelect = Pin<hw::GPIOB, 0>;
 using ImuReady = Pin<hw::GPIOC, 3>;  // by the jumper JP6
+using BatterySense = Pin<hw::GPIOC, 0>;  // 10 k of 57 k
 using EscScl = Pin<hw::GPIOA, 8>;
 using EscSda = Pin<hw::GPIOC, 9>;
 using SensorScl = Pin<hw::GPIOB, 10>;

@@ -29,7 +29,7 @@ struct RCC {
   static constexpr std::uint32_t TIM2EN = bit(0), TIM5EN = bit(3), TIM6EN = bit(4), TIM7EN = bit(5),
                                  USART2EN = bit(17), I2C2EN = bit(22), I2C3EN = bit(23),
                                  PWREN = bit(28);
-  static constexpr std::uint32_t SPI1EN = bit(12), SYSCFGEN = bit(14);
+  static constexpr std::uint32_t ADC1EN = bit(8), SPI1EN = bit(12), SYSCFGEN = bit(14);
   static constexpr std::uint32_t RMVF = bit(24), BORRSTF = bit(25), PADRSTF = bit(26),
                                  PORRSTF = bit(27), SFTRSTF = bit(28), WDGRSTF = bit(29),
                                  WWDGRSTF = bit(30), LPWRRSTF = bit(31);
@@ -70,6 +70,19 @@ struct Gpio {
 using GPIOA = Gpio<0x4002'0000>;
 using GPIOB = Gpio<0x4002'0400>;
 using GPIOC = Gpio<0x4002'0800>;
+
+struct ADC1 {
+  static constexpr std::uint32_t base = 0x4001'2000;
+  using SR = Reg32<base + 0x00>;
+  using CR2 = Reg32<base + 0x08>;
+  using SMPR1 = Reg32<base + 0x0C>;  // channels 10 to 18, three bits each
+  using SQR1 = Reg32<base + 0x2C>;
+  using SQR3 = Reg32<base + 0x34>;
+  using DR = Reg32<base + 0x4C>;
+  using CCR = Reg32<base + 0x304>;  // common to the three converters
+  static constexpr std::uint32_t EOC = bit(1), ADON = bit(0), SWSTART = bit(30);
+  static constexpr std::uint32_t SMP_56 = 3u, ADCPRE_DIV4 = 1u << 16;
+};
 
 struct SYSCFG {
   using EXTICR1 = Reg32<0x4001'3808>;  // lines 0..3, four bits each

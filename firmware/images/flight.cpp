@@ -14,6 +14,7 @@
 #include "firmware/drivers/ms5611.hpp"
 #include "firmware/flight/flight.hpp"
 #include "firmware/flight/schedule.hpp"
+#include "firmware/hal/battery_adc.hpp"
 #include "firmware/hal/clock.hpp"
 #include "firmware/hal/fault_record.hpp"
 #include "firmware/hal/flash.hpp"
@@ -127,6 +128,7 @@ __attribute__((noinline)) void sensor_task() {
   magnetometer.step();
   if (barometer.take(pressure)) flight().on_pressure(pressure.pressure_Pa);
   if (magnetometer.take(field)) flight().on_field(mounted(field.field_uT, config::kMagMounting));
+  if (const auto voltage_V = hal::battery_adc.next_V()) flight().on_battery(*voltage_V);
   faults.baro_failures = barometer.failures();
   faults.mag_failures = magnetometer.failures();
   faults.sensor_reconfigured = barometer.restarts() + magnetometer.reconfigured();
@@ -292,6 +294,7 @@ extern "C" void fw_main() {
   hal::i2c3.init();
   hal::i2c2.init();
   hal::radio.init();
+  hal::battery_adc.init();
   hal::start_watchdog();
   run();
 }

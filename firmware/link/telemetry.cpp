@@ -50,6 +50,7 @@ void Telemetry::receive(std::span<const std::uint8_t> bytes) {
     if (frame.id == mavlink::kViconPositionEstimate) on_vicon(frame);
     if (frame.id == mavlink::kSetPositionTargetLocalNed) on_target(frame);
     if (frame.id == mavlink::kCommandLong) on_command(frame);
+    flight_.on_link();
     parameters_.on_frame(frame, flight_.parameters(), flight_.state() != FlightState::disarmed);
   }
 }
@@ -140,6 +141,9 @@ std::span<const std::uint8_t> Telemetry::next(std::uint32_t time_ms, const Fault
     const bool bad = flight_.emergency() || flight_.state() == FlightState::failsafe;
     return send(status_text(text_of(flight_.last_reason()), bad));
   }
+  if (const Reason warning = flight_.take_warning(); warning != Reason::none) {
+    return send(status_text(text_of(warning), true));
+  }
   return {};
 }
 
@@ -158,17 +162,32 @@ Message Telemetry::heartbeat() const {
 }
 
 Message Telemetry::sys_status(const Faults& faults, const Health& health) const {
-  constexpr std::uint32_t kGyroAccel = 0x3, kVisionPosition = 0x80;
-  const Reason reason = flight_.ready_to_arm();
-  const bool imu_ok = reason != Reason::imu_not_running && reason != Reason::imu_frozen;
-  const std::uint32_t healthy =
-      (imu_ok ? kGyroAccel : 0) | (flight_.capture_fresh() ? kVisionPosition : 0);
+  // MAV_SYS_STATUS_SENSOR
+  constexpr std::uint32_t kGyroAccel = 0x3, kField = 0x4, kPressure = 0x8, kVisionPosition = 0x80,
+                          kMotors = 0x8000, kFence = 0x10'0000, kBattery = 0x200'0000;
+  constexpr std::uint32_t kAll =
+      kGyroAccel | kField | kPressure | kVisionPosition | kMotors | kFence | kBattery;
+  const Conditions now = flight_.conditions();
+  std::uint32_t healthy = kAll;
+  const auto spoils = [&](Condition condition, std::uint32_t bits) {
+    if (now.has(condition)) healthy &= ~bits;
+  };
+  spoils(Condition::imu_not_running, kGyroAccel);
+  spoils(Condition::imu_frozen, kGyroAccel);
+  spoils(Condition::no_field, kField);
+  spoils(Condition::no_pressure, kPressure);
+  spoils(Condition::no_position, kVisionPosition);
+  spoils(Condition::motor_out, kMotors);
+  spoils(Condition::esc_silent, kMotors);
+  spoils(Condition::outside_fence, kFence);
+  spoils(Condition::battery_low, kBattery);
   std::int32_t current_mA = 0;
   for (unsigned i = 0; i < 4; ++i) current_mA += flight_.esc_status(i).current_mA;
   Message m(mavlink::kSysStatus, 31);
-  m.put(0, kGyroAccel | kVisionPosition).put(4, kGyroAccel | kVisionPosition).put(8, healthy);
-  m.put(12, health.load_permille)
-      .put<std::uint16_t>(14, 0xFFFF);  // the bus voltage is not measured
+  m.put(0, kAll).put(4, kAll).put(8, healthy).put(12, health.load_permille);
+  const float battery_mV = 1000.0f * std::clamp(flight_.battery().voltage_V(), 0.0f, 65.0f);
+  m.put(14, flight_.battery().connected() ? static_cast<std::uint16_t>(battery_mV)
+                                          : std::uint16_t{0xFFFF});
   m.put(16, static_cast<std::int16_t>(current_mA / 10)).put(20, count16(faults.link_bad_frames));
   m.put(22, count16(faults.esc_no_answer)).put(24, count16(faults.i2c_recoveries));
   m.put(26, count16(faults.imu_samples_lost + faults.imu_reconfigured));

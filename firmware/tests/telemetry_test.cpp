@@ -118,7 +118,7 @@ TEST(Telemetry, PosesOverTheRadioReachTheEstimate) {
   m.put(8, 1.0f).put(12, -2.0f).put(16, -0.5f).put(28, 0.7f);
   telemetry.receive(m.frame(255, 190, 0));
   EXPECT_EQ(flight.estimator().p_WB_W_m(), Vector3(1.0f, -2.0f, -0.5f));
-  EXPECT_TRUE(flight.capture_fresh());
+  EXPECT_TRUE(flight.estimator().position_known());
 }
 
 // Bits of the mask: 0 to 2 place, 3 to 5 velocity, 6 to 8 acceleration are to be ignored.
@@ -199,7 +199,7 @@ TEST(Telemetry, ANonFinitePoseIsNotFlown) {
   Message m(mavlink::kViconPositionEstimate, 32);
   m.put(8, std::nanf(""));
   telemetry.receive(m.frame(255, 190, 0));
-  EXPECT_FALSE(flight.capture_fresh());
+  EXPECT_FALSE(flight.estimator().position_known());
 }
 
 }  // namespace

@@ -9,6 +9,7 @@ return {
     { name = "imu", type = "mpu6000", bus = "spi1", cs = "PB0", int = "PC3" },
     { name = "baro", type = "ms5611", bus = "i2c2", address = 0x76 },
     { name = "mag", type = "hmc5883l", bus = "i2c2", address = 0x1E, drdy = "PB1", axes = { "+y", "-x", "+z" } },
+    { name = "battery", type = "battery_sense", bus = "PC0" },
     { name = "esc1", type = "esc_i2c", bus = "i2c3", address = 0x29, motor = 1 },
     { name = "esc2", type = "esc_i2c", bus = "i2c3", address = 0x2A, motor = 2 },
     { name = "esc3", type = "esc_i2c", bus = "i2c3", address = 0x2B, motor = 3 },
