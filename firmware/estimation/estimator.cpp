@@ -44,8 +44,8 @@ const Quaternion& Estimator::q_WB() const {
 bool Estimator::converged() const {
   constexpr float kScaleOff = 0.15f, kApart_rad = 0.1f;
   if (source_ == AttitudeSource::explicit_filter) return true;
-  const bool scales = std::abs(body_.scale() - 1.0f) < kScaleOff &&
-                      std::abs(inertial_.scale() - 1.0f) < kScaleOff;
+  const bool scales =
+      std::abs(body_.scale() - 1.0f) < kScaleOff && std::abs(inertial_.scale() - 1.0f) < kScaleOff;
   return scales && body_.q_WB().angularDistance(inertial_.q_WB()) < kApart_rad;
 }
 
