@@ -98,7 +98,7 @@ __attribute__((noinline)) void imu_task() {
   constexpr std::uint32_t kFrozen_samples = 50;
   static constinit ImuBurst last;
   static constinit std::uint32_t same = 0;
-  if (!imu.running()) std::ignore = imu.setup_tick();
+  std::ignore = imu.setup_tick();
   if (!sample_ready) return flight().on_imu_missing();
   sample_ready = false;
   const ImuBurst burst = imu.burst();
