@@ -6,7 +6,7 @@
 namespace whirl::results {
 namespace {
 
-std::string number(double x) {
+std::string shown_number(double x) {
   char text[40];
   std::snprintf(text, sizeof text, "%.6g", x);
   return text;
@@ -16,9 +16,9 @@ std::string number(double x) {
 
 std::string Expectation::limit_text() const {
   const std::string tail = unit.empty() ? "" : " " + unit;
-  if (low && high) return how + " " + number(*low) + " .. " + number(*high) + tail;
-  if (high) return how + " " + number(*high) + tail;
-  if (low) return how + " " + number(*low) + tail;
+  if (low && high) return how + " " + shown_number(*low) + " .. " + shown_number(*high) + tail;
+  if (high) return how + " " + shown_number(*high) + tail;
+  if (low) return how + " " + shown_number(*low) + tail;
   return how;
 }
 
@@ -28,7 +28,7 @@ std::string sentence(const Expectation& e) {
   std::string text = e.name + ": ";
   if (e.verdict == Verdict::inconclusive) return text + e.note;
   if (std::isnan(e.measured)) return text + (e.note.empty() ? "nothing to measure" : e.note);
-  text += number(e.measured) + (e.unit.empty() ? "" : " " + e.unit);
+  text += shown_number(e.measured) + (e.unit.empty() ? "" : " " + e.unit);
   return text + ", wanted " + e.limit_text();
 }
 

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "results/flight_log/flight_logs.hpp"
 #include "results/verdict.hpp"
 
 namespace whirl::results {
@@ -125,6 +126,7 @@ struct Report {
   std::vector<Note> log;
   std::vector<Note> steps;  // t:step
   std::vector<CpuFaultRow> cpu_faults;
+  std::vector<FlightLogRow> flight_logs;
   std::string statistics_json;  // the (first) board's own words; may be empty
   std::vector<std::pair<std::string, std::string>> boards;  // of nodes with names: what each said
 

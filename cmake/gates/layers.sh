@@ -33,6 +33,7 @@ io_bridges/qemu/plugin   base/ io_bridges/
 io_bridges/qemu/board    base/ io_bridges/ plant/
 results                  base/ io_bridges/messages/ results/
 results/messages         base/ io_bridges/messages/ results/messages/
+results/flight_log       base/ results/flight_log/
 results/sinks            base/ io_bridges/messages/ results/messages/ results/sinks/
 harness                  base/ harness/catalogue/ harness/cli/ harness/flight/ harness/stand/ harness/target/
 harness/job              base/ harness/job/
