@@ -197,9 +197,10 @@ Result<RunRecord> run_record(const PlanChoice& choice, const RunOptions& options
   if (folder != nullptr) {
     messages.emplace(folder->messages(), run_head(*plan, parts.nodes, *parts.world, seed));
   }
-  RunRecord record = execute({*file.value(), *plan, parts.nodes, *parts.world, *parts.target, seed,
-                              messages ? &*messages : nullptr},
-                             progress);
+  RunRecord record =
+      execute({*file.value(), *plan, parts.nodes, *parts.world, *parts.target, seed,
+               messages ? &*messages : nullptr, folder == nullptr ? "" : folder->path()},
+              progress);
   record.messages = std::move(messages);
   add_versions(parts, *plan, composition.root, record);
   return record;

@@ -84,6 +84,7 @@ class Run {
         script_(parts.file, parts.plan, stage_),
         lockstep_(parts.world, parts.target),
         acted_(parts.nodes.size()) {
+    stage_.folder = parts.folder;
     results::Report& r = record_.report;
     r.plan = parts.plan.name;
     r.file = parts.plan.file;

@@ -27,6 +27,7 @@ struct RunParts {
   Target& target;
   std::uint64_t seed = 1;
   results::MessageWriter* messages = nullptr;  // what crosses is written there; null: nowhere
+  std::string folder = {};  // where the boards' parts leave their files; empty: nowhere
 };
 
 struct RunRecord {

@@ -48,6 +48,7 @@ void push_t(lua_State* L) {
   add_timing_calls(L);
   add_action_calls(L);
   add_text_calls(L);
+  add_log_calls(L);
   lua_setfield(L, -2, "__index");
   lua_pop(L, 1);
   push_handle(L, "t", 0);

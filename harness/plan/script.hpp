@@ -22,6 +22,7 @@
 #include "harness/target/offers.hpp"
 #include "harness/world/world.hpp"
 #include "results/event_log.hpp"
+#include "results/flight_log/ulog.hpp"
 #include "results/report.hpp"
 
 namespace whirl::plan {
@@ -39,6 +40,14 @@ struct Stage {
   results::Report& report;
   std::function<Result<Done>(const FaultSpec&)> inject;  // into the board
   std::int64_t now_ns = 0;
+  std::string folder = {};  // of the run, where its parts leave files; empty: none
+};
+
+// Of a card, as it was when the plan looked.
+struct NamedLog {
+  std::string name;
+  bool there = false;
+  results::ULog log = {};
 };
 
 struct Measurement {
@@ -147,6 +156,7 @@ class Script {
   std::vector<Guard> guards;
   std::vector<PendingExpectation> pending;
   std::vector<FaultSpec> faults;
+  std::vector<NamedLog> logs;
 
  private:
   struct OpenWindow {
@@ -185,5 +195,6 @@ void add_expect_calls(lua_State* L);
 void add_timing_calls(lua_State* L);
 void add_action_calls(lua_State* L);
 void add_text_calls(lua_State* L);
+void add_log_calls(lua_State* L);
 
 }  // namespace whirl::plan
