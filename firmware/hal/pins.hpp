@@ -39,12 +39,16 @@ struct Pin {
 };
 
 // PX4FMU v1; the ESCs hang on the expansion header.
-using SpiSck = Pin<hw::GPIOA, 5>;
-using SpiMiso = Pin<hw::GPIOA, 6>;
-using SpiMosi = Pin<hw::GPIOA, 7>;
+using ImuSck = Pin<hw::GPIOA, 5>;
+using ImuMiso = Pin<hw::GPIOA, 6>;
+using ImuMosi = Pin<hw::GPIOA, 7>;
 using ImuSelect = Pin<hw::GPIOB, 0>;
 using ImuReady = Pin<hw::GPIOC, 3>;      // by the jumper JP6
 using BatterySense = Pin<hw::GPIOC, 0>;  // 10 k of 57 k
+using CardSelect = Pin<hw::GPIOA, 4>;
+using CardSck = Pin<hw::GPIOC, 10>;
+using CardMiso = Pin<hw::GPIOC, 11>;
+using CardMosi = Pin<hw::GPIOB, 5>;
 using EscScl = Pin<hw::GPIOA, 8>;
 using EscSda = Pin<hw::GPIOC, 9>;
 using SensorScl = Pin<hw::GPIOB, 10>;

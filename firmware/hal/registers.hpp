@@ -27,8 +27,8 @@ struct RCC {
   static constexpr std::uint32_t GPIOAEN = bit(0), GPIOBEN = bit(1), GPIOCEN = bit(2),
                                  CCMDATARAMEN = bit(20), DMA1EN = bit(21), DMA2EN = bit(22);
   static constexpr std::uint32_t TIM2EN = bit(0), TIM5EN = bit(3), TIM6EN = bit(4), TIM7EN = bit(5),
-                                 USART2EN = bit(17), I2C2EN = bit(22), I2C3EN = bit(23),
-                                 PWREN = bit(28);
+                                 SPI3EN = bit(15), USART2EN = bit(17), I2C2EN = bit(22),
+                                 I2C3EN = bit(23), PWREN = bit(28);
   static constexpr std::uint32_t ADC1EN = bit(8), SPI1EN = bit(12), SYSCFGEN = bit(14);
   static constexpr std::uint32_t RMVF = bit(24), BORRSTF = bit(25), PADRSTF = bit(26),
                                  PORRSTF = bit(27), SFTRSTF = bit(28), WDGRSTF = bit(29),
@@ -95,18 +95,21 @@ struct EXTI {
   using PR = Reg32<base + 0x14>;
 };
 
-struct SPI1 {
-  static constexpr std::uint32_t base = 0x4001'3000;
+template <std::uint32_t base>
+struct Spi {
   using CR1 = Reg32<base + 0x00>;
   using CR2 = Reg32<base + 0x04>;
   using SR = Reg32<base + 0x08>;
   using DR = Reg32<base + 0x0C>;
   static constexpr std::uint32_t CPHA = bit(0), CPOL = bit(1), MSTR = bit(2), SPE = bit(6),
                                  SSI = bit(8), SSM = bit(9);
-  static constexpr std::uint32_t BR_Msk = 7u << 3, BR_DIV8 = 2u << 3, BR_DIV128 = 6u << 3;
+  static constexpr std::uint32_t BR_Msk = 7u << 3, BR_DIV2 = 0u << 3, BR_DIV8 = 2u << 3,
+                                 BR_DIV128 = 6u << 3;
   static constexpr std::uint32_t RXDMAEN = bit(0), TXDMAEN = bit(1);
   static constexpr std::uint32_t BSY = bit(7);
 };
+using SPI1 = Spi<0x4001'3000>;
+using SPI3 = Spi<0x4000'3C00>;
 
 template <std::uint32_t base>
 struct I2c {
@@ -175,6 +178,8 @@ struct DmaStream {
   static constexpr std::uint32_t channel(std::uint32_t n) { return n << 25; }
 };
 inline constexpr std::uint32_t kDma1 = 0x4002'6000, kDma2 = 0x4002'6400;
+using Spi3RxDma = DmaStream<kDma1, 0>;    // channel 0
+using Spi3TxDma = DmaStream<kDma1, 7>;    // channel 0
 using I2c3RxDma = DmaStream<kDma1, 2>;    // channel 3
 using I2c2RxDma = DmaStream<kDma1, 3>;    // channel 7
 using Usart2RxDma = DmaStream<kDma1, 5>;  // channel 4

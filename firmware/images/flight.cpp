@@ -12,6 +12,7 @@
 #include "firmware/drivers/hmc5883l.hpp"
 #include "firmware/drivers/mpu6000.hpp"
 #include "firmware/drivers/ms5611.hpp"
+#include "firmware/drivers/sd_card.hpp"
 #include "firmware/flight/flight.hpp"
 #include "firmware/flight/schedule.hpp"
 #include "firmware/hal/battery_adc.hpp"
@@ -26,6 +27,7 @@
 #include "firmware/hal/uart_link.hpp"
 #include "firmware/hal/watchdog.hpp"
 #include "firmware/link/telemetry.hpp"
+#include "firmware/log/flight_log.hpp"
 
 namespace fw {
 
@@ -34,13 +36,19 @@ constinit Health health;
 
 namespace {
 
-constinit Mpu6000<hal::SpiMaster> imu(hal::spi1);
+constinit Mpu6000<hal::ImuLink> imu(hal::imu_link);
 constinit EscBus<hal::I2cMaster<hal::EscI2c>> escs(hal::i2c3);
 constinit Ms5611<hal::I2cMaster<hal::SensorI2c>> barometer(hal::i2c2);
 constinit Hmc5883l<hal::I2cMaster<hal::SensorI2c>> magnetometer(hal::i2c2);
 constinit ParameterStore<hal::ParameterSectors> store(hal::parameter_sectors);
+using Card = SdCard<hal::SpiMaster<hal::CardBus>>;
+constinit Card card(hal::spi3);
+// 16 MiB hold ten minutes, more than a battery does; what is not used is given back.
+constinit LogVolume<Card> volume(card, {.file_bytes = 16u << 20, .least_bytes = 1u << 20});
 volatile std::uint32_t ticks_due = 0;
 volatile bool sample_ready = false;
+volatile std::uint32_t data_ready_us = 0;
+constinit TickTimes times;  // the worst since they were logged
 
 enum Ran : std::uint8_t {
   kImu = 1,
@@ -49,7 +57,8 @@ enum Ran : std::uint8_t {
   kEsc = 8,
   kTelemetry = 16,
   kSensors = 32,
-  kAll = 63
+  kLog = 64,
+  kAll = 127
 };
 
 Flight& flight() {  // built at the first call: Eigen's vectors have no constant initialisers
@@ -62,10 +71,17 @@ Telemetry& telemetry() {
   return instance;
 }
 
+FlightLog<LogVolume<Card>>& flight_log() {
+  static FlightLog<LogVolume<Card>> instance(volume, flight());
+  return instance;
+}
+
 }  // namespace
 
 void imu_data_ready() {
-  if (!imu.data_ready(hal::now_us())) ticks_due = ticks_due + 1;
+  const std::uint32_t now_us = hal::now_us();
+  data_ready_us = now_us;
+  if (!imu.data_ready(now_us)) ticks_due = ticks_due + 1;
 }
 
 void imu_transfer_done() {
@@ -144,7 +160,10 @@ __attribute__((noinline)) void esc_task(std::uint32_t tick) {
     esc::protocol::Status status;
     if (escs.take_status(motor, status)) flight().on_esc_status(motor, status);
   }
-  if (schedule::setpoints(tick)) std::ignore = escs.write(flight().setpoints());
+  if (schedule::setpoints(tick)) {
+    std::ignore = escs.write(flight().setpoints());
+    TickTimes::keep_worst(times.setpoint_us, hal::now_us() - data_ready_us);
+  }
   const int motor = schedule::status_read(tick);
   if (motor >= 0) std::ignore = escs.request_status(static_cast<unsigned>(motor));
   faults.esc_no_answer = escs.failures();
@@ -171,6 +190,21 @@ __attribute__((noinline)) void telemetry_task() {
   if (!frame.empty() && hal::radio.send(frame) != Status::ok) ++faults.link_overruns;
 }
 
+// What the ground is told of the log; null: all is well.
+static const char* log_trouble() {
+  if (!card.ready()) return "log: no SD card";
+  if (volume.state() == LogState::refused) return "log: no FAT32 volume, or no room on it";
+  return flight_log().dropouts() > 0 ? "log: the SD card is too slow, samples are lost" : nullptr;
+}
+
+// The log first: what it appends can go to the card in the same tick.
+__attribute__((noinline)) void log_task(std::uint32_t tick, std::uint32_t now_us) {
+  flight_log().step(tick, now_us, health.load_permille, faults.deadline_missed, times);
+  volume.tick(now_us);
+  card.tick(now_us);
+  health.log_trouble = log_trouble();
+}
+
 // The core stalls for each word of flash: never while the motors may turn.
 __attribute__((noinline)) void store_task() {
   if (flight().state() == FlightState::disarmed) store.step(flight().parameters());
@@ -180,7 +214,7 @@ __attribute__((noinline)) void store_task() {
 namespace {
 
 // Runs what is due in this tick. The attitude task comes before the set-points that use it.
-std::uint8_t run_tick(std::uint32_t tick) {
+std::uint8_t run_tick(std::uint32_t tick, std::uint32_t now_us) {
   std::uint8_t ran = kImu;
   imu_task();
   if (schedule::attitude(tick)) {
@@ -204,18 +238,18 @@ std::uint8_t run_tick(std::uint32_t tick) {
     ran |= kTelemetry;
   }
   store_task();
-  return ran;
+  log_task(tick, now_us);
+  return ran | kLog;
 }
 
-// Sleeps until a tick is due; returns the time slept.
+// Sleeps until a tick is due; returns when that was.
 std::uint32_t wait_for_tick() {
-  const std::uint32_t from_us = hal::now_us();
   for (;;) {
     const hal::InterruptLock lock;
     if (ticks_due > 0) {
       if (ticks_due > 1) ++faults.deadline_missed;
       ticks_due = 0;
-      return hal::now_us() - from_us;
+      return hal::now_us();
     }
     hal::wait_for_interrupt();
   }
@@ -228,10 +262,14 @@ void show_state() {
 
 [[noreturn]] void run() {
   std::uint8_t ran = 0;
-  std::uint32_t slept_us = 0;
+  std::uint32_t slept_us = 0, ended_us = hal::now_us();
   for (std::uint32_t tick = 0;; ++tick) {
-    slept_us += wait_for_tick();
-    ran |= run_tick(tick);
+    const std::uint32_t now_us = wait_for_tick();
+    slept_us += now_us - ended_us;
+    TickTimes::keep_worst(times.start_us, now_us - data_ready_us);
+    ran |= run_tick(tick, now_us);
+    ended_us = hal::now_us();
+    TickTimes::keep_worst(times.tick_us, ended_us - now_us);
     if (ran == kAll) {
       hal::feed_watchdog();
       ran = 0;
@@ -289,10 +327,11 @@ extern "C" void fw_main() {
   if (hal::start_clocks() != Status::ok) stay_on_ground();
   store.load(flight().parameters());  // may erase: before the watchdog and the ticks
   hal::start_time_base();
-  hal::spi1.init();  // switches on the clocks of all ports in use
+  hal::imu_link.init();  // switches on the clocks of all ports in use
   start_leds();
   hal::i2c3.init();
   hal::i2c2.init();
+  hal::spi3.init();
   hal::radio.init();
   hal::battery_adc.init();
   hal::start_watchdog();

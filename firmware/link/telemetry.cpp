@@ -136,6 +136,11 @@ std::span<const std::uint8_t> Telemetry::next(std::uint32_t time_ms, const Fault
     unsaved_told_ = health.parameters_unsaved;
     if (unsaved_told_) return send(status_text("parameters not saved, restart to make room", true));
   }
+  // A card has two seconds to come up before it is missed.
+  if (log_told_ != health.log_trouble && time_ms > 2000) {
+    log_told_ = health.log_trouble;
+    if (log_told_ != nullptr) return send(status_text(log_told_, true));
+  }
   if (reasons_told_ != flight_.reason_count()) {
     reasons_told_ = flight_.reason_count();
     const bool bad = flight_.emergency() || flight_.state() == FlightState::failsafe;
@@ -164,9 +169,10 @@ Message Telemetry::heartbeat() const {
 Message Telemetry::sys_status(const Faults& faults, const Health& health) const {
   // MAV_SYS_STATUS_SENSOR
   constexpr std::uint32_t kGyroAccel = 0x3, kField = 0x4, kPressure = 0x8, kVisionPosition = 0x80,
-                          kMotors = 0x8000, kFence = 0x10'0000, kBattery = 0x200'0000;
+                          kMotors = 0x8000, kFence = 0x10'0000, kLogging = 0x100'0000,
+                          kBattery = 0x200'0000;
   constexpr std::uint32_t kAll =
-      kGyroAccel | kField | kPressure | kVisionPosition | kMotors | kFence | kBattery;
+      kGyroAccel | kField | kPressure | kVisionPosition | kMotors | kFence | kLogging | kBattery;
   const Conditions now = flight_.conditions();
   std::uint32_t healthy = kAll;
   const auto spoils = [&](Condition condition, std::uint32_t bits) {
@@ -181,6 +187,7 @@ Message Telemetry::sys_status(const Faults& faults, const Health& health) const 
   spoils(Condition::esc_silent, kMotors);
   spoils(Condition::outside_fence, kFence);
   spoils(Condition::battery_low, kBattery);
+  if (health.log_trouble != nullptr) healthy &= ~kLogging;
   std::int32_t current_mA = 0;
   for (unsigned i = 0; i < 4; ++i) current_mA += flight_.esc_status(i).current_mA;
   Message m(mavlink::kSysStatus, 31);

@@ -22,8 +22,9 @@ namespace fw {
 
 struct Health {  // what only the image knows
   std::uint16_t load_permille = 0;
-  const char* boot_text = "";       // reset cause, sent once
-  bool parameters_unsaved = false;  // flash did not take the last change
+  const char* boot_text = "";         // reset cause, sent once
+  bool parameters_unsaved = false;    // flash did not take the last change
+  const char* log_trouble = nullptr;  // why there is no log, or not all of it; null: all is well
 };
 
 class Telemetry {
@@ -64,6 +65,7 @@ class Telemetry {
   std::uint16_t ack_command_ = 0;
   Reason ack_reason_ = Reason::none;
   std::uint32_t reasons_told_ = 0;
+  const char* log_told_ = nullptr;
   bool refusal_due_ = false, booted_told_ = false, unsaved_told_ = false;
 };
 

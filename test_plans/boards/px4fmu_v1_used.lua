@@ -10,6 +10,7 @@ return {
     { name = "baro", type = "ms5611", bus = "i2c2", address = 0x76 },
     { name = "mag", type = "hmc5883l", bus = "i2c2", address = 0x1E, drdy = "PB1", axes = { "+y", "-x", "+z" } },
     { name = "battery", type = "battery_sense", bus = "PC0" },
+    { name = "card", type = "sd_card", bus = "spi3", cs = "PA4" },
     { name = "esc1", type = "esc_i2c", bus = "i2c3", address = 0x29, motor = 1 },
     { name = "esc2", type = "esc_i2c", bus = "i2c3", address = 0x2A, motor = 2 },
     { name = "esc3", type = "esc_i2c", bus = "i2c3", address = 0x2B, motor = 3 },
@@ -18,5 +19,5 @@ return {
       params = { uplink_loss = "5 %" } },
   },
   pins = { { name = "led_amber", pin = "PB14" }, { name = "led_blue", pin = "PB15" } },
-  watch = { "fw::imu_task", "fw::attitude_task", "fw::position_task", "fw::esc_task", "fw::sensor_task", "fw::telemetry_task" },
+  watch = { "fw::imu_task", "fw::attitude_task", "fw::position_task", "fw::esc_task", "fw::sensor_task", "fw::telemetry_task", "fw::log_task" },
 }
