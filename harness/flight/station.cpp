@@ -186,6 +186,8 @@ void Station::hear(const io::MavlinkFrame& frame) {
     telemetry_.voltage_V = status->voltage_battery / 1000.0;
     telemetry_.current_A = status->current_battery / 100.0;
     telemetry_.load = status->load / 1000.0;
+    constexpr std::uint32_t kLogging = 1u << 24;  // MAV_SYS_STATUS_LOGGING
+    telemetry_.logging = (status->sensors_health & kLogging) != 0 ? 1.0 : 0.0;
   } else if (const auto attitude = io::unpack<io::AttitudeQuaternion>(frame)) {
     // cos(tilt) is the z-z element of the rotation: 1 - 2 (x^2 + y^2).
     const double x = attitude->q2, y = attitude->q3;

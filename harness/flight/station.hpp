@@ -42,6 +42,7 @@ struct Telemetry {
   double height_m = std::nan(""), north_m = std::nan(""), east_m = std::nan("");
   double tilt_rad = std::nan("");
   double voltage_V = std::nan(""), current_A = std::nan(""), load = std::nan("");
+  double logging = std::nan("");  // 1: SYS_STATUS calls it healthy
   std::uint64_t frames = 0;
 };
 
