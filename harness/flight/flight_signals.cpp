@@ -44,6 +44,8 @@ void FlightWorld::name_signals() {
                const auto& target = station_.target();
                return target ? (state().p_WB_W_m - target->p_W_m).norm() : 0.0;
              });
+  add_signal("waypoint", D::none, "how many of { waypoints = ... } were reached and held",
+             [this] { return waypoints_ ? waypoints_->reached() : 0.0; });
   add_signal("bus_voltage", D::voltage, "at the ESCs", [=] { return state().bus_voltage_V; });
   add_signal("battery_current", D::current, "", [=] { return state().battery_current_A; });
   add_signal("charge_used", D::charge, "", [=] { return state().charge_used_C; });

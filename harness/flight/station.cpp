@@ -21,6 +21,7 @@ Station::Station()
           [this](const io::MavlinkFrame& frame, std::span<const std::uint8_t>) { hear(frame); }) {}
 
 void Station::send_pose(const CapturedPose& pose, const Send& send) {
+  last_pose_ = pose;
   io::ViconPositionEstimate message;
   message.usec = static_cast<std::uint64_t>(pose.exposed_ns / 1000);
   message.x = static_cast<float>(pose.p_WB_W_m.x());
@@ -60,6 +61,7 @@ void Station::set_target(const std::optional<Target>& target) {
   target_ = target;
   goal_speed_mps_ = 0.0;
   path_ = nullptr;
+  guide_ = nullptr;
   cruise_W_mps_.reset();
 }
 
@@ -72,6 +74,11 @@ void Station::follow(const Path& path, double yaw_rad) {
 void Station::cruise(const Eigen::Vector3d& v_W_mps, const Target& at_height) {
   set_target(at_height);
   cruise_W_mps_ = v_W_mps;
+}
+
+void Station::guide(const Guide& guide) {
+  set_target(guide(last_step_ns_).target);
+  guide_ = guide;
 }
 
 void Station::move_target(const Target& goal, double speed_mps) {
@@ -106,6 +113,11 @@ void Station::step(std::int64_t t_ns, const Send& send) {
     target_->p_W_m += left_m.norm() <= reach_m ? left_m : left_m.normalized() * reach_m;
   }
   if (path_) target_->p_W_m = path_(static_cast<double>(t_ns - path_start_ns_) * 1e-9).p_W_m;
+  if (guide_) {
+    const SetPoint now = guide_(t_ns);
+    target_ = now.target;
+    cruise_W_mps_ = now.v_W_mps;
+  }
   last_step_ns_ = t_ns;
   if (target_ && t_ns >= next_target_ns_) send_target(t_ns, send);
   if (!commands_.empty() && t_ns >= commands_.front().next_ns) send_command(t_ns, send);

@@ -20,19 +20,16 @@
 
 #include "harness/flight/capture.hpp"
 #include "harness/flight/parameter_requests.hpp"
+#include "harness/flight/set_point.hpp"
 #include "io_bridges/protocols/mavlink_messages.hpp"
 
 namespace whirl::flight {
-
-struct Target {  // where the vehicle shall be, frame W
-  Eigen::Vector3d p_W_m = Eigen::Vector3d::Zero();
-  double yaw_rad = 0.0;
-};
 
 struct PathPoint {
   Eigen::Vector3d p_W_m, v_W_mps, a_W_mps2;
 };
 using Path = std::function<PathPoint(double t_s)>;  // t from when it was begun
+using Guide = std::function<SetPoint(std::int64_t t_ns)>;
 
 // What telemetry has told, NaN until it did.
 struct Telemetry {
@@ -59,7 +56,9 @@ class Station {
   void move_target(const Target& goal, double speed_mps);  // from the present target on
   void follow(const Path& path, double yaw_rad);           // from now on
   void cruise(const Eigen::Vector3d& v_W_mps, const Target& at_height);
+  void guide(const Guide& guide);  // asked at each step for what is commanded then
   const std::optional<Target>& target() const { return target_; }
+  const std::optional<CapturedPose>& last_pose() const { return last_pose_; }  // that was sent
   // COMMAND_LONG; waits its turn behind an earlier one that is not yet acknowledged.
   void command(std::uint16_t command, const std::array<float, 7>& param);
   void request_parameter(const std::string& name, std::optional<float> value);  // none: read it
@@ -101,6 +100,8 @@ class Station {
   Path path_;
   std::int64_t path_start_ns_ = 0;
   std::optional<Eigen::Vector3d> cruise_W_mps_;
+  Guide guide_;
+  std::optional<CapturedPose> last_pose_;
   std::int64_t next_target_ns_ = 0, last_step_ns_ = 0;
   Awaited awaited_ = Awaited::nothing;
   std::vector<std::vector<std::uint8_t>> carriers_;  // frames that carry what is awaited

@@ -144,6 +144,10 @@ class Script {
   void wait_until(std::int64_t t_ns, int condition_ref = -1);
   bool condition_met() const { return condition_met_; }
   void set_step(const std::string& name);
+  // Of t:command: reads the table, files that it names too, and gives it to the world.
+  Result<Done> give_command(const lua::Table& table);
+  // Of t:at: at the first step from t_ns on, after the plan's own turn.
+  Result<Done> add_timed_command(std::int64_t t_ns, const lua::Table& table);
   // Judged in finish() over [from, min(to, end)].
   using Window = std::function<void(Script&, std::int64_t from_ns, std::int64_t to_ns)>;
   void add_window(std::int64_t to_ns, Window window);
@@ -164,6 +168,8 @@ class Script {
     Window judge;
   };
   void start(lua_State* L, const Plan& plan);
+  Result<State> resume();
+  Result<Done> give_due_commands();
   void check_conditions(lua_State* L);
   void check_guarding_conditions(lua_State* L);
   void look_at_guarded();
@@ -178,11 +184,12 @@ class Script {
   std::int64_t wake_ns_ = 0;
   int wake_condition_ = -1;
   bool condition_met_ = false;
-  bool started_ = false;
+  bool started_ = false, done_ = false;
   bool looked_ = false;
   std::optional<RandomStream> chance_;
   std::string step_name_;
   std::vector<OpenWindow> windows_;
+  std::multimap<std::int64_t, Command> timed_;  // of one time in the order of their calls
   std::string unfilled_;  // of the window that is being judged: how; empty: it was watched whole
   std::set<std::string> names_;             // of the expectations
   std::map<std::string, int> last_number_;  // that made such a name unique
