@@ -50,19 +50,21 @@ void add_reason(std::vector<Reason>& reasons, const Report& report, Verdict verd
 
 void conclude(Report& report) {
   std::vector<Reason> all = report.reasons;
-  add_reason(all, report, Verdict::fail, Blame::firmware);
-  add_reason(all, report, Verdict::inconclusive, Blame::not_shown);
-  if (report.expectations.empty()) {
+  if (report.judged) add_reason(all, report, Verdict::fail, Blame::firmware);
+  if (report.judged) add_reason(all, report, Verdict::inconclusive, Blame::not_shown);
+  if (report.judged && report.expectations.empty()) {
     all.push_back({Blame::user, report.file + ": the plan expects nothing, so it could not fail"});
   }
   const Reason* decides = deciding(all);
-  report.verdict = decides == nullptr ? Verdict::pass : verdict_of(decides->blame);
+  const Verdict good = report.judged ? Verdict::pass : Verdict::none;
+  report.verdict = decides == nullptr ? good : verdict_of(decides->blame);
   report.blame = decides == nullptr ? Blame::harness : decides->blame;
   report.reason = decides == nullptr ? "" : decides->what;
 }
 
 int exit_code(const Report& report) {
-  return report.verdict == Verdict::pass ? 0 : exit_code_of(report.blame);
+  const bool good = report.verdict == Verdict::pass || report.verdict == Verdict::none;
+  return good ? 0 : exit_code_of(report.blame);
 }
 
 }  // namespace whirl::results

@@ -107,9 +107,10 @@ struct Report {
   // What has been seen against a pass, in order. conclude() draws the next three from it and from the
   // expectations.
   std::vector<Reason> reasons;
+  bool judged = true;  // false: what was expected is told and decides nothing (whirl fly)
   Verdict verdict = Verdict::error;
-  Blame blame = Blame::harness;  // of all but a pass
-  std::string reason;            // one line; empty for a pass
+  Blame blame = Blame::harness;  // of all but pass and none
+  std::string reason;            // one line; empty for these
 
   std::uint64_t seed = 0;
   std::string digest;

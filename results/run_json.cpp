@@ -101,7 +101,7 @@ std::string run_json(const Report& r) {
   out["file"] = r.file;
   out["tags"] = r.tags;
   out["verdict"] = name(r.verdict);
-  out["blame"] = name(r.blame);  // of all but a pass
+  out["blame"] = name(r.blame);  // of all but pass and none
   out["reason"] = r.reason;
   out["reasons"] = ordered_json::array();
   for (const Reason& why : r.reasons) {
