@@ -1,5 +1,7 @@
 #include "firmware/link/telemetry.hpp"
 
+#include <algorithm>
+
 #include "firmware/config/vehicle.hpp"
 
 namespace fw {
@@ -9,7 +11,13 @@ using mavlink::Frame, mavlink::kComponent, mavlink::kSystem, mavlink::Message;
 
 constexpr std::uint32_t kSlotsPerSecond = 200;
 
-enum Command : std::uint16_t { kNavLand = 21, kNavTakeoff = 22, kArmDisarm = 400 };
+enum Command : std::uint16_t {
+  kNavLand = 21,
+  kNavTakeoff = 22,
+  kArmDisarm = 400,
+  kRequestMessage = 512,
+  kRequestCapabilities = 520
+};
 enum AckResult : std::uint8_t {
   kAccepted = 0,
   kTemporarilyRejected = 1,
@@ -51,6 +59,8 @@ void Telemetry::receive(std::span<const std::uint8_t> bytes) {
     if (frame.id == mavlink::kSetPositionTargetLocalNed) on_target(frame);
     if (frame.id == mavlink::kCommandLong) on_command(frame);
     flight_.on_link();
+    requests_.on_frame(frame);
+    if (const auto command = requests_.take_command_int()) acknowledge(*command, kUnsupported);
     parameters_.on_frame(frame, flight_.parameters(), flight_.state() != FlightState::disarmed);
   }
 }
@@ -68,7 +78,7 @@ void Telemetry::on_target(const Frame& frame) {
   constexpr std::uint16_t kNoLevelPosition = 0x0003, kNoHeight = 0x0004, kNoVelocity = 0x0038,
                           kNoAcceleration = 0x01C0;
   constexpr std::uint8_t kLocalNed = 1;
-  if (frame.get<std::uint8_t>(50) != kSystem || frame.get<std::uint8_t>(52) != kLocalNed) return;
+  if (!mavlink::for_us(frame, 50) || frame.get<std::uint8_t>(52) != kLocalNed) return;
   const auto mask = frame.get<std::uint16_t>(48);
   if ((mask & kNoHeight) != 0) return;
   const Vector3 p_W = get_vector(frame, 4), v_W = get_vector(frame, 16),
@@ -87,23 +97,42 @@ void Telemetry::on_target(const Frame& frame) {
 }
 
 void Telemetry::on_command(const Frame& frame) {
-  if (frame.get<std::uint8_t>(30) != kSystem) return;
-  ack_command_ = frame.get<std::uint16_t>(28);
-  ack_due_ = true;
-  switch (ack_command_) {
+  if (!mavlink::for_us(frame, 30)) return;
+  const auto command = frame.get<std::uint16_t>(28);
+  Reason reason = Reason::none;
+  switch (command) {
     case kArmDisarm:
-      ack_reason_ = frame.get<float>(0) > 0.5f ? flight_.arm() : flight_.disarm();
+      reason = frame.get<float>(0) > 0.5f ? flight_.arm() : flight_.disarm();
       break;
     case kNavTakeoff:
-      ack_reason_ = flight_.take_off(frame.get<float>(24));
+      reason = flight_.take_off(frame.get<float>(24));
       break;
     case kNavLand:
-      ack_reason_ = flight_.land();
+      reason = flight_.land();
+      break;
+    case kRequestMessage:
+      return on_request_message(frame.get<float>(0));
+    case kRequestCapabilities:
+      requests_.on_version_wanted();
       break;
     default:
-      ack_reason_ = Reason::none;
+      return acknowledge(command, kUnsupported);
   }
-  refusal_due_ = ack_reason_ != Reason::none;
+  acknowledge(command, result_of(reason));
+  if (reason == Reason::none) return;
+  refusal_ = reason;
+  refusal_due_ = true;
+}
+
+// Numbers of messages travel as floats. Those of the slots come by themselves.
+void Telemetry::on_request_message(float message) {
+  const bool version = message == static_cast<float>(mavlink::kAutopilotVersion);
+  if (version) requests_.on_version_wanted();
+  acknowledge(kRequestMessage, version ? kAccepted : kDenied);
+}
+
+void Telemetry::acknowledge(std::uint16_t command, std::uint8_t result) {
+  if (acks_due_ < acks_.size()) acks_[acks_due_++] = {command, result};
 }
 
 std::span<const std::uint8_t> Telemetry::send(const Message& message) {
@@ -121,7 +150,8 @@ std::span<const std::uint8_t> Telemetry::next(std::uint32_t time_ms, const Fault
   if (slot % 40 == 33) return send(filters(time_ms));
   if (slot == 6) return send(heartbeat());
   if (slot == 106) return send(sys_status(faults, health));
-  if (ack_due_) return send(ack());
+  if (acks_due_ > 0) return send(ack());
+  if (slot % 10 == 2 && requests_.due()) return send(requests_.next(time_ms));
   if (slot % 10 == 7 && parameters_.due()) return send(parameters_.next(flight_.parameters()));
   if (slot % 50 != 8) return {};  // texts are long: four a second at most
   if (!booted_told_ && time_ms > 500) {
@@ -130,7 +160,7 @@ std::span<const std::uint8_t> Telemetry::next(std::uint32_t time_ms, const Fault
   }
   if (refusal_due_) {
     refusal_due_ = false;
-    return send(status_text(text_of(ack_reason_), true));
+    return send(status_text(text_of(refusal_), true));
   }
   if (unsaved_told_ != health.parameters_unsaved) {
     unsaved_told_ = health.parameters_unsaved;
@@ -272,12 +302,11 @@ Message Telemetry::float_array(std::uint32_t time_ms, std::uint16_t id, const ch
 }
 
 Message Telemetry::ack() {
-  ack_due_ = false;
-  const bool known =
-      ack_command_ == kArmDisarm || ack_command_ == kNavTakeoff || ack_command_ == kNavLand;
+  const Ack first = acks_[0];
+  --acks_due_;
+  std::copy_n(acks_.begin() + 1, acks_due_, acks_.begin());
   Message m(mavlink::kCommandAck, 3);
-  m.put(0, ack_command_);
-  return m.put(2, static_cast<std::uint8_t>(known ? result_of(ack_reason_) : kUnsupported));
+  return m.put(0, first.command).put(2, first.result);
 }
 
 Message Telemetry::status_text(const char* text, bool bad) {
