@@ -23,7 +23,9 @@ enum class Parameter : std::uint8_t {
   mag_declination_deg,  // of the magnetic field, towards east of north
   fence_north_m,        // half the width of the box about the origin that is not left; 0: no limit
   fence_east_m,
-  fence_top_m,         // its height over the origin
+  fence_top_m,     // its height over the origin
+  fence_radius_m,  // the same by GPS alone: a cylinder about where it began
+  fence_height_m,
   bat_resistance_ohm,  // of pack and leads: the voltage at rest is what is measured, and R I
   bat_low_V,           // at rest: lands, and does not arm
   bat_empty_V,         // at rest: lands at once
@@ -54,6 +56,8 @@ inline constexpr ParameterRow kParameterTable[] = {
     {Parameter::fence_north_m, "FENCE_NORTH", 2.5f, 0, 10'000, Numbers::real, WhileArmed::refused},
     {Parameter::fence_east_m, "FENCE_EAST", 2.0f, 0, 10'000, Numbers::real, WhileArmed::refused},
     {Parameter::fence_top_m, "FENCE_TOP", 3.0f, 0, 10'000, Numbers::real, WhileArmed::refused},
+    {Parameter::fence_radius_m, "FENCE_RADIUS", 50, 0, 10'000, Numbers::real, WhileArmed::refused},
+    {Parameter::fence_height_m, "FENCE_HEIGHT", 30, 0, 10'000, Numbers::real, WhileArmed::refused},
     // Four lithium-polymer cells: 3.6 V each at rest is some 15 % of the charge, 3.45 V some 5 %. A pack
     // of 2200 mAh has 8 to 15 mOhm by its discharge rating, its leads and plugs as much.
     {Parameter::bat_resistance_ohm, "BAT_RESISTANCE", 0.025f, 0, 1, Numbers::real,

@@ -34,6 +34,7 @@ class Flight {
   void on_imu_missing();                                      // a tick without a sample
   void set_imu_frozen(bool frozen) { imu_frozen_ = frozen; }  // samples that stopped changing
   void on_fix(const CaptureFix& fix);
+  void on_gps(const GpsSolution& solution) { estimator_.on_gps(solution); }
   void on_pressure(float pressure_Pa) { estimator_.on_pressure(pressure_Pa); }
   void on_field(const Vector3& field_B_uT) { estimator_.on_field(field_B_uT); }
   void on_target(const Vector3& p_W_m, float yaw_rad);

@@ -15,7 +15,7 @@ const char* text_of(Reason reason) {
     case Reason::imu_implausible:
       return "IMU does not feel gravity at rest";
     case Reason::no_position:
-      return "no motion capture";
+      return "no position";
     case Reason::estimate_not_converged:
       return "estimate not converged";
     case Reason::tilted:

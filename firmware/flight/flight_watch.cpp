@@ -32,7 +32,12 @@ Conditions Flight::conditions() const {
   return now;
 }
 
+// The capture system's room, or, by GPS alone, about where it began.
 Fence Flight::fence() const {
+  if (!estimator_.fix_fresh()) {
+    return {.top_m = parameters_.get(Parameter::fence_height_m),
+            .radius_m = parameters_.get(Parameter::fence_radius_m)};
+  }
   return {parameters_.get(Parameter::fence_north_m), parameters_.get(Parameter::fence_east_m),
           parameters_.get(Parameter::fence_top_m)};
 }
@@ -69,12 +74,11 @@ Reason Flight::first_sensor_problem() const {
 }
 
 Reason Flight::ready_to_arm() const {
-  constexpr std::uint32_t kSettled = 20;  // fixes in a row, half a second
   if (imu_missing_ms_ > kImuLost_ms) return Reason::imu_not_running;
   if (imu_frozen_) return Reason::imu_frozen;
-  if (estimator_.fix_age_ms() > Estimator::kFixFresh_ms) return Reason::no_position;
+  if (!estimator_.position_good()) return Reason::no_position;
   if (!estimator_.calibrated()) return Reason::imu_not_calibrated;
-  if (estimator_.still_fixes() < kSettled) return Reason::estimate_not_converged;
+  if (!estimator_.position_settled()) return Reason::estimate_not_converged;
   if (const Reason problem = first_sensor_problem(); problem != Reason::none) return problem;
   if (!estimator_.converged()) return Reason::estimate_not_converged;
   if (tilt_cosine(estimator_.q_WB()) < kTiltToArm_cos) return Reason::tilted;

@@ -10,8 +10,9 @@
 namespace fw::schedule {
 
 inline constexpr std::uint32_t kAttitudePeriod = 5, kPositionPeriod = 25, kSetpointPeriod = 20,
-                               kStatusPeriod = 50, kTelemetryPeriod = 5, kSensorPeriod = 10;
-inline constexpr std::uint32_t kPositionTick = 3, kTelemetryTick = 2, kSensorTick = 9;
+                               kStatusPeriod = 50, kTelemetryPeriod = 5, kGpsPeriod = 5,
+                               kSensorPeriod = 10;
+inline constexpr std::uint32_t kPositionTick = 3, kTelemetryTick = 2, kGpsTick = 1, kSensorTick = 9;
 
 constexpr bool attitude(std::uint32_t tick) {
   return tick % kAttitudePeriod == 0;
@@ -25,7 +26,9 @@ constexpr bool setpoints(std::uint32_t tick) {
 constexpr bool telemetry(std::uint32_t tick) {
   return tick % kTelemetryPeriod == kTelemetryTick;
 }
-
+constexpr bool gps(std::uint32_t tick) {
+  return tick % kGpsPeriod == kGpsTick;
+}
 constexpr bool sensors(std::uint32_t tick) {
   return tick % kSensorPeriod == kSensorTick;
 }

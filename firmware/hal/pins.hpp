@@ -55,6 +55,8 @@ using SensorScl = Pin<hw::GPIOB, 10>;
 using SensorSda = Pin<hw::GPIOB, 11>;
 using RadioTx = Pin<hw::GPIOA, 2>;
 using RadioRx = Pin<hw::GPIOA, 3>;
+using GpsTx = Pin<hw::GPIOC, 6>;
+using GpsRx = Pin<hw::GPIOC, 7>;
 using LedAmber = Pin<hw::GPIOB, 14>;  // lit when low
 using LedBlue = Pin<hw::GPIOB, 15>;   // lit when low
 

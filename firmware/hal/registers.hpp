@@ -29,7 +29,8 @@ struct RCC {
   static constexpr std::uint32_t TIM2EN = bit(0), TIM5EN = bit(3), TIM6EN = bit(4), TIM7EN = bit(5),
                                  SPI3EN = bit(15), USART2EN = bit(17), I2C2EN = bit(22),
                                  I2C3EN = bit(23), PWREN = bit(28);
-  static constexpr std::uint32_t ADC1EN = bit(8), SPI1EN = bit(12), SYSCFGEN = bit(14);
+  static constexpr std::uint32_t USART6EN = bit(5), ADC1EN = bit(8), SPI1EN = bit(12),
+                                 SYSCFGEN = bit(14);
   static constexpr std::uint32_t RMVF = bit(24), BORRSTF = bit(25), PADRSTF = bit(26),
                                  PORRSTF = bit(27), SFTRSTF = bit(28), WDGRSTF = bit(29),
                                  WWDGRSTF = bit(30), LPWRRSTF = bit(31);
@@ -132,8 +133,8 @@ struct I2c {
 using I2C2 = I2c<0x4000'5800>;
 using I2C3 = I2c<0x4000'5C00>;
 
-struct USART2 {
-  static constexpr std::uint32_t base = 0x4000'4400;
+template <std::uint32_t base>
+struct Usart {
   using SR = Reg32<base + 0x00>;
   using DR = Reg32<base + 0x04>;
   using BRR = Reg32<base + 0x08>;
@@ -142,6 +143,8 @@ struct USART2 {
   static constexpr std::uint32_t RE = bit(2), TE = bit(3), UE = bit(13);
   static constexpr std::uint32_t DMAR = bit(6), DMAT = bit(7);
 };
+using USART2 = Usart<0x4000'4400>;
+using USART6 = Usart<0x4001'1400>;
 
 template <std::uint32_t kBase>
 struct Timer {
@@ -185,7 +188,9 @@ using I2c2RxDma = DmaStream<kDma1, 3>;    // channel 7
 using Usart2RxDma = DmaStream<kDma1, 5>;  // channel 4
 using Usart2TxDma = DmaStream<kDma1, 6>;  // channel 4
 using Spi1RxDma = DmaStream<kDma2, 0>;    // channel 3
+using Usart6RxDma = DmaStream<kDma2, 2>;  // channel 5
 using Spi1TxDma = DmaStream<kDma2, 3>;    // channel 3
+using Usart6TxDma = DmaStream<kDma2, 6>;  // channel 5
 
 // Interrupt numbers, RM0090 table 61.
 enum class Irq : std::uint8_t {
@@ -199,6 +204,7 @@ enum class Irq : std::uint8_t {
   TIM6_DAC = 54,
   TIM7_Global = 55,
   DMA2_Stream0 = 56,
+  DMA2_Stream6 = 69,
   I2C3_EV = 72,
   I2C3_ER = 73,
 };

@@ -13,6 +13,7 @@
 #include "firmware/drivers/mpu6000.hpp"
 #include "firmware/drivers/ms5611.hpp"
 #include "firmware/drivers/sd_card.hpp"
+#include "firmware/drivers/ublox_gps.hpp"
 #include "firmware/flight/flight.hpp"
 #include "firmware/flight/schedule.hpp"
 #include "firmware/hal/battery_adc.hpp"
@@ -40,6 +41,7 @@ constinit Mpu6000<hal::ImuLink> imu(hal::imu_link);
 constinit EscBus<hal::I2cMaster<hal::EscI2c>> escs(hal::i2c3);
 constinit Ms5611<hal::I2cMaster<hal::SensorI2c>> barometer(hal::i2c2);
 constinit Hmc5883l<hal::I2cMaster<hal::SensorI2c>> magnetometer(hal::i2c2);
+constinit UbloxGps<hal::UartLink<hal::GpsUart>> gps(hal::gps_uart);
 constinit ParameterStore<hal::ParameterSectors> store(hal::parameter_sectors);
 using Card = SdCard<hal::SpiMaster<hal::CardBus>>;
 constinit Card card(hal::spi3);
@@ -58,7 +60,8 @@ enum Ran : std::uint8_t {
   kTelemetry = 16,
   kSensors = 32,
   kLog = 64,
-  kAll = 127
+  kGps = 128,
+  kAll = 255
 };
 
 Flight& flight() {  // built at the first call: Eigen's vectors have no constant initialisers
@@ -150,6 +153,37 @@ __attribute__((noinline)) void sensor_task() {
   faults.sensor_reconfigured = barometer.restarts() + magnetometer.reconfigured();
 }
 
+static GpsSolution solution_of(const GpsFix& fix) {
+  const auto velocity_mps = [](std::int32_t cmps) { return 0.01f * static_cast<float>(cmps); };
+  const auto metres = [](std::uint32_t mm) { return 1e-3f * static_cast<float>(mm); };
+  GpsSolution out;
+  out.latitude_e7_deg = fix.latitude_e7_deg;
+  out.longitude_e7_deg = fix.longitude_e7_deg;
+  out.height_mm = fix.height_mm;
+  out.v_W_mps = {velocity_mps(fix.v_north_cmps), velocity_mps(fix.v_east_cmps),
+                 velocity_mps(fix.v_down_cmps)};
+  out.level_accuracy_m = metres(fix.level_accuracy_mm);
+  out.down_accuracy_m = metres(fix.down_accuracy_mm);
+  out.speed_accuracy_mps = 0.01f * static_cast<float>(fix.speed_accuracy_cmps);
+  out.fix_type = fix.fix_type;
+  out.satellites = fix.satellites;
+  out.within_limits = fix.usable();
+  out.age_s = config::kGpsLatency_s + 1e-6f * static_cast<float>(fix.age_us(hal::now_us()));
+  return out;
+}
+
+__attribute__((noinline)) void gps_task() {
+  std::array<std::uint8_t, 64> bytes;
+  const std::uint32_t now_us = hal::now_us();
+  const std::size_t n = hal::gps_uart.read(bytes);
+  for (std::size_t i = 0; i < n; ++i) gps.push(bytes[i], now_us);
+  gps.tick(now_us);
+  GpsFix fix;
+  if (gps.take(fix)) flight().on_gps(solution_of(fix));
+  faults.gps_searches = gps.searches();
+  faults.gps_bad_frames = gps.bad_frames();
+}
+
 __attribute__((noinline)) void position_task() {
   flight().position_step();
 }
@@ -232,6 +266,10 @@ std::uint8_t run_tick(std::uint32_t tick, std::uint32_t now_us) {
   if (schedule::sensors(tick)) {
     sensor_task();
     ran |= kSensors;
+  }
+  if (schedule::gps(tick)) {
+    gps_task();
+    ran |= kGps;
   }
   if (schedule::telemetry(tick)) {
     telemetry_task();
@@ -332,8 +370,9 @@ extern "C" void fw_main() {
   hal::i2c3.init();
   hal::i2c2.init();
   hal::spi3.init();
-  hal::radio.init();
   hal::battery_adc.init();
+  hal::radio.init(57'600);
+  hal::gps_uart.init(57'600);  // the driver searches from there
   hal::start_watchdog();
   run();
 }

@@ -24,6 +24,8 @@ int crc_extra(std::uint32_t id) {
       return 220;
     case kParamSet:
       return 168;
+    case kGpsRawInt:
+      return 24;
     case kAttitudeQuaternion:
       return 246;
     case kLocalPositionNed:
@@ -38,6 +40,8 @@ int crc_extra(std::uint32_t id) {
       return 153;
     case kCommandInt:
       return 158;
+    case kGpsGlobalOrigin:
+      return 39;
     case kCommandLong:
       return 152;
     case kCommandAck:

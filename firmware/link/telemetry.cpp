@@ -150,6 +150,8 @@ std::span<const std::uint8_t> Telemetry::next(std::uint32_t time_ms, const Fault
   if (slot % 40 == 33) return send(filters(time_ms));
   if (slot == 6) return send(heartbeat());
   if (slot == 106) return send(sys_status(faults, health));
+  if (slot == 46 && flight_.estimator().gps_frame().known()) return send(gps_origin());
+  if (slot == 146) return send(gps_raw(time_ms));
   if (acks_due_ > 0) return send(ack());
   if (slot % 10 == 2 && requests_.due()) return send(requests_.next(time_ms));
   if (slot % 10 == 7 && parameters_.due()) return send(parameters_.next(flight_.parameters()));
@@ -198,11 +200,11 @@ Message Telemetry::heartbeat() const {
 
 Message Telemetry::sys_status(const Faults& faults, const Health& health) const {
   // MAV_SYS_STATUS_SENSOR
-  constexpr std::uint32_t kGyroAccel = 0x3, kField = 0x4, kPressure = 0x8, kVisionPosition = 0x80,
-                          kMotors = 0x8000, kFence = 0x10'0000, kLogging = 0x100'0000,
-                          kBattery = 0x200'0000;
-  constexpr std::uint32_t kAll =
-      kGyroAccel | kField | kPressure | kVisionPosition | kMotors | kFence | kLogging | kBattery;
+  constexpr std::uint32_t kGyroAccel = 0x3, kField = 0x4, kPressure = 0x8, kGps = 0x20,
+                          kVisionPosition = 0x80, kMotors = 0x8000, kFence = 0x10'0000,
+                          kLogging = 0x100'0000, kBattery = 0x200'0000;
+  constexpr std::uint32_t kAll = kGyroAccel | kField | kPressure | kGps | kVisionPosition |
+                                 kMotors | kFence | kLogging | kBattery;
   const Conditions now = flight_.conditions();
   std::uint32_t healthy = kAll;
   const auto spoils = [&](Condition condition, std::uint32_t bits) {
@@ -212,7 +214,8 @@ Message Telemetry::sys_status(const Faults& faults, const Health& health) const 
   spoils(Condition::imu_frozen, kGyroAccel);
   spoils(Condition::no_field, kField);
   spoils(Condition::no_pressure, kPressure);
-  spoils(Condition::no_position, kVisionPosition);
+  if (!flight_.estimator().gps().good()) healthy &= ~kGps;
+  if (!flight_.estimator().fix_fresh()) healthy &= ~kVisionPosition;
   spoils(Condition::motor_out, kMotors);
   spoils(Condition::esc_silent, kMotors);
   spoils(Condition::outside_fence, kFence);
@@ -266,6 +269,28 @@ Message Telemetry::highres_imu(std::uint32_t time_ms) const {
   }
   m.put(56, seen.imu().temperature_degC).put(60, fields);
   return m;
+}
+
+Message Telemetry::gps_raw(std::uint32_t time_ms) const {
+  const GpsSolution& gps = flight_.estimator().gps();
+  const auto cm = [](float m) {
+    return static_cast<std::uint16_t>(std::clamp(100.0f * m, 0.0f, 65534.0f));
+  };
+  constexpr std::uint16_t kUnknownCourse = 0xFFFF;
+  Message m(mavlink::kGpsRawInt, 30);
+  m.put(0, std::uint64_t{time_ms} * 1000u).put(8, gps.latitude_e7_deg);
+  m.put(12, gps.longitude_e7_deg).put(16, gps.height_mm);
+  m.put(20, cm(gps.level_accuracy_m)).put(22, cm(gps.down_accuracy_m));
+  m.put(24, cm(gps.v_W_mps.head<2>().norm())).put(26, kUnknownCourse);
+  return m.put(28, gps.fix_type).put(29, gps.satellites);
+}
+
+Message Telemetry::gps_origin() const {
+  const GpsFrame& frame = flight_.estimator().gps_frame();
+  Message m(mavlink::kGpsGlobalOrigin, 12);
+  return m.put(0, frame.latitude_e7_deg())
+      .put(4, frame.longitude_e7_deg())
+      .put(8, frame.height_mm());
 }
 
 // Array 1: scales of filters 1 and 2, velocity through the air, wind, height and its rate by the

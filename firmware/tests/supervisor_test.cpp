@@ -157,6 +157,18 @@ TEST(Fence, DrawsInsideByTheMarginAndHasNoLimitWhereNothingIsSaid) {
   EXPECT_EQ(narrow.inside({1.0f, -1.0f, -1.0f}), Vector3(0.0f, 0.0f, 0.0f));
 }
 
+TEST(Fence, ACylinderIsRoundAndBrakesOutwardAlone) {
+  const Fence round{.top_m = 30.0f, .radius_m = 50.0f};
+  EXPECT_TRUE(round.contains({30.0f, 39.9f, -29.0f}));
+  EXPECT_FALSE(round.contains({30.0f, 40.1f, -29.0f}));
+  const Vector3 in = round.inside({300.0f, 400.0f, -99.0f});
+  EXPECT_TRUE(near(in.x(), 29.76, stated(1e-4, "floats")));
+  EXPECT_TRUE(near(in.z(), -29.6, stated(1e-4, "floats")));
+  const Vector3 v = round.stoppable({2.0f, 1.0f, 0.0f}, {49.1f, 0.0f, -5.0f}, 1.0f);
+  EXPECT_TRUE(near(v.x(), 0.5, stated(1e-4, "floats")));
+  EXPECT_TRUE(near(v.y(), 1.0, stated(1e-4, "floats")));
+}
+
 TEST(Fence, AVelocityIsBrakedBeforeTheMarginAndTurnedBackBeyondIt) {
   const Fence room{2.5f, 0.0f, 3.0f};
   EXPECT_EQ(room.stoppable({1.0f, 1.0f, 0.0f}, {0.0f, 50.0f, 0.0f}, 1.0f),

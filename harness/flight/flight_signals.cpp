@@ -61,6 +61,7 @@ void FlightWorld::name_signals() {
   name_motor_signals();
   name_telemetry_signals();
   name_estimate_signals();
+  name_receiver_signals();
 }
 
 void FlightWorld::name_load_signals() {
@@ -137,6 +138,21 @@ void FlightWorld::name_telemetry_signals() {
              [this] { return station_.parameters().pending() ? 1.0 : 0.0; });
 }
 
+void FlightWorld::name_receiver_signals() {
+  const auto length = [this](const char* name, const char* about, std::function<double()> value) {
+    add_signal(name, Dimension::length, about, std::move(value));
+  };
+  const char* error = "of the GPS receiver, in W";
+  const char* shown = "where the receiver sees it, in the frame of GPS_GLOBAL_ORIGIN";
+  length("gps_error_north", error, [this] { return receiver_.error_W_m().x(); });
+  length("gps_error_east", error, [this] { return receiver_.error_W_m().y(); });
+  length("gps_error_down", error, [this] { return receiver_.error_W_m().z(); });
+  const auto seen_m = [this] { return receiver_.place_m(vehicle_.state().p_WB_W_m); };
+  length("receiver_north", shown, [=] { return seen_m().x(); });
+  length("receiver_east", shown, [=] { return seen_m().y(); });
+  length("receiver_height", shown, [=] { return -seen_m().z(); });
+}
+
 void FlightWorld::name_estimate_signals() {
   using D = Dimension;
   const auto told = [this]() -> const Told& { return estimates_.told(); };
@@ -156,6 +172,8 @@ void FlightWorld::name_estimate_signals() {
                [=] { return told().v_AB_B_mps[i]; });
     add_signal(std::string("air_velocity_error_") + axes[i], D::speed, "",
                [=] { return told().v_AB_error_B_mps[i]; });
+    add_signal(std::string("velocity_error_") + ways[i], D::speed, "over ground, as flown by",
+               [=] { return told().v_WB_error_W_mps[i]; });
     add_signal(std::string("told_wind_") + ways[i], D::speed, "",
                [=] { return told().wind_W_mps[i]; });
     add_signal(std::string("wind_error_") + ways[i], D::speed, "",

@@ -50,8 +50,10 @@ FlightWorld::FlightWorld(const FlightParams& params, plant::RotorSet rotors, std
         params.vehicle.airframe.rotors[static_cast<std::size_t>(motor) - 1].unbalance_kgm /
         params.vehicle.airframe.mass_kg);
   }
-  station_.on_frame(
-      [this](const io::MavlinkFrame& frame, std::int64_t at_ns) { estimates_.hear(frame, at_ns); });
+  station_.on_frame([this](const io::MavlinkFrame& frame, std::int64_t at_ns) {
+    estimates_.hear(frame, at_ns);
+    receiver_.hear(frame);
+  });
   if (place_.start) begin(*place_.start);
   name_signals();
 }
@@ -88,6 +90,8 @@ void FlightWorld::on_messages(const io::Batch& happened) {
       } else {
         ++setpoints_refused_;
       }
+    } else if (header.kind == io::Kind::gnss_solution) {
+      receiver_.on_solution(reader.as<io::GnssSolution>());
     } else if (header.kind == io::Kind::uart_received && header.port == kRadioPort) {
       station_.receive(reader.payload(), header.t_ns);
     } else if (header.kind == io::Kind::uart_delivered && header.port == kRadioPort) {

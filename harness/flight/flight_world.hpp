@@ -20,6 +20,7 @@
 #include "harness/flight/estimates.hpp"
 #include "harness/flight/flight_params.hpp"
 #include "harness/flight/guest_radio.hpp"
+#include "harness/flight/receiver.hpp"
 #include "harness/flight/station.hpp"
 #include "harness/flight/transmitter.hpp"
 #include "harness/flight/waypoint_flight.hpp"
@@ -64,6 +65,7 @@ class FlightWorld : public World {
   void name_motor_signals();
   void name_telemetry_signals();
   void name_estimate_signals();
+  void name_receiver_signals();
   void arm(const request::Arm& command);
   void take_off(const request::TakeOff& command);
   void go_to(const request::GoTo& command);
@@ -89,6 +91,7 @@ class FlightWorld : public World {
   GuestRadio guest_;
   std::shared_ptr<WaypointFlight> waypoints_;  // of the latest command; shared with the station
   Estimates estimates_;
+  Receiver receiver_;
   Transmitter transmitter_;
   TimedFaults faults_;
   std::vector<Signal> signals_;

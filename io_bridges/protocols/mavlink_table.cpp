@@ -32,6 +32,7 @@ constexpr MavlinkInfo kMessages[] = {
     {44, "MISSION_COUNT", 9, 4, 221},
     {45, "MISSION_CLEAR_ALL", 3, 2, 232},
     {47, "MISSION_ACK", 8, 3, 153},
+    {49, "GPS_GLOBAL_ORIGIN", 20, 12, 39},
     {65, "RC_CHANNELS", 42, 42, 118},
     {69, "MANUAL_CONTROL", 30, 11, 243},
     {70, "RC_CHANNELS_OVERRIDE", 38, 18, 124},

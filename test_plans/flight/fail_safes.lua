@@ -47,23 +47,23 @@ end
 
 fail_safe("the capture is lost", {}, function(t)
   t:fault { kind = "capture_lost" }
-  lands(t, "no motion capture", 4)
+  lands(t, "no position", 4)
 end)
 
 fail_safe("the capture and the barometer are lost", {}, function(t)
   t:fault { kind = "capture_lost" }
   t:fault { kind = "i2c_nack", device = "baro" }
-  lands(t, "no motion capture", 4)
+  lands(t, "no position", 4)
 end)
 
 fail_safe("the capture comes back on the way down", {}, function(t)
   t:fault { kind = "capture_lost", duration = "1.5 s" }
-  lands(t, "no motion capture", 4)
+  lands(t, "no position", 4)
 end)
 
 fail_safe("the radio falls silent", {}, function(t)
   t:fault { kind = "uart_silence", device = "radio" }
-  lands(t, "no motion capture", 4)
+  lands(t, "no position", 4)
 end)
 
 fail_safe("the battery is low", {}, function(t)
@@ -128,7 +128,7 @@ end
 
 -- What it does not arm with, and says why.
 local refusals = {
-  { "no capture", { kind = "capture_lost" }, "no motion capture" },
+  { "no capture", { kind = "capture_lost" }, "no position" },
   { "no barometer", { kind = "i2c_nack", device = "baro" }, "barometer silent" },
   { "no magnetometer", { kind = "i2c_nack", device = "mag" }, "magnetometer silent" },
   { "an iron floor", nil, "magnetometer silent or out of range", magnet = true },
