@@ -41,9 +41,9 @@ endfunction()
 set(FLIGHT_SOURCES images/flight.cpp ${FW_CORE} hal/clock.cpp hal/time_base.cpp hal/spi_master.cpp
     hal/i2c_master.cpp hal/uart_link.cpp hal/battery_adc.cpp hal/flash.cpp)
 # Of the RAM, 19 KiB are the card's: 16 that bridge its longest pause, and a block each way.
-fw_image(flight FLASH 128 RAM 24 FOLDER . SOURCES ${FLIGHT_SOURCES})
+fw_image(flight FLASH 128 RAM 32 FOLDER . SOURCES ${FLIGHT_SOURCES})
 # The same for ESCs in mode 5, whose set-points span another range.
-fw_image(flight_st FLASH 128 RAM 24 FOLDER . SOURCES ${FLIGHT_SOURCES})
+fw_image(flight_st FLASH 128 RAM 32 FOLDER . SOURCES ${FLIGHT_SOURCES})
 target_compile_definitions(flight_st PRIVATE FW_ESC_MODE=thrust_by_power)
 foreach(image hardfault silent sleeper starved)
   fw_image(${image} FLASH 4 RAM 1 FOLDER images SOURCES images/${image}.cpp)
