@@ -113,4 +113,43 @@ void write_fresh_volume(MemoryFile& memory, std::uint32_t serial) {
   }
 }
 
+void fill_fresh_volume(MemoryFile& memory, std::int64_t free_bytes) {
+  WHIRL_CHECK(memory.size_bytes() <= kMost_filled_bytes, memory.size_bytes());
+  constexpr std::int64_t kEntries = kSector_bytes / 4, kFirst = kRoot_cluster + 1;
+  const Layout l = layout_of(memory.size_bytes());
+  const std::int64_t cluster_bytes = l.sectors_per_cluster * kSector_bytes;
+  const std::int64_t left = (free_bytes + cluster_bytes - 1) / cluster_bytes;
+  const std::int64_t taken = l.clusters - 1 - left;  // the root directory has one
+  if (taken <= 0) return;
+  const std::int64_t fat_at = kPartition_sector + kReserved_sectors;
+  Sector sector{};
+  for (std::int64_t first = 0; first < kFirst + taken; first += kEntries) {
+    memory.read((fat_at + first / kEntries) * kSector_bytes, sector);
+    for (std::int64_t i = 0; i < kEntries; ++i) {
+      const std::int64_t cluster = first + i;
+      if (cluster < kFirst || cluster >= kFirst + taken) continue;
+      const bool is_last = cluster == kFirst + taken - 1;
+      put(sector, static_cast<std::size_t>(4 * i), 4,
+          is_last ? kEnd_of_chain : static_cast<std::uint64_t>(cluster + 1));
+    }
+    for (std::int64_t copy = 0; copy < 2; ++copy) {
+      memory.write((fat_at + copy * l.fat_sectors + first / kEntries) * kSector_bytes, sector);
+    }
+  }
+  Sector root{};
+  put(root, 0, "FULL    BIN ");  // the blank is 0x20: an archive's attribute
+  put(root, 18, 2, 0x0021);      // 1980-01-01
+  put(root, 24, 2, 0x0021);
+  put(root, 26, 2, kFirst);
+  put(root, 28, 4, static_cast<std::uint64_t>(taken * cluster_bytes));
+  memory.write((fat_at + 2 * l.fat_sectors) * kSector_bytes, root);
+  for (const std::int64_t copy : {std::int64_t{0}, kBackup_sector}) {
+    const std::int64_t at = (kPartition_sector + copy + kInfo_sector) * kSector_bytes;
+    memory.read(at, sector);
+    put(sector, 488, 4, static_cast<std::uint64_t>(left));
+    put(sector, 492, 4, static_cast<std::uint64_t>(kFirst + taken));
+    memory.write(at, sector);
+  }
+}
+
 }  // namespace whirl::io

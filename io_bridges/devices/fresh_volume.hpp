@@ -19,4 +19,10 @@ inline constexpr std::int64_t kLeast_volume_bytes = 64LL * 1024 * 1024;
 // Pre: the memory is all zero, at least kLeast_volume_bytes, at most 2 TiB.
 void write_fresh_volume(MemoryFile& memory, std::uint32_t serial);
 
+inline constexpr std::int64_t kMost_filled_bytes = 4LL << 30;  // FAT has no larger file
+
+// Of a fresh volume: all but the last free_bytes, rounded up to whole clusters, becomes one file FULL.BIN.
+// Pre: a fresh volume of at most kMost_filled_bytes.
+void fill_fresh_volume(MemoryFile& memory, std::int64_t free_bytes);
+
 }  // namespace whirl::io

@@ -69,6 +69,24 @@ TEST_P(FreshVolume, IsCleanForFsckAndTakesAFileOfMtools) {
   EXPECT_EQ(checked.words.find("Warning"), std::string::npos) << checked.words;
   for (const std::string& file : {image, volume, text}) unlink(file.c_str());
 }
+TEST_P(FreshVolume, FilledItHasThatMuchRoomAndIsClean) {
+  if (GetParam() * kMiB > kMost_filled_bytes) GTEST_SKIP() << "FAT has no file of that size";
+  const std::string image = temporary("img"), volume = temporary("part");
+  {
+    auto memory = MemoryFile::create(image, GetParam() * kMiB);
+    ASSERT_TRUE(memory);
+    write_fresh_volume(memory.value(), 0x12345678);
+    fill_fresh_volume(memory.value(), 3 * kMiB);
+  }
+  const Said list = run("mdir -i " + image + "@@1M ::");
+  EXPECT_NE(list.words.find("3 145 728 bytes free"), std::string::npos) << list.words;
+  EXPECT_NE(list.words.find("FULL     BIN"), std::string::npos) << list.words;
+  copy_partition(image, volume, (GetParam() - 1) * kMiB);
+  const Said checked = run("fsck.fat -n -V " + volume);
+  EXPECT_EQ(checked.code, 0) << checked.words;
+  for (const std::string& file : {image, volume}) unlink(file.c_str());
+}
+
 INSTANTIATE_TEST_SUITE_P(SizesInMiB, FreshVolume, testing::Values(64, 128, 260, 512, 2048, 16384));
 
 }  // namespace

@@ -49,6 +49,10 @@ Result<std::int64_t> size_bytes(const DeviceSlot& slot) {
   if (!high_capacity && size > io::sd::kMost_standard_bytes) {
     return wrong("a standard card has at most 1024 MiB", "set params.high_capacity = true");
   }
+  if (slot.given("free") && (slot.given("image") || size > io::kMost_filled_bytes)) {
+    return Error{ErrorKind::bad_input, slot.place() + ".free",
+                 "is of a fresh volume of at most 4096 MiB", "leave it out"};
+  }
   return size;
 }
 
@@ -63,6 +67,9 @@ Result<io::MemoryFile> contents_of(DeviceSlot& slot) {
   } else {
     RandomStream serial(slot.rack().seed(), slot.name() + ".volume");
     io::write_fresh_volume(contents.value(), serial.bits());
+    if (slot.given("free")) {
+      io::fill_fresh_volume(contents.value(), std::llround(slot.quantity("free")));
+    }
   }
   return contents;
 }
@@ -101,6 +108,8 @@ DeviceType sd_card_type() {
                         "of the card, a multiple of 512 KiB; with an image, what that takes")
                .with(1024.0 * kMiB),
            file_key("image", "what the card starts as; where none is given, a fresh FAT32 volume"),
+           quantity_key("free", Dimension::data, "MiB", {0.0, 4096.0 * kMiB},
+                        "of a fresh volume; a file FULL.BIN has the rest. Where not given, all"),
            flag_key("params.high_capacity", "SDHC, by blocks; else SDSC, by bytes").with(true),
            time("params.init_time", 0.9, usual.init_ns, "from the first ACMD41 to ready"),
            time("params.read_time", 0.1, usual.read_ns, "to the first block of a read"),
