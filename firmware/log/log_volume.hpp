@@ -58,7 +58,7 @@ class LogVolume {
  public:
   static constexpr std::uint32_t kFlush_us = 1'000'000;
 
-  // Sizes of a file; where there is no such run of free clusters, halves of it down to the least.
+  // Sizes of a file; where there is no such run of free clusters, the longest that is no less than the least.
   struct Sizes {
     std::uint32_t file_bytes = 32u << 20, least_bytes = 1u << 20;
   };
@@ -125,6 +125,7 @@ class LogVolume {
   bool scan_root();
   bool next_root_sector();
   bool search();
+  bool found();
   bool chain_sector(Step then);
   bool begin_logging(std::uint32_t now_us);
   std::uint32_t chain_value(std::uint32_t cluster) const;
@@ -154,6 +155,7 @@ class LogVolume {
   std::uint32_t partition_ = 0;
   std::uint32_t cluster_ = 0, sector_in_cluster_ = 0;  // of the root directory
   std::uint32_t highest_ = 0, slot_block_ = 0, slot_ = 0;
+  std::uint32_t free_first_ = 0, free_clusters_ = 0;  // in a row, while searching
   std::uint32_t wanted_clusters_ = 0, run_first_ = 0, run_clusters_ = 0, run_last_ = 0;
   std::uint32_t fat_copy_ = 0, fat_sector_ = 0;  // being searched or written
   fat32::LogFile file_{};

@@ -172,12 +172,13 @@ bool LogVolume<Card, kBuffer_bytes>::next_root_sector() {
 template <BlockCard Card, std::size_t kBuffer_bytes>
 void LogVolume<Card, kBuffer_bytes>::begin_search() {
   wanted_clusters_ = std::max<std::uint32_t>(1, sizes_.file_bytes / cluster_bytes());
-  run_clusters_ = fat_sector_ = 0;
+  run_clusters_ = free_clusters_ = fat_sector_ = 0;
   fat_copy_ = 1;  // nothing read yet
   step_ = highest_ >= 99'999 ? Step::refused : Step::search;
 }
 
-// One sector of the FAT after another, until there is a run of free clusters of that length.
+// One sector of the FAT after another, until there is a run of free clusters of that length; at the end
+// of the FAT the longest that was met, if it is worth a file.
 template <BlockCard Card, std::size_t kBuffer_bytes>
 bool LogVolume<Card, kBuffer_bytes>::search() {
   if (fat_copy_ == 1) {
@@ -189,22 +190,27 @@ bool LogVolume<Card, kBuffer_bytes>::search() {
     const std::uint32_t cluster = first + i;
     const bool within = cluster >= 2 && cluster < volume_.end_cluster();
     if (!within || fat32::fat_entry(sector_, cluster) != 0) {
-      run_clusters_ = 0;
+      free_clusters_ = 0;
       continue;
     }
-    if (run_clusters_++ == 0) run_first_ = cluster;
-    if (run_clusters_ < wanted_clusters_) continue;
-    run_last_ = cluster;
-    if (volume_.info != 0) return ask(volume_.info, Step::info);
-    step_ = Step::info_put;
-    return true;
+    if (free_clusters_++ == 0) free_first_ = cluster;
+    if (free_clusters_ <= run_clusters_) continue;
+    run_first_ = free_first_;
+    run_clusters_ = free_clusters_;
+    if (run_clusters_ == wanted_clusters_) return found();
   }
-  if ((++fat_sector_) * fat32::kEntries_per_sector >= volume_.end_cluster()) {
-    wanted_clusters_ /= 2;
-    if (wanted_clusters_ * cluster_bytes() < sizes_.least_bytes) return refuse();
-    fat_sector_ = run_clusters_ = 0;
+  if ((++fat_sector_) * fat32::kEntries_per_sector < volume_.end_cluster()) {
+    return ask(volume_.fat + fat_sector_, Step::search);
   }
-  return ask(volume_.fat + fat_sector_, Step::search);
+  return run_clusters_ > 0 && run_bytes() >= sizes_.least_bytes ? found() : refuse();
+}
+
+template <BlockCard Card, std::size_t kBuffer_bytes>
+bool LogVolume<Card, kBuffer_bytes>::found() {
+  run_last_ = run_first_ + run_clusters_ - 1;
+  if (volume_.info != 0) return ask(volume_.info, Step::info);
+  step_ = Step::info_put;
+  return true;
 }
 
 // What the FAT says of a cluster of the run: the next one, the end after run_last_, free beyond.
