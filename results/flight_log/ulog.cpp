@@ -158,6 +158,7 @@ class ULogReader {
     if (!timed) return false;
     ULogTopic& topic = log_.topics[name];
     std::vector<std::vector<double>*> columns;
+    columns.reserve(fields.size());
     for (const Field& field : fields) {
       columns.push_back(field.name == "timestamp" ? nullptr : &topic.columns[field.name]);
     }

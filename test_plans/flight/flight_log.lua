@@ -9,9 +9,9 @@ local held = { "height", "north", "east", "climb", "velocity_north", "velocity_e
 local fast = { "vehicle_attitude", "sensor_combined", "vehicle_angular_velocity", "vehicle_local_position",
                "actuator_outputs" }
 
-local function log_plan(name, tags, run)
+local function log_plan(name, tags, run, board)
   plan(name) {
-    image = "flight", board = "px4fmu_v1", vehicle = "hp_quad", tags = tags, timeout = "90 s", run = run,
+    image = "flight", board = board or "px4fmu_v1", vehicle = "hp_quad", tags = tags, timeout = "90 s", run = run,
   }
 end
 
@@ -157,3 +157,20 @@ log_plan("a reset in flight leaves the log until then", { "flight", "log" }, fun
   until_then(t, t:flight_log("card", 1), reset_s)
   t:expect(t:value "told_logging", "the card is there again"):equal "1"
 end)
+
+-- One MiB, found after some seconds, holds 40 s of flight. The log ends where the card does; the flight
+-- does not.
+log_plan("a card that runs full ends its log and nothing else", { "flight", "log" }, function(t)
+  hover(t)
+  undisturbed(t, "50 s")
+  t:wait "5 s"
+  local before = t:record(held, "10 s")
+  t:within("40 s", function(s) return s.told_logging == 0 end, "it is told")
+  steady(t, "10 s")
+  land(t)
+  local log = t:flight_log("card")
+  whole(t, log)
+  t:expect(log:dropouts()):equal "0 ms"
+  t:expect(log:untold(before)):equal "0"
+  t:expect(t:value "told_logging", "there is no other log"):equal "0"
+end, "px4fmu_v1_full_card")
