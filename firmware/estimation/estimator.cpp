@@ -12,7 +12,7 @@ constexpr float kHeadingShareGround = 1.0f, kHeadingShareFlight = 0.1f;
 constexpr float kCaptureVelocityDelay_s = 0.050f;
 constexpr float kLeastThrust_mps2 = 3.0f;  // below, drag says little about speed
 constexpr float kSteepest_cos = 0.3f;
-constexpr float kGpsDoubted_s = 2.0f;
+constexpr float kGpsDoubted_s = 2.0f, kWindow_s = 1.0f;
 // The barometer wanders by a metre in ten minutes, the receiver's height by several in one.
 constexpr float kHeightByGps_ps = 1.0f / 600.0f, kMostHeightError_m = 5.0f;
 constexpr float kFieldShareGround = 0.05f, kFieldShareFlight = 0.01f;  // 75 Hz
@@ -68,6 +68,7 @@ void Estimator::on_fix(const CaptureFix& fix) {
   if (situation_.in_flight && gps_guard_.fresh()) return;
   const bool first = fix_age_ms_ >= kFixLost_ms && !situation_.in_flight;
   const float since_last_s = seconds(fix_age_ms_);
+  if (!fix_fresh()) calibration_.restart();  // a window by gravity is none by capture
   explicit_.correct_heading(fix.yaw_rad,
                             situation_.in_flight ? kHeadingShareFlight : kHeadingShareGround);
   correct_velocity(fix, since_last_s);
@@ -253,6 +254,8 @@ void Estimator::calibrate_by_capture() {
 void Estimator::calibrate_by_gravity() {
   const Vector3 a_B_mps2 = a_B_mps2_ + accel_zero_B_mps2_;
   if (!new_zeros(Quaternion::FromTwoVectors(-a_B_mps2, Vector3::UnitZ()))) return;
+  // Filter 2 has its heading from filter 1, by 0.1 /s: at rest it begins with the field's.
+  inertial_.correct_heading(yaw_of(explicit_.q_WB()), kWindow_s);
   if (zeros_ == Zeros::by_capture) return;  // all three axes are known
   accel_zero_B_mps2_ = calibration_.accel_bias_B_mps2();
   if (zeros_ == Zeros::unknown) {

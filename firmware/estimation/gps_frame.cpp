@@ -33,15 +33,15 @@ void GpsFrame::learn(const GpsSolution& solution) {
 
 // Differences of whole numbers: a float alone would know the place to half a metre.
 Vector3 GpsFrame::local(const GpsSolution& solution) const {
-  const auto difference = [](std::int32_t to, std::int32_t from) {
-    return static_cast<float>(std::int64_t{to} - from);
-  };
+  constexpr std::int64_t kTurn_e7 = 3'600'000'000;
+  const std::int64_t north_e7 = std::int64_t{solution.latitude_e7_deg} - latitude_e7_deg_;
+  std::int64_t east_e7 = std::int64_t{solution.longitude_e7_deg} - longitude_e7_deg_;
   // The date line lies between 179.9 and -179.9 degrees.
-  constexpr float kTurn_e7 = 3.6e9f;
-  float east_e7 = difference(solution.longitude_e7_deg, longitude_e7_deg_);
-  if (std::abs(east_e7) > 0.5f * kTurn_e7) east_e7 -= std::copysign(kTurn_e7, east_e7);
-  return {north_m_per_e7_ * difference(solution.latitude_e7_deg, latitude_e7_deg_),
-          east_m_per_e7_ * east_e7, -1e-3f * difference(solution.height_mm, height_mm_)};
+  if (east_e7 > kTurn_e7 / 2) east_e7 -= kTurn_e7;
+  if (east_e7 < -kTurn_e7 / 2) east_e7 += kTurn_e7;
+  const std::int64_t down_mm = std::int64_t{height_mm_} - solution.height_mm;
+  return {north_m_per_e7_ * static_cast<float>(north_e7),
+          east_m_per_e7_ * static_cast<float>(east_e7), 1e-3f * static_cast<float>(down_mm)};
 }
 
 }  // namespace fw

@@ -47,8 +47,8 @@ PositionFilter::Innovation PositionFilter::gps_innovation(const Vector3& p_WB_W_
 }
 
 void PositionFilter::correct_by_gps(const Innovation& innovation, float since_last_s) {
-  constexpr float kPlace_ps = 5.0f, kPlaceToVelocity_ps2 = 2.0f, kVelocity_ps = 1.5f,
-                  kBias_ps2 = 0.2f, kLongest_s = 0.25f;
+  constexpr float kPlace_ps = 5.0f, kPlaceToVelocity_ps2 = 4.0f, kVelocity_ps = 3.0f,
+                  kBias_ps2 = 0.3f, kLongest_s = 0.25f;
   const float dt_s = std::min(since_last_s, kLongest_s);
   innovation_W_m_ = {innovation.p_W_m.x(), innovation.p_W_m.y(), 0.0f};
   p_W_m_ += dt_s * kPlace_ps * innovation_W_m_;

@@ -9,7 +9,7 @@ namespace {
 
 using mavlink::Frame, mavlink::kComponent, mavlink::kSystem, mavlink::Message;
 
-constexpr std::uint32_t kSlotsPerSecond = 200;
+constexpr std::uint32_t kSlotsPerSecond = 200, kGpsSecondsByCapture = 5;
 
 enum Command : std::uint16_t {
   kNavLand = 21,
@@ -142,7 +142,8 @@ std::span<const std::uint8_t> Telemetry::send(const Message& message) {
 
 std::span<const std::uint8_t> Telemetry::next(std::uint32_t time_ms, const Faults& faults,
                                               const Health& health) {
-  const std::uint32_t slot = slot_++ % kSlotsPerSecond;
+  const std::uint32_t slot = slot_ % kSlotsPerSecond, second = slot_ / kSlotsPerSecond;
+  ++slot_;
   if (slot % 10 == 0) return send(attitude(time_ms));
   if (slot % 20 == 3) return send(position(time_ms));
   if (slot % 100 == 19) return send(highres_imu(time_ms));
@@ -151,7 +152,10 @@ std::span<const std::uint8_t> Telemetry::next(std::uint32_t time_ms, const Fault
   if (slot == 6) return send(heartbeat());
   if (slot == 106) return send(sys_status(faults, health));
   if (slot == 46 && flight_.estimator().gps_frame().known()) return send(gps_origin());
-  if (slot == 146) return send(gps_raw(time_ms));
+  if (slot == 46 && flight_.estimator().gps_frame().known()) return send(gps_origin());
+  // While capture comes up, the radio has no more room.
+  const bool gps_due = second % kGpsSecondsByCapture == 0 || !flight_.estimator().fix_fresh();
+  if (slot == 146 && gps_due) return send(gps_raw(time_ms));
   if (acks_due_ > 0) return send(ack());
   if (slot % 10 == 2 && requests_.due()) return send(requests_.next(time_ms));
   if (slot % 10 == 7 && parameters_.due()) return send(parameters_.next(flight_.parameters()));

@@ -1,0 +1,216 @@
+// Flight without motion capture around a rigid body of other hands: its receiver, barometer and field are
+// written here, from the ellipsoid's printed series and the standard atmosphere's.
+#include <gtest/gtest.h>
+
+#include <deque>
+
+#include "base/near.hpp"
+#include "firmware/tests/vehicle_model.hpp"
+
+namespace fw::test {
+namespace {
+
+using whirl::near;
+using whirl::stated;
+
+constexpr double kLatitude_deg = -35.28, kLongitude_deg = 149.13, kHeight_m = 600.0;
+constexpr double kRad = M_PI / 180.0;
+
+// Length of a degree on WGS84, m: the series of the US National Geospatial-Intelligence Agency.
+double degree_north_m(double latitude_deg) {
+  const double f = kRad * latitude_deg;
+  return 111132.92 - 559.82 * std::cos(2 * f) + 1.175 * std::cos(4 * f) - 0.0023 * std::cos(6 * f);
+}
+double degree_east_m(double latitude_deg) {
+  const double f = kRad * latitude_deg;
+  return 111412.84 * std::cos(f) - 93.5 * std::cos(3 * f) + 0.118 * std::cos(5 * f);
+}
+
+GpsSolution solution_at(const Eigen::Vector3d& p_W_m, const Eigen::Vector3d& v_W_mps) {
+  GpsSolution s;
+  s.latitude_e7_deg = static_cast<std::int32_t>(
+      std::lround(1e7 * (kLatitude_deg + p_W_m.x() / degree_north_m(kLatitude_deg))));
+  s.longitude_e7_deg = static_cast<std::int32_t>(
+      std::lround(1e7 * (kLongitude_deg + p_W_m.y() / degree_east_m(kLatitude_deg))));
+  s.height_mm = static_cast<std::int32_t>(std::lround(1e3 * (kHeight_m - p_W_m.z())));
+  s.v_W_mps = v_W_mps.cast<float>();
+  s.level_accuracy_m = 3.0f;
+  s.down_accuracy_m = 4.5f;
+  s.speed_accuracy_mps = 0.12f;
+  s.fix_type = 3;
+  s.satellites = 9;
+  s.within_limits = true;
+  s.age_s = 0.11f;
+  return s;
+}
+
+// The model outdoors: 5 Hz of GPS, 110 ms late, with an error that a test sets; barometer and field at 100 Hz.
+struct Outdoors {
+  explicit Outdoors(double yaw_rad = 0.0) : vehicle({}) {
+    vehicle.capture_on_ = false;
+    vehicle.q_WB_ = Eigen::AngleAxisd(yaw_rad, Eigen::Vector3d::UnitZ());
+  }
+  void run(double seconds) {
+    for (long i = std::lround(1000 * seconds); i > 0; --i, ++ms) step();
+  }
+  void step() {
+    vehicle.step(flight);
+    if (ms % 200 == 0 && gps_on) {
+      GpsSolution s = solution_at(vehicle.p_W_ + p_error_m, vehicle.v_W_ + v_error_mps);
+      s.fix_type = fix_type;
+      s.level_accuracy_m = accuracy_m;
+      on_the_way.push_back({ms + 110, s});
+    }
+    p_error_m += 1e-3 * drift_mps;
+    if (!on_the_way.empty() && on_the_way.front().due_ms <= ms) {
+      flight.on_gps(on_the_way.front().solution);
+      on_the_way.pop_front();
+    }
+    if (ms % 10 != 3) return;
+    flight.on_pressure(
+        static_cast<float>(101325.0 * std::pow(1.0 + 2.25577e-5 * vehicle.p_W_.z(), 5.25588)));
+    const Eigen::Vector3d field_W_uT(23.0, 5.1, -52.9);
+    flight.on_field((vehicle.q_WB_.conjugate() * field_W_uT).cast<float>());
+  }
+  // From power-up into a hover at 6 m.
+  void hover() {
+    run(12.0);
+    ASSERT_EQ(flight.arm(), Reason::none) << text_of(flight.ready_to_arm());
+    run(1.0);
+    ASSERT_EQ(flight.take_off(6.0f), Reason::none);
+    run(25.0);
+  }
+  struct Due {
+    int due_ms;
+    GpsSolution solution;
+  };
+  Flight flight;
+  VehicleModel vehicle;
+  Eigen::Vector3d p_error_m{0, 0, 0}, v_error_mps{0, 0, 0}, drift_mps{0, 0, 0};
+  bool gps_on = true;
+  std::uint8_t fix_type = 3;
+  float accuracy_m = 3.0f;
+  std::deque<Due> on_the_way;
+  int ms = 0;
+};
+
+TEST(GpsFrame, MetresAreTheEllipsoids) {
+  GpsFrame frame;
+  for (int i = 0; i < GpsFrame::kOriginFixes; ++i) {
+    EXPECT_FALSE(frame.known());
+    frame.learn(solution_at({i % 2 ? 3.0 : -3.0, 0, 0}, {0, 0, 0}));
+  }
+  ASSERT_TRUE(frame.known());
+  const Vector3 p = frame.local(solution_at({800.0, -500.0, -20.0}, {0, 0, 0}));
+  // An odd number of solutions: the mean is 3 m / 25 off; and 4 mm per 800 m of the float.
+  EXPECT_TRUE(near(p.x(), 800.12, stated(0.02, "1 cm of latitude, and floats")));
+  EXPECT_TRUE(near(p.y(), -500.0, stated(0.06, "parallels shrink by 0.01 % in 800 m")));
+  EXPECT_TRUE(near(p.z(), -20.0, stated(0.002, "1 mm")));
+}
+
+TEST(GpsFrame, GoesOnBeyondTheDateLine) {
+  GpsFrame frame;
+  GpsSolution s = solution_at({0, 0, 0}, {0, 0, 0});
+  s.longitude_e7_deg = 1'799'999'000;
+  for (int i = 0; i < GpsFrame::kOriginFixes; ++i) frame.learn(s);
+  s.longitude_e7_deg = -1'799'999'000;
+  EXPECT_TRUE(
+      near(frame.local(s).y(), 2000e-7 * degree_east_m(kLatitude_deg), stated(0.01, "1 cm")));
+}
+
+TEST(GpsFlight, HoversWhereItsReceiverSeesIt) {
+  Outdoors out;
+  out.p_error_m = {4.0, -7.0, 10.0};  // in the origin, too
+  out.hover();
+  EXPECT_TRUE(near(out.vehicle.p_W_.x(), 0.0, stated(0.2, "accelerometer's zero points")));
+  EXPECT_TRUE(near(out.vehicle.p_W_.y(), 0.0, stated(0.2, "accelerometer's zero points")));
+  EXPECT_TRUE(near(out.vehicle.p_W_.z(), -6.1, stated(0.2, "the origin is 10 cm up")));
+  out.p_error_m.x() += 2.0;  // it has wandered: within the gate
+  out.run(8.0);
+  EXPECT_TRUE(near(out.vehicle.p_W_.x(), -2.0, stated(0.2, "the same")));
+  EXPECT_TRUE(out.flight.position_known());
+}
+
+TEST(GpsFlight, TakesItsHeadingFromTheField) {
+  Outdoors out(2.0);
+  out.run(12.0);
+  // The zero points tilt it by 2.3 degrees, which the dip of 66 degrees makes 5 of heading.
+  EXPECT_TRUE(near(wrap_pi(yaw_of(out.flight.estimator().q_WB()) - 2.0f), 0.0,
+                   stated(0.12, "zero points of the accelerometer, and 2 degrees to converge")));
+}
+
+TEST(GpsFlight, IsNotArmedBeforeTheReceiverHasSettled) {
+  Outdoors out;
+  out.accuracy_m = 15.0f;
+  out.run(12.0);
+  EXPECT_EQ(out.flight.arm(), Reason::no_position);
+  out.accuracy_m = 3.0f;
+  out.run(4.0);
+  EXPECT_EQ(out.flight.arm(), Reason::no_position);  // no origin yet
+  out.run(4.0);
+  EXPECT_EQ(out.flight.arm(), Reason::none) << text_of(out.flight.ready_to_arm());
+}
+
+TEST(GpsFlight, ASilentOrJammedReceiverIsNoPositionAfterASecond) {
+  for (const bool jammed : {false, true}) {
+    Outdoors out;
+    out.hover();
+    jammed ? void(out.fix_type = 0) : void(out.gps_on = false);
+    out.run(0.9);
+    EXPECT_TRUE(out.flight.position_known());
+    out.run(0.6);
+    EXPECT_FALSE(out.flight.position_known());
+    EXPECT_EQ(out.flight.last_reason(), Reason::no_position);
+    EXPECT_EQ(out.flight.state(), FlightState::failsafe);
+  }
+}
+
+TEST(GpsFlight, AJumpOrAFalseVelocityIsNotFollowed) {
+  for (const bool jump : {false, true}) {
+    Outdoors out;
+    out.hover();
+    const Eigen::Vector3d before_m = out.vehicle.p_W_;
+    (jump ? out.p_error_m.x() : out.v_error_mps.x()) += 15.0;
+    out.run(1.6);
+    EXPECT_FALSE(out.flight.position_known());
+    EXPECT_LT((out.vehicle.p_W_ - before_m).head<2>().norm(), 0.5);
+  }
+}
+
+// What no sensor on board can tell from wind: it is carried along, at that speed and no faster.
+TEST(GpsFlight, AConsistentSlowDriftIsFollowed) {
+  Outdoors out;
+  out.hover();
+  out.v_error_mps = out.drift_mps = {0.3, 0, 0};
+  const double before_m = out.vehicle.p_W_.x();
+  out.run(10.0);
+  EXPECT_TRUE(out.flight.position_known());
+  EXPECT_TRUE(near(out.vehicle.p_W_.x() - before_m, -3.0, stated(0.6, "two seconds of the drift")));
+}
+
+TEST(GpsFlight, WithCaptureItCountsNothing) {
+  Outdoors out;
+  out.vehicle.capture_on_ = true;
+  out.run(12.0);
+  ASSERT_EQ(out.flight.arm(), Reason::none) << text_of(out.flight.ready_to_arm());
+  out.run(1.0);
+  ASSERT_EQ(out.flight.take_off(1.1f), Reason::none);
+  out.p_error_m = {2.0, 0, 0};
+  out.run(8.0);
+  EXPECT_TRUE(near(out.vehicle.p_W_.x(), 0.0, stated(0.05, "5 cm: the sensors' noise and bias")));
+  out.vehicle.capture_on_ = false;  // nor after it: its frame is another one
+  out.run(0.6);
+  EXPECT_FALSE(out.flight.position_known());
+}
+
+TEST(GpsFlight, AReceiverThatJumpsAtRestIsBelievedAgain) {
+  Outdoors out;
+  out.run(12.0);
+  out.p_error_m.x() = 30.0;
+  out.run(8.0);
+  EXPECT_TRUE(out.flight.position_known());
+  EXPECT_TRUE(near(out.flight.estimator().p_WB_W_m().x(), 30.0, stated(0.3, "noise")));
+}
+
+}  // namespace
+}  // namespace fw::test
