@@ -103,6 +103,7 @@ void Estimator::on_gps(const GpsSolution& solution) {
   const Vector3 p_W_m = gps_frame_.local(solution);
   const auto innovation = position_.gps_innovation(p_W_m, solution.v_W_mps, solution.age_s);
   const float since_last_s = gps_guard_.age_s();
+  const bool was_lost = !gps_guard_.fresh();
   if (!gps_guard_.believe(innovation.p_W_m, innovation.v_W_mps)) {
     // Nothing has moved it: what it was told before was wrong, or this is.
     if (situation_.resting && since_last_s > kGpsDoubted_s) {
@@ -110,7 +111,12 @@ void Estimator::on_gps(const GpsSolution& solution) {
     }
     return;
   }
-  position_.correct_by_gps(innovation, since_last_s);
+  // Nobody flies by a place that is unknown: it may jump.
+  if (was_lost) {
+    position_.shift(innovation);
+  } else {
+    position_.correct_by_gps(innovation, since_last_s);
+  }
   inertial_.correct(solution.v_W_mps, solution.age_s, since_last_s);
   if (!situation_.airborne) return;
   const float height_error_m = std::clamp(height_.z_m() - height_offset_m_ - p_W_m.z(),

@@ -27,9 +27,11 @@ class GpsGuard {
   }
   // The innovations of a solution. False: not to be used.
   bool believe(const Vector3& p_W_m, const Vector3& v_W_mps) {
-    constexpr float kDrift_mps = 0.5f, kMostDrift_m = 5.0f;
+    constexpr float kDrift_mps = 0.5f, kMostDrift_m = 5.0f, kDrift_mps2 = 0.15f,
+                    kMostDrift_mps = 1.5f;
     const float gate_m = kGate_m + std::min(kDrift_mps * age_s(), kMostDrift_m);
-    const bool good = p_W_m.head<2>().norm() < gate_m && v_W_mps.norm() < kGate_mps;  // nor NaN
+    const float gate_mps = kGate_mps + std::min(kDrift_mps2 * age_s(), kMostDrift_mps);
+    const bool good = p_W_m.head<2>().norm() < gate_m && v_W_mps.norm() < gate_mps;  // nor NaN
     in_row_ = good ? in_row_ + 1 : 0;
     if (good) believed_ms_ = 0;
     return good;

@@ -50,10 +50,22 @@ void PositionFilter::correct_by_gps(const Innovation& innovation, float since_la
   constexpr float kPlace_ps = 5.0f, kPlaceToVelocity_ps2 = 4.0f, kVelocity_ps = 3.0f,
                   kBias_ps2 = 0.3f, kLongest_s = 0.25f;
   const float dt_s = std::min(since_last_s, kLongest_s);
-  innovation_W_m_ = {innovation.p_W_m.x(), innovation.p_W_m.y(), 0.0f};
+  // A step of the receiver's place by metres is walked, not jumped.
+  constexpr float kMost_m = 0.5f;
+  innovation_W_m_ = clamp_norm<3>({innovation.p_W_m.x(), innovation.p_W_m.y(), 0.0f}, kMost_m);
   p_W_m_ += dt_s * kPlace_ps * innovation_W_m_;
   v_W_mps_ += dt_s * (kPlaceToVelocity_ps2 * innovation_W_m_ + kVelocity_ps * innovation.v_W_mps);
   bias_W_mps2_ -= dt_s * kBias_ps2 * innovation.v_W_mps;
+}
+
+void PositionFilter::shift(const Innovation& innovation) {
+  const Moment by{{innovation.p_W_m.x(), innovation.p_W_m.y(), 0.0f}, innovation.v_W_mps};
+  p_W_m_ += by.p_W_m;
+  v_W_mps_ += by.v_W_mps;
+  for (Moment& moment : history_) {
+    moment.p_W_m += by.p_W_m;
+    moment.v_W_mps += by.v_W_mps;
+  }
 }
 
 void PositionFilter::set_height(float z_m, float vz_mps) {

@@ -33,6 +33,8 @@ class PositionFilter {
   Innovation gps_innovation(const Vector3& p_WB_W_m, const Vector3& v_WB_W_mps,
                             float delay_s) const;
   void correct_by_gps(const Innovation& innovation, float since_last_s);
+  // After a gap: what it was off is taken over at once, but for the height.
+  void shift(const Innovation& innovation);
   void set_height(float z_m, float vz_mps);
 
   const Vector3& p_WB_W_m() const { return p_W_m_; }

@@ -134,7 +134,7 @@ class Flight {
   Vector3 ground_W_m_ = Vector3::Zero();
   float lift_ = 0.0f;  // share of the weight that the rotors are asked to carry
   float contact_s_ = 0.0f, state_s_ = 0.0f, blind_longest_s_ = 0.0f;
-  bool airborne_ = false;
+  bool airborne_ = false, position_was_known_ = false;
   ThrustAndAttitude wanted_;
   std::array<std::uint16_t, 4> setpoints_{};
 };

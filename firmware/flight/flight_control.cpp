@@ -15,11 +15,15 @@ void Flight::position_step() {
   if (!in_air()) return;
   if (state_ != FlightState::flying) detect_touchdown();
   if (!in_air()) return;
-  if (estimator_.position_known()) return follow_reference();
+  if (estimator_.position_known()) {
+    // Where it comes back may be elsewhere than where it was lost.
+    if (!position_was_known_) reference_.start(estimator_.p_WB_W_m(), reference_.yaw_rad());
+    position_was_known_ = true;
+    return follow_reference();
+  }
+  position_was_known_ = false;
   wanted_ = position_control_.sink(descent_mps(), sinking_mps(), estimator_.q_WB(),
                                    reference_.yaw_rad(), lift_);
-  // If the capture comes back, go on from where it finds us.
-  reference_.start(estimator_.p_WB_W_m(), reference_.yaw_rad());
 }
 
 void Flight::follow_reference() {

@@ -177,6 +177,40 @@ TEST(GpsFlight, AJumpOrAFalseVelocityIsNotFollowed) {
   }
 }
 
+// It comes back elsewhere, and twice as wrong: no speed is made of that.
+TEST(GpsFlight, AReceiverThatComesBackAfterAGapIsTakenWhereItIs) {
+  Outdoors out;
+  out.hover();
+  out.gps_on = false;
+  out.run(3.0);
+  EXPECT_FALSE(out.flight.position_known());
+  out.gps_on = true;
+  out.p_error_m = {2.5, -2.5, 0};
+  double fastest_mps = 0.0;
+  for (int i = 0; i < 40; ++i) {
+    out.run(0.1);
+    fastest_mps = std::max(fastest_mps, out.vehicle.v_W_.head<2>().norm());
+  }
+  EXPECT_TRUE(out.flight.position_known());
+  EXPECT_LT(fastest_mps, 0.8);
+  const Vector3 v_error = out.flight.estimator().v_WB_W_mps() - out.vehicle.v_W_.cast<float>();
+  EXPECT_LT(v_error.head<2>().norm(), 0.3f);
+}
+
+TEST(GpsFlight, AStepWithinTheGateIsWalkedNotJumped) {
+  Outdoors out;
+  out.hover();
+  out.p_error_m = {2.8, 0, 0};
+  double fastest_mps = 0.0;
+  for (int i = 0; i < 60; ++i) {
+    out.run(0.1);
+    fastest_mps = std::max(fastest_mps, out.vehicle.v_W_.head<2>().norm());
+  }
+  EXPECT_TRUE(out.flight.position_known());
+  EXPECT_LT(fastest_mps, 3.0);
+  EXPECT_TRUE(near(out.vehicle.p_W_.x(), -2.8, stated(0.3, "accelerometer's zero points")));
+}
+
 // What no sensor on board can tell from wind: it is carried along, at that speed and no faster.
 TEST(GpsFlight, AConsistentSlowDriftIsFollowed) {
   Outdoors out;

@@ -1,0 +1,94 @@
+-- Faults of a GPS receiver in mid-hover outdoors, and on the ground: what is noticed, and that the vehicle does not
+-- fly away. Without a position the image lands by vertical speed alone, so that what is asked of it then is to come
+-- down near by.
+include "include/gps.lua"
+
+local function gps_plan(name, run)
+  plan(name) {
+    image = "flight", board = "px4fmu_v1", vehicle = "hp_quad",
+    tags = { "flight", "faults" }, timeout = "240 s",
+    outdoors = true, air = wind, fence = { radius = "40 m", height = "20 m" },
+    run = run,
+  }
+end
+
+-- Where the vehicle is from now on, against where it was.
+local function stays_near(t, limit, duration)
+  local north, east = t:value("north", "m"), t:value("east", "m")
+  local r = t:record({ "north", "east" }, duration)
+  t:expect(r:max_error { north = string.format("%.3f m", north), east = string.format("%.3f m", east) }, "farthest from where it was"):at_most(limit)
+end
+
+-- Down, with the motors off, within the fence.
+local function comes_down(t)
+  t:within("3 s", function(s) return s.told_state == 4 end, "failsafe landing")
+  t:always("inside_fence"):at_least(1)
+  local tilt = t:always("tilt")
+  tilt:at_most "30 deg"
+  t:within("40 s", function(s) return s.on_ground == 1 end, "on the ground")
+  tilt:stop()
+  t:within("14 s", function(s) return s.told_armed == 0 end, "disarmed")
+end
+
+gps_plan("gps: one solution in three lost is flown through", function(t)
+  hover_by_gps(t)
+  t:fault { kind = "gnss_dropout", device = "gps", value = 0.3, duration = "20 s" }
+  local r = t:record({ "receiver_north", "receiver_east", "told_state" }, "20 s")
+  t:expect(r:max "told_state", "it flies on"):at_most(2)
+  t:expect(r:rms_error { receiver_north = "0 m", receiver_east = "0 m" }, "RMS distance, by its receiver"):at_most "0.8 m"
+end)
+
+gps_plan("gps: no solutions any more end the flight", function(t)
+  hover_by_gps(t)
+  t:fault { kind = "gnss_dropout", device = "gps", value = 1 }
+  comes_down(t)
+end)
+
+gps_plan("gps: a jammed receiver ends the flight", function(t)
+  hover_by_gps(t)
+  t:fault { kind = "gnss_jammed", device = "gps" }
+  comes_down(t)
+end)
+
+gps_plan("gps: a jump of 15 m is noticed and not followed", function(t)
+  hover_by_gps(t)
+  t:fault { kind = "sensor_offset", device = "gps", axis = "north", value = "15 m" }
+  stays_near(t, "3 m", "2 s")
+  comes_down(t)
+end)
+
+gps_plan("gps: a place that runs away at 3 m/s is noticed", function(t)
+  hover_by_gps(t)
+  t:fault { kind = "gnss_spoofed", device = "gps", axis = "east", value = "3 m/s" }
+  stays_near(t, "3 m", "2 s")
+  comes_down(t)
+end)
+
+-- What cannot be noticed: no sensor on board tells it from wind. The vehicle goes along, no faster.
+gps_plan("gps: a place that drifts at 0.3 m/s carries the vehicle along", function(t)
+  hover_by_gps(t)
+  t:fault { kind = "gnss_spoofed", device = "gps", axis = "east", value = "0.3 m/s", duration = "20 s" }
+  local r = t:record({ "receiver_north", "receiver_east", "told_state" }, "20 s")
+  t:expect(r:max "told_state", "it flies on"):at_most(2)
+  t:expect(r:rms_error { receiver_north = "0 m", receiver_east = "0 m" }, "RMS distance, by its receiver"):at_most "0.8 m"
+end)
+
+-- It begins anew at 9600 baud with NMEA at 1 Hz: the driver finds it, sets it up, and the estimate has it back.
+gps_plan("gps: a receiver that begins anew on the ground is found again", function(t)
+  arm_by_gps(t)
+  t:command { arm = false }
+  t:within("4 s", function(s) return s.told_armed == 0 end, "disarmed")
+  t:fault { kind = "gnss_brown_out", device = "gps" }
+  t:wait "25 s" -- silence 2 s, search, a hot start, and its errors settle again
+  t:command { arm = true }
+  t:within("10 s", function(s) return s.told_armed == 1 end, "armed")
+end)
+
+gps_plan("gps: a receiver that begins anew in flight is found again", function(t)
+  hover_by_gps(t)
+  t:fault { kind = "gnss_brown_out", device = "gps" }
+  comes_down(t)
+  t:wait "20 s"
+  t:command { arm = true }
+  t:within("10 s", function(s) return s.told_armed == 1 end, "armed anew by the receiver that was found")
+end)
