@@ -109,7 +109,8 @@ struct Sandbox::Inner {
   }
 
   static Error not_read(const std::string& name, const char* why) {
-    return {ErrorKind::bad_input, "", "\"" + name + "\": " + why, ""};
+    // Shown up to a zero, which no file's name holds.
+    return {ErrorKind::bad_input, "", "\"" + std::string(name.c_str()) + "\": " + why, ""};
   }
 
   Result<std::string> read_below(const std::string& name) {

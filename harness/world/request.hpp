@@ -60,7 +60,8 @@ struct Waypoints {               // one after the other: straight there, there, 
 };
 struct Stick {  // of a teleoperation: where a person has been told to move it, from now on
   double at_s = 0.0;
-  std::optional<double> north_mps, east_mps, height_m, yaw_rate_radps;  // left out: as before
+  // Left out: as before.
+  std::optional<double> north_mps = {}, east_mps = {}, height_m = {}, yaw_rate_radps = {};
 };
 struct Teleoperation {        // velocity over ground, height and heading, by a person's hand
   std::vector<Stick> script;  // in order of time, one at least
