@@ -19,6 +19,10 @@ std::size_t frame_length(std::span<const std::uint8_t> bytes) {
 
 }  // namespace
 
+bool is_frame(std::span<const std::uint8_t> piece) {
+  return !piece.empty() && frame_length(piece) == piece.size();
+}
+
 std::vector<std::span<const std::uint8_t>> pieces_of(std::span<const std::uint8_t> datagram) {
   std::vector<std::span<const std::uint8_t>> pieces;
   while (!datagram.empty()) {

@@ -10,6 +10,9 @@
 
 namespace whirl::live {
 
+// That its header speaks of as many bytes; its CRC is looked at by who knows the message.
+bool is_frame(std::span<const std::uint8_t> piece);
+
 std::vector<std::span<const std::uint8_t>> pieces_of(std::span<const std::uint8_t> datagram);
 
 }  // namespace whirl::live

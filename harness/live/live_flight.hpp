@@ -3,7 +3,8 @@
 //   Down     each frame that the radio has received goes out as one datagram
 //   Up       datagrams are looked for before each step: what has come is cut into pieces
 //            (datagram_pieces.hpp), recorded, and goes into the radio with that step. The serial line to the
-//            radio takes 5760 B/s and holds 1024 B: a flood loses what is beyond, and is told of
+//            radio takes 5760 B/s and holds 1024 B, half of it for frames only: a flood loses what is beyond,
+//            and so is a datagram of more than 1500 B; the loss is told of
 //   Shown    once a second of the host: time, armed, mode, place, lateness
 #pragma once
 #include <functional>
@@ -52,7 +53,7 @@ class LiveFlight final : public Companion {
   std::vector<std::string> names_;  // of the signals
   std::vector<double> values_;
   std::int64_t ended_ns_ = 0, next_shown_ns_ = 0;
-  double line_free_B_ = 0.0;
+  double line_free_B_;
   std::uint64_t datagrams_ = 0, dropped_B_ = 0;
 };
 

@@ -88,6 +88,21 @@ TEST(Verdicts, AnExpectationThatWasNotShownIsNoPass) {
   EXPECT_EQ(exit_code(r), 3);
 }
 
+TEST(Verdicts, WhatIsNotJudgedHasNoneUnlessSomethingIsAtFault) {
+  Report r = sample();  // has a failed expectation
+  r.judged = false;
+  conclude(r);
+  EXPECT_EQ(r.verdict, Verdict::none);
+  EXPECT_EQ(exit_code(r), 0);
+  EXPECT_EQ(r.reason, "");
+  r.expectations.clear();
+  conclude(r);
+  EXPECT_EQ(r.verdict, Verdict::none);
+  r.reasons = {{Blame::firmware, "HardFault"}};
+  conclude(r);
+  EXPECT_EQ(exit_code(r), 1);
+}
+
 TEST(Verdicts, NothingExpectedIsBadInput) {
   Report r;
   conclude(r);

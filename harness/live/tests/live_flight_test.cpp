@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <optional>
 
 #include "harness/live/tests/live_tools.hpp"
@@ -64,8 +65,6 @@ class Bridge : public ::testing::Test {
 
 TEST_F(Bridge, WhatComesGoesIntoTheRadioAndIntoTheRecordingPieceByPiece) {
   open();
-  EXPECT_TRUE(turn(0));
-  for (std::int64_t ms = 1; ms < 50; ++ms) turn(ms);  // the line has room again
   Bytes two = heartbeat();
   two.insert(two.end(), {1, 2, 3});
   to_flight_->send(two);
@@ -97,6 +96,17 @@ TEST_F(Bridge, AFloodLosesWhatTheSerialLineDoesNotCarryAndIsToldOf) {
   EXPECT_LE(carried, 5760u + 1024u);
   EXPECT_NE(flight_->summary()[1].find("1000 datagrams in"), std::string::npos);
   EXPECT_EQ(flight_->summary()[1].find(" 0 B dropped"), std::string::npos);
+}
+
+TEST_F(Bridge, GarbageTakesNoFramesPlace) {
+  open();
+  for (std::int64_t ms = 0; ms < 1000; ++ms) {
+    to_flight_->send(Bytes(1400, 0x41));
+    if (ms % 100 == 99) to_flight_->send(heartbeat());
+    to_flight_->send(Bytes(9000, 0xFD));
+    turn(ms);
+  }
+  EXPECT_EQ(std::count(world_.radio.begin(), world_.radio.end(), heartbeat()), 10);
 }
 
 TEST_F(Bridge, EndsAtItsTimeOrWhenItIsAskedTo) {
