@@ -35,7 +35,12 @@ Result<PlanChoice> choose(const FlyOptions& options, RunOptions run,
                  "holds " + std::to_string(found.plans.size()) + " plans, one is flown",
                  "choose it by --only NAME"};
   }
-  return found.plans.front();
+  const PlanChoice& plan = found.plans.front();
+  if (plan.vehicle.empty()) {
+    return Error{ErrorKind::bad_input, plan.file, plan.name + " has a stand, and no radio",
+                 "choose a plan with a vehicle"};
+  }
+  return plan;
 }
 
 Settings settings_of(const FlyOptions& options) {

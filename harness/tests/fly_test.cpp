@@ -67,6 +67,10 @@ TEST(Fly, WrongWordsAreBadInput) {
   root.write("test_plans/two.lua", plan_text("t:wait '1 s'") +
                                        "plan 'q' { image = 'flight', vehicle = "
                                        "'hp_quad', run = function() end }");
+  root.write("test_plans/stand.lua",
+             "plan 's' { image = 'esc', stand = { prop = 'x' }, run = function() end }");
+  EXPECT_NE(whirl(root, {"fly", root.path() + "/test_plans/stand.lua"}).err.find("has a stand"),
+            std::string::npos);
   EXPECT_EQ(fly(root, {"--pace", "0"}).outcome.code, 2);
   EXPECT_EQ(fly(root, {"--seconds", "-1"}).outcome.code, 2);
   EXPECT_EQ(fly(root, {"--vehicle", "nobody"}).outcome.code, 2);
