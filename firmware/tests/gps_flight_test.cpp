@@ -1,5 +1,5 @@
-// Flight without motion capture around a rigid body of other hands: its receiver, barometer and field are
-// written here, from the ellipsoid's printed series and the standard atmosphere's.
+// Flight without motion capture around a rigid body of other hands: its receiver is
+// written here, from the ellipsoid's printed series.
 #include <gtest/gtest.h>
 
 #include <deque>
@@ -44,7 +44,7 @@ GpsSolution solution_at(const Eigen::Vector3d& p_W_m, const Eigen::Vector3d& v_W
   return s;
 }
 
-// The model outdoors: 5 Hz of GPS, 110 ms late, with an error that a test sets; barometer and field at 100 Hz.
+// The model outdoors: 5 Hz of GPS, 110 ms late, with an error that a test sets.
 struct Outdoors {
   explicit Outdoors(double yaw_rad = 0.0) : vehicle({}) {
     vehicle.capture_on_ = false;
@@ -66,11 +66,6 @@ struct Outdoors {
       flight.on_gps(on_the_way.front().solution);
       on_the_way.pop_front();
     }
-    if (ms % 10 != 3) return;
-    flight.on_pressure(
-        static_cast<float>(101325.0 * std::pow(1.0 + 2.25577e-5 * vehicle.p_W_.z(), 5.25588)));
-    const Eigen::Vector3d field_W_uT(23.0, 5.1, -52.9);
-    flight.on_field((vehicle.q_WB_.conjugate() * field_W_uT).cast<float>());
   }
   // From power-up into a hover at 6 m.
   void hover() {
@@ -128,7 +123,7 @@ TEST(GpsFlight, HoversWhereItsReceiverSeesIt) {
   out.p_error_m.x() += 2.0;  // it has wandered: within the gate
   out.run(8.0);
   EXPECT_TRUE(near(out.vehicle.p_W_.x(), -2.0, stated(0.2, "the same")));
-  EXPECT_TRUE(out.flight.position_known());
+  EXPECT_TRUE(out.flight.estimator().position_known());
 }
 
 TEST(GpsFlight, TakesItsHeadingFromTheField) {
@@ -157,9 +152,9 @@ TEST(GpsFlight, ASilentOrJammedReceiverIsNoPositionAfterASecond) {
     out.hover();
     jammed ? void(out.fix_type = 0) : void(out.gps_on = false);
     out.run(0.9);
-    EXPECT_TRUE(out.flight.position_known());
+    EXPECT_TRUE(out.flight.estimator().position_known());
     out.run(0.6);
-    EXPECT_FALSE(out.flight.position_known());
+    EXPECT_FALSE(out.flight.estimator().position_known());
     EXPECT_EQ(out.flight.last_reason(), Reason::no_position);
     EXPECT_EQ(out.flight.state(), FlightState::failsafe);
   }
@@ -172,7 +167,7 @@ TEST(GpsFlight, AJumpOrAFalseVelocityIsNotFollowed) {
     const Eigen::Vector3d before_m = out.vehicle.p_W_;
     (jump ? out.p_error_m.x() : out.v_error_mps.x()) += 15.0;
     out.run(1.6);
-    EXPECT_FALSE(out.flight.position_known());
+    EXPECT_FALSE(out.flight.estimator().position_known());
     EXPECT_LT((out.vehicle.p_W_ - before_m).head<2>().norm(), 0.5);
   }
 }
@@ -183,7 +178,7 @@ TEST(GpsFlight, AReceiverThatComesBackAfterAGapIsTakenWhereItIs) {
   out.hover();
   out.gps_on = false;
   out.run(3.0);
-  EXPECT_FALSE(out.flight.position_known());
+  EXPECT_FALSE(out.flight.estimator().position_known());
   out.gps_on = true;
   out.p_error_m = {2.5, -2.5, 0};
   double fastest_mps = 0.0;
@@ -191,7 +186,7 @@ TEST(GpsFlight, AReceiverThatComesBackAfterAGapIsTakenWhereItIs) {
     out.run(0.1);
     fastest_mps = std::max(fastest_mps, out.vehicle.v_W_.head<2>().norm());
   }
-  EXPECT_TRUE(out.flight.position_known());
+  EXPECT_TRUE(out.flight.estimator().position_known());
   EXPECT_LT(fastest_mps, 0.8);
   const Vector3 v_error = out.flight.estimator().v_WB_W_mps() - out.vehicle.v_W_.cast<float>();
   EXPECT_LT(v_error.head<2>().norm(), 0.3f);
@@ -206,7 +201,7 @@ TEST(GpsFlight, AStepWithinTheGateIsWalkedNotJumped) {
     out.run(0.1);
     fastest_mps = std::max(fastest_mps, out.vehicle.v_W_.head<2>().norm());
   }
-  EXPECT_TRUE(out.flight.position_known());
+  EXPECT_TRUE(out.flight.estimator().position_known());
   EXPECT_LT(fastest_mps, 3.0);
   EXPECT_TRUE(near(out.vehicle.p_W_.x(), -2.8, stated(0.3, "accelerometer's zero points")));
 }
@@ -218,7 +213,7 @@ TEST(GpsFlight, AConsistentSlowDriftIsFollowed) {
   out.v_error_mps = out.drift_mps = {0.3, 0, 0};
   const double before_m = out.vehicle.p_W_.x();
   out.run(10.0);
-  EXPECT_TRUE(out.flight.position_known());
+  EXPECT_TRUE(out.flight.estimator().position_known());
   EXPECT_TRUE(near(out.vehicle.p_W_.x() - before_m, -3.0, stated(0.6, "two seconds of the drift")));
 }
 
@@ -234,7 +229,7 @@ TEST(GpsFlight, WithCaptureItCountsNothing) {
   EXPECT_TRUE(near(out.vehicle.p_W_.x(), 0.0, stated(0.05, "5 cm: the sensors' noise and bias")));
   out.vehicle.capture_on_ = false;  // nor after it: its frame is another one
   out.run(0.6);
-  EXPECT_FALSE(out.flight.position_known());
+  EXPECT_FALSE(out.flight.estimator().position_known());
 }
 
 TEST(GpsFlight, AReceiverThatJumpsAtRestIsBelievedAgain) {
@@ -242,7 +237,7 @@ TEST(GpsFlight, AReceiverThatJumpsAtRestIsBelievedAgain) {
   out.run(12.0);
   out.p_error_m.x() = 30.0;
   out.run(8.0);
-  EXPECT_TRUE(out.flight.position_known());
+  EXPECT_TRUE(out.flight.estimator().position_known());
   EXPECT_TRUE(near(out.flight.estimator().p_WB_W_m().x(), 30.0, stated(0.3, "noise")));
 }
 

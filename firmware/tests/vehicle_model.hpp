@@ -136,7 +136,9 @@ inline void VehicleModel::slow_sensors(Flight& flight) {
   constexpr double declination = 12.4 * M_PI / 180.0;
   const Eigen::Vector3d field_W(23.0 * std::cos(declination), 23.0 * std::sin(declination), -53.0);
   const Eigen::Vector3d field_B = q_WB_.conjugate() * field_W;
-  if (pressure_on_) flight.on_pressure(static_cast<float>(94'000.0 + 10.9 * p_W_.z()));
+  // Standard atmosphere, 600 m above the sea.
+  const double pressure_Pa = 101325.0 * std::pow(1.0 - 2.25577e-5 * (600.0 - p_W_.z()), 5.25588);
+  if (pressure_on_) flight.on_pressure(static_cast<float>(pressure_Pa));
   if (field_on_) flight.on_field(field_B.cast<float>());
   flight.on_battery(static_cast<float>(battery_V_));
 }

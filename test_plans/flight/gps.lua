@@ -2,6 +2,7 @@
 -- the heading. A receiver is metres off, and its error wanders: the vehicle is held to where its receiver sees it
 -- (receiver_north, receiver_east); how far that is from the truth is told beside it.
 include "include/gps.lua"
+include "include/parameter.lua"
 
 plan "gps" {
   image = "flight", board = "px4fmu_v1", vehicle = "hp_quad",
@@ -59,6 +60,7 @@ plan "gps: the same hover on motion capture" {
   room = { size = { "40 m", "40 m", "20 m" } }, air = wind,
   run = function(t)
     t:within("8 s", function(s) return s.heartbeat_age_s < 1.5 end, "the first heartbeat")
+    set_parameter(t, "FENCE_TOP", 20)
     t:wait "3 s"
     t:command { arm = true }
     t:within("4 s", function(s) return s.told_armed == 1 end, "armed")
