@@ -112,6 +112,13 @@ TEST(Surroundings, FieldAndAirAreThoseOfThePlace) {
            308.15, round_off(4, 308.0)));
 }
 
+TEST(Surroundings, AirMayBlowSteadilyAndInGusts) {
+  const auto p =
+      sound("air = { wind_north = '-1 m/s', wind_east = '3 m/s', turbulence = '2 m/s' }");
+  EXPECT_EQ(p.vehicle.air.steady_wind_W_mps, Eigen::Vector3d(-1.0, 3.0, 0.0));
+  EXPECT_EQ(p.vehicle.air.dryden.wind_at_6m_mps, 2.0);
+}
+
 TEST(Surroundings, ALoadHangsOnALine) {
   const auto p = sound("load = { mass = '200 g', line = '80 cm', below = '4 cm' }");
   ASSERT_TRUE(p.vehicle.load);
@@ -153,6 +160,7 @@ TEST(Surroundings, EachMistakeIsOneSentenceWithItsPlace) {
       {"field = { strength = '50 uT', inclination = '100 deg', declination = '0 deg' }",
        "field.inclination"},
       {"air = { temperature = '100 degC' }", "air.temperature"},
+      {"air = { turbulence = '-1 m/s' }", "air.turbulence"},
       {"load = { mass = '200 g' }", "load.line"},
       {"load = { mass = '0 g', line = '1 m' }", "load.mass"},
       {"sart = { height = '2 m' }", "unknown key 'sart'"},

@@ -109,6 +109,21 @@ TEST(UbloxFaults, LateItsSolutionsComeLater) {
   EXPECT_EQ(bench.times.at(0), 10'170'000'000 + 1'041'667);
 }
 
+TEST(UbloxFaults, ABrownOutLeavesWhatIsSavedAndAFixWithinASecond) {
+  FaultBench bench;
+  bench.add(FaultKind::gnss_brown_out, 0.0, 0, 10.0, 10.001);
+  bench.queue.run_until(9 * kSecond + 900'000'000);
+  EXPECT_TRUE(bench.text.find("$GP") == std::string::npos);
+  bench.queue.run_until(10 * kSecond);
+  bench.forget();
+  bench.queue.run_until(14 * kSecond);
+  EXPECT_EQ(bench.applied, 1);
+  EXPECT_TRUE(bench.of(0x01, 0x02).empty());  // what it had been told is gone
+  EXPECT_NE(bench.text.find("$GPGGA"), std::string::npos);
+  EXPECT_TRUE(near(bench.queries.back().error_scale, 1.0 + std::exp(-2.0 / 15.0),
+                   stated(0.15, "settling of a hot start, 2 s after its fix, at 1 Hz")));
+}
+
 TEST(UbloxFaults, WrongIdentityIsAnotherHardwareVersion) {
   FaultBench bench;
   bench.add(FaultKind::sensor_wrong_identity, 70000.0);

@@ -53,6 +53,25 @@ TEST(UbloxDevice, TheBodysPlaceIsThereOnTheEarth) {
   EXPECT_TRUE(near(frame.get<std::int32_t>(16) * 1e-3, 611.0, stated(0.6, "white noise")));
 }
 
+TEST(UbloxDevice, EachSolutionIsToldWithItsError) {
+  BenchRack rack;
+  ASSERT_NE(rack.add(gps()), nullptr) << rack.error;
+  io::BodyMotion motion;
+  motion.p_WB_W_m[0] = 100.0;
+  rack.send(motion);
+  rack.run_ms(3'500.0);
+  int told = 0;
+  for (io::Reader r(rack.posted.bytes()); r.next();) {
+    if (r.header().kind != io::Kind::gnss_solution) continue;
+    const auto s = r.as<io::GnssSolution>();
+    EXPECT_TRUE(near(s.p_WB_W_m[0] - s.p_error_W_m[0], 100.0, round_off(4, 100.0)));
+    EXPECT_NE(s.p_error_W_m[0], 0.0);
+    EXPECT_EQ(r.header().t_ns % 1'000'000'000, 0);
+    ++told;
+  }
+  EXPECT_EQ(told, 3);
+}
+
 TEST(UbloxDevice, KeysAreChecked) {
   BenchRack rack;
   BoardDevice device = gps("ublox_m8");
