@@ -43,6 +43,7 @@ constexpr KindName kNames[] = {
     {FaultKind::memory_busy, "memory_busy"},
     {FaultKind::sensor_brown_out, "sensor_brown_out"},
     {FaultKind::gnss_brown_out, "gnss_brown_out"},
+    {FaultKind::sensor_scale, "sensor_scale"},
 };
 
 bool matches(int wanted, int here) {

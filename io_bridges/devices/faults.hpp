@@ -53,6 +53,7 @@ enum class FaultKind : std::uint32_t {
   memory_busy,         // a write does not end before the fault does
   sensor_brown_out,    // without supply while it lasts, then as after power-up
   gnss_brown_out,      // at its start the receiver begins anew: its saved settings, a hot start
+  sensor_scale,        // axis reads by value (a share) more, besides its offset
 };
 
 std::optional<FaultKind> fault_kind(std::string_view name);  // "i2c_nack"

@@ -307,6 +307,23 @@ TEST(Mpu6000Fault, OffsetRailAndWrongIdentity) {
   EXPECT_TRUE(bench.faults.pending().empty());
 }
 
+TEST(Mpu6000, AnAxisOfAnotherScaleReadsByThatShareMore) {
+  MpuBench bench;
+  bench.wake();
+  bench.run(2);
+  const auto before = bench.word(0x3F);
+  ASSERT_EQ(before, 16384);  // 1 g along z
+  bench.faults.add({.number = 1,
+                    .kind = FaultKind::sensor_scale,
+                    .start_ns = bench.queue.now(),
+                    .axis = 2,
+                    .value = 0.03});
+  bench.run(2);
+  EXPECT_EQ(bench.word(0x3F), std::lround(1.03 * 16384.0));
+  EXPECT_EQ(bench.word(0x3B), 0);
+  EXPECT_TRUE(bench.faults.pending().empty());
+}
+
 // The start-up of real drivers must not produce a finding or a surprise.
 TEST(Mpu6000, BetaflightsStartUpPasses) {
   MpuBench bench;
