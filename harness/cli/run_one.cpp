@@ -134,6 +134,8 @@ Result<Prepared> prepare(const plan::Plan& plan, const RunOptions& options,
                  "--gdb holds one board, and this plan has several",
                  "run the board alone, in a plan of its own"};
   }
+  Settings settings = plan.vehicle_settings;
+  settings.insert(settings.end(), options.settings.begin(), options.settings.end());
   Prepared all;
   all.nodes.reserve(plan.nodes.size());  // the setups point at them
   for (std::size_t i = 0; i < plan.nodes.size(); ++i) {
@@ -144,7 +146,7 @@ Result<Prepared> prepare(const plan::Plan& plan, const RunOptions& options,
     all.nodes.push_back(std::move(node.value()));
     const int port = options.gdb ? options.gdb_port : 0;
     all.setups.push_back({plan, i, all.nodes.back().board, root, image.value(), vehicle_file,
-                          options.seed.value_or(plan.seed), port, options.settings, folder});
+                          options.seed.value_or(plan.seed), port, settings, folder});
   }
   if (const auto joined = check_wires(plan, all.nodes); !joined) return joined.error();
   auto world = composition.world(all.setups.front());

@@ -1,6 +1,7 @@
 #include "harness/plan/plan_file.hpp"
 
 #include <algorithm>
+#include <cstdio>
 #include <filesystem>
 #include <lua.hpp>
 
@@ -80,6 +81,23 @@ void read_nodes(const lua::Table& t, Plan& plan) {
   if (t.has("wires")) read_wires(t, plan);
 }
 
+// vehicle_with = { rotor_drag_s_per_m = 0.03 }: as --set vehicle.rotor_drag_s_per_m=0.03 does.
+Settings read_vehicle_settings(const lua::Table& changes) {
+  Settings settings;
+  for (const std::string& key : changes.keys()) {
+    std::string value;
+    if (changes.kind(key) == lua::Kind::text) {
+      value = changes.text(key);
+    } else {
+      char digits[32];
+      std::snprintf(digits, sizeof digits, "%.17g", changes.number(key));
+      value = digits;
+    }
+    settings.push_back({"vehicle." + key, value});
+  }
+  return settings;
+}
+
 Result<Plan> read_plan(const lua::Table& t, std::string name, const std::string& file,
                        const std::string& place) {
   Plan plan;
@@ -91,6 +109,10 @@ Result<Plan> read_plan(const lua::Table& t, std::string name, const std::string&
   if (t.has("stand")) plan.stand = t.table("stand");
   if (t.has("vehicle") == t.has("stand")) {
     t.refuse("vehicle", "a plan has a vehicle or a stand, one of the two");
+  }
+  if (t.has("vehicle_with")) {
+    if (plan.stand) t.refuse("vehicle_with", "belongs to a vehicle, not to a stand");
+    plan.vehicle_settings = read_vehicle_settings(t.table("vehicle_with"));
   }
   plan.tags = t.texts("tags");
   plan.seed = static_cast<std::uint64_t>(t.integer_or("seed", 1, 0));

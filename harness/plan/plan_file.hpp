@@ -43,6 +43,7 @@ struct PlanWire {  // from UART to UART, both ways
 struct Plan {
   std::string name, file, place;
   std::string vehicle;          // as written: a name or a path
+  Settings vehicle_settings;    // what the plan has other than the vehicle's file
   std::vector<PlanNode> nodes;  // one at least
   std::vector<PlanWire> wires;
   std::vector<std::string> tags;

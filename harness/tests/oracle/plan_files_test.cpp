@@ -45,6 +45,21 @@ TEST(PlanFile, WhatIsNotSaidHasItsDefault) {
   EXPECT_FALSE(plan.has_tag("quick"));
 }
 
+TEST(PlanFile, WhatItsVehicleHasOtherThanItsFileAreSettings) {
+  const Loaded loaded =
+      load(with("vehicle = 'v', vehicle_with = { rotor_drag_s_per_m = 0.03, ['motor.resistance'] = "
+                "'90 mohm' }"));
+  ASSERT_EQ(loaded.plans.size(), 1u) << loaded.error;
+  const Settings& settings = loaded.plans[0].vehicle_settings;
+  ASSERT_EQ(settings.size(), 2u);
+  EXPECT_EQ(settings[0].key, "vehicle.motor.resistance");
+  EXPECT_EQ(settings[0].value, "90 mohm");
+  EXPECT_EQ(settings[1].key, "vehicle.rotor_drag_s_per_m");
+  EXPECT_EQ(std::stod(settings[1].value), 0.03);
+  EXPECT_NE(load(with("stand = {}, vehicle_with = {}")).error.find("belongs to a vehicle"),
+            std::string::npos);
+}
+
 TEST(PlanFile, WhatIsSaidIsTaken) {
   const Loaded loaded = load(with("stand = { prop = 'x' }, board = 'b', seed = 0, "
                                   "timeout = '1500 ms', may_reset "
