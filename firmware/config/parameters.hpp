@@ -12,6 +12,8 @@
 #include <optional>
 #include <string_view>
 
+#include "firmware/config/vehicle.hpp"
+
 namespace fw {
 
 enum class Parameter : std::uint8_t {
@@ -29,6 +31,8 @@ enum class Parameter : std::uint8_t {
   bat_resistance_ohm,  // of pack and leads: the voltage at rest is what is measured, and R I
   bat_low_V,           // at rest: lands, and does not arm
   bat_empty_V,         // at rest: lands at once
+  aero_drag_spm,  // the rotors' drag over thrust and air speed; flights identify it and leave it
+                  // here, a change by hand starts that anew
 };
 
 enum class Numbers : std::uint8_t { real, whole };
@@ -64,6 +68,8 @@ inline constexpr ParameterRow kParameterTable[] = {
      WhileArmed::allowed},
     {Parameter::bat_low_V, "BAT_LOW", 14.4f, 0, 60, Numbers::real, WhileArmed::refused},
     {Parameter::bat_empty_V, "BAT_EMPTY", 13.8f, 0, 60, Numbers::real, WhileArmed::refused},
+    {Parameter::aero_drag_spm, "AERO_DRAG", config::kDrag_spm, 0.02f, 0.08f, Numbers::real,
+     WhileArmed::refused},
 };
 inline constexpr std::size_t kParameterCount = std::size(kParameterTable);
 

@@ -27,7 +27,14 @@ inline constexpr Mounting kMagMounting{{1, 0, 2},
 inline constexpr float kGpsLatency_s = 0.086f;
 // Torque over thrust at hover: shaft power of a figure of merit of 0.69 at 2.21 N, 3950 RPM.
 inline constexpr float kTorquePerThrust_m = 0.0165f;
-inline constexpr float kDrag_spm = 0.04f;  // rotor drag: force = -kDrag T v, sideways
+
+// Rotor drag, force = -c T v sideways, until flights have identified it [Bangura 2017, 4.4.7].
+inline constexpr float kDrag_spm = 0.04f;
+
+// The frame's drag by the square of speed, over thrust in hover: 1.2 dm^2 of silhouette as measured with
+// a ruler on the drawing of the frame, a coefficient of 1.1 for bars and plates, air of 1.2 kg/m^3.
+// A third more or less of it is 6 cm/s of wind in 3 m/s.
+inline constexpr float kFrameDrag_s2pm2 = 0.5f * 1.2f * 1.1f * 0.012f / (kMass_kg * kGravity_mps2);
 
 // The mode that the ESCs are set to: v = 1..2047 spans its range, v = 0 stops the motor.
 #ifndef FW_ESC_MODE  // the image flight_st is built with thrust_by_power

@@ -19,7 +19,7 @@ Vector3 AttitudeController::torque(const Quaternion& q_WB, const Vector3& w_WB_B
   const Vector3 spin_B = w_WB_B_radps.cross(inertia.cwiseProduct(w_WB_B_radps));
   const Quaternion to_B = q_error.conjugate();
   const Vector3 w_error = w_WB_B_radps - to_B * wanted.w_B_radps;
-  const Vector3 drag_B_N = -config::kDrag_spm * wanted.thrust_N * wanted.v_B_mps;
+  const Vector3 drag_B_N = -drag_spm_ * wanted.thrust_N * wanted.v_B_mps;
   const Vector3 drag_B_Nm(config::kRotorHeight_m * drag_B_N.y(),
                           -config::kRotorHeight_m * drag_B_N.x(), 0.0f);
   return inertia.cwiseProduct(to_B * wanted.w_dot_B_radps2) + spin_B - drag_B_Nm + trim_B_Nm_ -

@@ -14,7 +14,7 @@ Vector3 PositionController::force(const Vector3& p_WB_W_m, const Vector3& v_WB_W
   const Vector3 v_error = v_WB_W_mps - reference.v_W_mps();
   Vector3 f_W =
       kp.cwiseProduct(p_error) + kd.cwiseProduct(v_error) + integral_W_mps2_ - reference.a_W_mps2();
-  f_W.head<2>() -= config::kDrag_spm * kGravity_mps2 * reference.v_W_mps().head<2>();
+  f_W.head<2>() -= drag_ps_ * reference.v_W_mps().head<2>();
   f_W.z() += lift * kGravity_mps2;
   return f_W;
 }
@@ -30,7 +30,7 @@ ThrustAndAttitude PositionController::step(const Vector3& p_WB_W_m, const Vector
   if (integrating) integrate(p_WB_W_m - reference.p_W_m(), dt_s);
   WantedForce wanted{.f_W_mps2 = force(p_WB_W_m, v_WB_W_mps, reference, lift)};
   if (reference.tracking()) {  // what is shaped by steps of acceleration has no jerk to follow
-    const Vector3 drag = config::kDrag_spm * kGravity_mps2 * Vector3(1.0f, 1.0f, 0.0f);
+    const Vector3 drag = drag_ps_ * Vector3(1.0f, 1.0f, 0.0f);
     wanted.jerk_W_mps3 = -reference.jerk_W_mps3() - drag.cwiseProduct(reference.a_W_mps2());
     wanted.snap_W_mps4 = -drag.cwiseProduct(reference.jerk_W_mps3());
   }

@@ -4,6 +4,7 @@
 //           errors actual minus desired; its derivatives, along the trajectory, feed the attitude
 //   Limits  the integral's; the attitude's are those of desired_attitude.hpp
 #pragma once
+#include "firmware/config/vehicle.hpp"
 #include "firmware/control/desired_attitude.hpp"
 #include "firmware/control/reference.hpp"
 #include "firmware/math.hpp"
@@ -13,6 +14,7 @@ namespace fw {
 class PositionController {
  public:
   void reset() { integral_W_mps2_.setZero(); }
+  void set_drag(float drag_spm) { drag_ps_ = drag_spm * config::kGravity_mps2; }
   // lift: share of the weight that is carried (below 1 while taking off and touching down).
   ThrustAndAttitude step(const Vector3& p_WB_W_m, const Vector3& v_WB_W_mps, const Quaternion& q_WB,
                          const Reference& reference, float lift, float dt_s, bool integrating);
@@ -30,6 +32,8 @@ class PositionController {
                 float lift) const;
   void integrate(const Vector3& p_error_W_m, float dt_s);
   Vector3 integral_W_mps2_ = Vector3::Zero();
+  // Deceleration by drag over velocity, in level flight.
+  float drag_ps_ = config::kDrag_spm * config::kGravity_mps2;
 };
 
 }  // namespace fw

@@ -17,9 +17,8 @@ ThrustAndAttitude VelocityController::step(const Vector3& v_WB_W_mps, const Quat
   const Eigen::Vector2f into =
       clamp_norm<2>(error + kForget_ps / kIntegral_ps2 * delta_W_mps2_, kMost_mps);
   delta_W_mps2_ += dt_s * (kIntegral_ps2 * into - kForget_ps * delta_W_mps2_);
-  const float drag = config::kDrag_spm * config::kGravity_mps2;
   const Eigen::Vector2f level = kVelocity_ps * error + delta_W_mps2_ -
-                                drag * reference.v_W_mps().head<2>() -
+                                drag_ps_ * reference.v_W_mps().head<2>() -
                                 reference.a_W_mps2().head<2>();
   return resolve({{level.x(), level.y(), f_height_mps2}}, q_WB, reference.yaw_rad());
 }

@@ -1,6 +1,7 @@
 #include "firmware/estimation/estimator.hpp"
 
 #include "firmware/config/vehicle.hpp"
+#include "firmware/estimation/drag_model.hpp"
 
 namespace fw {
 namespace {
@@ -24,6 +25,7 @@ float seconds(std::uint32_t ms) {
 }  // namespace
 
 Estimator::Estimator() {
+  set_drag(config::kDrag_spm);
   restart_aided();
 }
 
@@ -71,6 +73,10 @@ void Estimator::on_fix(const CaptureFix& fix) {
   if (!fix_fresh()) calibration_.restart();  // a window by gravity is none by capture
   explicit_.correct_heading(fix.yaw_rad,
                             situation_.in_flight ? kHeadingShareFlight : kHeadingShareGround);
+  if (fix_age_ms_ >= kFixLost_ms && situation_.airborne) {
+    inertial_.resume(body_.q_WB(), position_.v_WB_W_mps());
+    position_.resume(fix.p_WB_W_m);
+  }
   correct_velocity(fix, since_last_s);
   fix_ = fix;
   fix_age_ms_ = 0;
@@ -163,6 +169,12 @@ void Estimator::set_start(float scale, float tilt_rad) {
   restart_aided();
 }
 
+void Estimator::set_drag(float drag_spm) {
+  if (drag_spm == start_drag_spm_) return;
+  start_drag_spm_ = drag_spm;
+  if (drag_spm != drag_.drag_spm()) drag_.start(drag_spm);
+}
+
 void Estimator::restart_aided() {
   const Quaternion q_WB = explicit_.q_WB() * from_euler(start_tilt_rad_, 0.0f, 0.0f);
   body_.start(q_WB, start_scale_);
@@ -181,8 +193,9 @@ void Estimator::step(const Situation& situation) {
     step_explicit(raw_w_B_radps_);
     step_aided(raw_w_B_radps_ - gyro_zero_B_radps_);
   }
-  position_.predict(q_WB(), a_B_mps2_, kStep_s);
-  if (!fix_fresh()) move_by_height();
+  velocity_source_ = find_velocity_source();
+  step_position();
+  step_drag();
   if (!situation.resting) return calibration_.restart();
   if (fix_age_ms_ <= kFixFresh_ms) return calibrate_by_capture();
   if (fix_fresh()) return calibration_.restart();
@@ -210,7 +223,7 @@ __attribute__((noinline)) void Estimator::step_aided(const Vector3& w_B) {
                                    inertial_.v_WB_W_mps() - inertial_.wind_W_mps(),
                                    inertial_.accel_bias_B_mps2()};
   const FromBodyFilter to_inertial{body_.q_WB(), body_.q_WB() * body_.v_AB_B_mps(),
-                                   body_.accel_bias_B_mps2()};
+                                   body_.accel_bias_B_mps2(), !position_known()};
   if (height_.ready()) {
     const Vector3 a_W = body_.q_WB() * a_B_mps2_;
     height_.predict(a_W.z() + config::kGravity_mps2, kStep_s);
@@ -221,13 +234,46 @@ __attribute__((noinline)) void Estimator::step_aided(const Vector3& w_B) {
   if (!body_.finite() || !inertial_.finite()) restart_aided();
 }
 
+VelocitySource Estimator::find_velocity_source() const {
+  if (fix_fresh()) return VelocitySource::capture;
+  if (gps_guard_.fresh()) return VelocitySource::gps;
+  const bool healthy =
+      source_ == AttitudeSource::velocity_aided && pressure_fresh() && field_fresh();
+  const bool goes_on = situation_.by_drag && situation_.airborne && fix_age_ms_ < kByDrag_ms;
+  return goes_on && healthy ? VelocitySource::drag : VelocitySource::none;
+}
+
+Vector3 Estimator::velocity_by_drag_W() const {
+  Vector3 v_W = body_.q_WB() * body_.v_AB_B_mps() + steady_wind_W_mps_;
+  v_W.z() = height_.vz_mps();
+  return v_W;
+}
+
+void Estimator::step_position() {
+  constexpr float kSteadyWind_s = 5.0f;
+  if (velocity_source_ == VelocitySource::drag) {
+    return position_.dead_reckon(velocity_by_drag_W(), baro_z_m(), kStep_s);
+  }
+  position_.predict(q_WB(), a_B_mps2_, kStep_s);
+  if (!fix_fresh()) move_by_height();
+  if (!position_known()) return;
+  const float share = situation_.airborne ? kStep_s / kSteadyWind_s : 1.0f;
+  steady_wind_W_mps_ += share * (inertial_.wind_W_mps() - steady_wind_W_mps_);
+}
+
+__attribute__((noinline)) void Estimator::step_drag() {
+  const bool flies = situation_.airborne && a_B_mps2_.z() < -kLeastThrust_mps2;
+  if (!flies || !fix_fresh()) return drag_.pause();
+  drag_.add(a_B_mps2_, q_WB(), position_.v_WB_W_mps());
+}
+
 // Where a component is not measured, the filter's own stands for it: no innovation.
 Vector3 Estimator::velocity_measured_B() const {
   if (!situation_.airborne) return Vector3::Zero();
   Vector3 v_B = body_.v_AB_B_mps();
   const Vector3 a_B = a_B_mps2_ - body_.accel_bias_B_mps2();
   if (a_B.z() < -kLeastThrust_mps2) {
-    v_B.head<2>() = a_B.head<2>() / (config::kDrag_spm * a_B.z());
+    v_B.head<2>() = velocity_through_air(a_B.head<2>() / a_B.z(), drag_.drag_spm());
   }
   const Vector3 down_B = body_.q_WB().conjugate() * Vector3::UnitZ();
   if (pressure_fresh() && down_B.z() > kSteepest_cos) {

@@ -17,6 +17,7 @@
 
 #include "firmware/estimation/attitude_filter.hpp"
 #include "firmware/estimation/body_filter.hpp"
+#include "firmware/estimation/drag_identification.hpp"
 #include "firmware/estimation/gps_frame.hpp"
 #include "firmware/estimation/gps_guard.hpp"
 #include "firmware/estimation/ground_calibration.hpp"
@@ -39,10 +40,20 @@ struct CaptureFix {
 
 enum class AttitudeSource : std::uint8_t { explicit_filter = 0, velocity_aided = 1 };
 
+// Where the velocity over ground comes from that is flown by.
+enum class VelocitySource : std::uint8_t {
+  none,     // the accelerometer, for as long as that is good
+  capture,  // fixes
+  gps,      // its solutions
+  drag,     // filter 1's velocity through the air and the wind as it was when the fixes went; the
+            // barometer's height; the magnetic field's heading. Position is what that adds up to
+};
+
 // What the flight logic knows of the moment.
 struct Situation {
   bool in_flight = false;  // the rotors carry, or shall
   bool airborne = false;   // off the ground
+  bool by_drag = false;    // goes on without fixes, by drag
   bool resting = true;     // disarmed, no rotor turns, samples change
 };
 
@@ -51,6 +62,7 @@ class Estimator {
   static constexpr float kStep_s = 0.005f;
   static constexpr std::uint32_t kNever = 1'000'000;
   static constexpr std::uint32_t kFixFresh_ms = 200, kFixLost_ms = 500;
+  static constexpr std::uint32_t kByDrag_ms = 60'000;  // as long as the wind may be taken to stay
 
   Estimator();
 
@@ -68,10 +80,14 @@ class Estimator {
   // filter's attitude. A change starts them anew, unless the vehicle is armed and flies by them.
   void set_start(float scale, float tilt_rad);
 
+  // The drag coefficient to begin with; a change begins anew, unless it is what was identified.
+  void set_drag(float drag_spm);
+
   const Quaternion& q_WB() const;
   const Vector3& w_WB_B_radps() const { return explicit_.w_WB_B_radps(); }
   const Vector3& p_WB_W_m() const { return position_.p_WB_W_m(); }
   const Vector3& v_WB_W_mps() const { return position_.v_WB_W_mps(); }
+  VelocitySource velocity_source() const { return velocity_source_; }
 
   // What is flown by has settled: latent scales near 1, both velocity-aided attitudes of one mind.
   bool converged() const;
@@ -96,6 +112,7 @@ class Estimator {
   const AttitudeFilter& explicit_filter() const { return explicit_; }
   const BodyFilter& body() const { return body_; }
   const InertialFilter& inertial() const { return inertial_; }
+  const DragIdentification& drag() const { return drag_; }
   // Down from where the flight began; offset by what the capture system has taught.
   float baro_z_m() const { return height_.z_m() - height_offset_m_; }
   float baro_vz_mps() const { return height_.vz_mps(); }
@@ -110,6 +127,10 @@ class Estimator {
   void calibrate_by_capture();
   void calibrate_by_gravity();
   void move_by_height();
+  void step_drag();
+  void step_position();
+  VelocitySource find_velocity_source() const;
+  Vector3 velocity_by_drag_W() const;
   Vector3 velocity_measured_B() const;
   void correct_velocity(const CaptureFix& fix, float since_last_s);
 
@@ -119,8 +140,11 @@ class Estimator {
   HeightFilter height_;
   BodyFilter body_;
   InertialFilter inertial_;
+  DragIdentification drag_;
   AttitudeSource source_ = AttitudeSource::explicit_filter;
   Situation situation_;
+  VelocitySource velocity_source_ = VelocitySource::none;
+  Vector3 steady_wind_W_mps_ = Vector3::Zero();  // of the last seconds with fixes
 
   ImuSample sample_;
   Vector3 a_sum_ = Vector3::Zero(), w_sum_ = Vector3::Zero();
@@ -140,6 +164,7 @@ class Estimator {
   std::uint32_t pressure_age_ms_ = kNever, field_age_ms_ = kNever;
   Vector3 field_B_uT_ = Vector3::Zero();
   float declination_rad_ = 0.0f, start_scale_ = 1.0f, start_tilt_rad_ = 0.0f;
+  float start_drag_spm_ = 0.0f;
 };
 
 }  // namespace fw

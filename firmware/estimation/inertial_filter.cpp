@@ -30,6 +30,12 @@ void InertialFilter::start(const Quaternion& q_WB, const Vector3& v_W_mps, float
   history_.fill(v_W_mps);
 }
 
+void InertialFilter::resume(const Quaternion& q_WB, const Vector3& v_W_mps) {
+  q_WB_ = q_WB;
+  v_W_mps_ = v_W_mps;
+  history_.fill(v_W_mps);
+}
+
 void InertialFilter::predict(const Vector3& w_B_radps, const Vector3& a_B_mps2,
                              const FromBodyFilter& other, float dt_s) {
   const Vector3 through_air = v_W_mps_ - wind_W_mps_ - other.v_AB_W_mps;
@@ -37,7 +43,7 @@ void InertialFilter::predict(const Vector3& w_B_radps, const Vector3& a_B_mps2,
                         kVelocityCoupling_ps * through_air;
   const Vector3 apart_B = antisymmetric_part(q_WB_.conjugate() * other.q_WB);
   v_W_mps_ += dt_s * v_dot;
-  wind_W_mps_ += dt_s * kWind_ps * through_air;
+  if (!other.hold_wind) wind_W_mps_ += dt_s * kWind_ps * through_air;
   q_WB_ = turned(q_WB_, w_B_radps - gyro_bias_B_radps_ + kAttitudeCoupling_ps * apart_B, dt_s);
   Vector3 bias_dot = -kBiasCoupling_ps * (accel_bias_B_mps2_ - other.accel_bias_B_mps2);
   bias_dot.z() = 0.0f;

@@ -20,6 +20,7 @@ struct FromBodyFilter {
   Quaternion q_WB = Quaternion::Identity();
   Vector3 v_AB_W_mps = Vector3::Zero();  // R1 V1
   Vector3 accel_bias_B_mps2 = Vector3::Zero();
+  bool hold_wind = false;  // without fixes v2 is no reference for the wind: it stays
 };
 
 class InertialFilter {
@@ -27,6 +28,8 @@ class InertialFilter {
   static constexpr float kLongestDelay_s = 0.3f;
 
   void start(const Quaternion& q_WB, const Vector3& v_W_mps, float scale);
+  // After a gap in the fixes, from what filter 1 has kept. Biases and scale stay.
+  void resume(const Quaternion& q_WB, const Vector3& v_W_mps);
   void predict(const Vector3& w_B_radps, const Vector3& a_B_mps2, const FromBodyFilter& other,
                float dt_s);
   // A velocity as it was delay_s ago, since_last_s after the one before.

@@ -31,6 +31,17 @@ void PositionFilter::correct(const Vector3& p_WB_W_m, float since_last_fix_s) {
   bias_W_mps2_ -= kPole_radps * kPole_radps * kPole_radps * dt_s * innovation_W_m_;
 }
 
+void PositionFilter::dead_reckon(const Vector3& v_WB_W_mps, float z_m, float dt_s) {
+  p_W_m_ += dt_s * v_WB_W_mps;
+  p_W_m_.z() = z_m;
+  v_W_mps_ = v_WB_W_mps;
+}
+
+void PositionFilter::resume(const Vector3& p_WB_W_m) {
+  p_W_m_ = p_WB_W_m;
+  innovation_W_m_.setZero();
+}
+
 void PositionFilter::hold_still() {
   v_W_mps_.setZero();
   bias_W_mps2_.setZero();

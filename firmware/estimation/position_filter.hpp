@@ -24,7 +24,10 @@ class PositionFilter {
   void start(const Vector3& p_WB_W_m);
   void predict(const Quaternion& q_WB, const Vector3& a_B_mps2, float dt_s);
   void correct(const Vector3& p_WB_W_m, float since_last_fix_s);
-  void hold_still();  // standing on the ground: the velocity is zero
+  // Without fixes: along a velocity that something else knows, at a height that something else knows.
+  void dead_reckon(const Vector3& v_WB_W_mps, float z_m, float dt_s);
+  void resume(const Vector3& p_WB_W_m);  // the first fix after a gap: the velocity stays
+  void hold_still();                     // standing on the ground: the velocity is zero
 
   struct Innovation {
     Vector3 p_W_m, v_W_mps;

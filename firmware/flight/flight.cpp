@@ -167,12 +167,30 @@ void Flight::apply_parameters() {
   estimator_.set_declination(kDegree * parameters_.get(Parameter::mag_declination_deg));
   estimator_.set_start(parameters_.get(Parameter::est_start_scale),
                        kDegree * parameters_.get(Parameter::est_start_tilt_deg));
+  estimator_.set_drag(parameters_.get(Parameter::aero_drag_spm));
+  if (state_ == FlightState::disarmed) keep_drag();
+  const float drag_spm = estimator_.drag().drag_spm();
+  attitude_control_.set_drag(drag_spm);
+  position_control_.set_drag(drag_spm);
+  velocity_control_.set_drag(drag_spm);
+}
+
+// What flights have found becomes the parameter; less than a percent is not worth the flash.
+void Flight::keep_drag() {
+  const DragIdentification& drag = estimator_.drag();
+  const float kept_spm = parameters_.get(Parameter::aero_drag_spm);
+  if (!drag.identified() || std::abs(drag.drag_spm() - kept_spm) < 0.01f * kept_spm) return;
+  parameters_.set(Parameter::aero_drag_spm, drag.drag_spm());
 }
 
 void Flight::estimate() {
   apply_parameters();
   const bool resting = state_ == FlightState::disarmed && !motors_.any_turning() && !imu_frozen_;
-  estimator_.step({.in_flight = in_air(), .airborne = in_air() && airborne_, .resting = resting});
+  const bool by_drag = state_ == FlightState::flying && aim_ == Aim::velocity;
+  estimator_.step({.in_flight = in_air(),
+                   .airborne = in_air() && airborne_,
+                   .by_drag = by_drag,
+                   .resting = resting});
 }
 
 void Flight::supervise() {

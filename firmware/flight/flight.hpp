@@ -84,6 +84,7 @@ class Flight {
 
   void tick();
   void apply_parameters();
+  void keep_drag();
   void estimate();
   void supervise();
   void react(const Decision& decision);
@@ -95,6 +96,8 @@ class Flight {
   Reason first_esc_problem() const;
   Reason first_sensor_problem() const;
   Fence fence() const;
+  // A place by capture or GPS, or by drag a velocity.
+  bool navigates() const { return estimator_.velocity_source() != VelocitySource::none; }
   bool in_air() const { return state_ >= FlightState::flying; }
   // Downward speed and height over where it armed, by the best that is known now.
   float sinking_mps() const;

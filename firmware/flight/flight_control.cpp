@@ -15,7 +15,7 @@ void Flight::position_step() {
   if (!in_air()) return;
   if (state_ != FlightState::flying) detect_touchdown();
   if (!in_air()) return;
-  if (estimator_.position_known()) {
+  if (navigates()) {
     // Where it comes back may be elsewhere than where it was lost.
     if (!position_was_known_) reference_.start(estimator_.p_WB_W_m(), reference_.yaw_rad());
     position_was_known_ = true;

@@ -54,6 +54,8 @@ const char* text_of(Reason reason) {
       return "barometer silent or out of range";
     case Reason::no_field:
       return "magnetometer silent or out of range";
+    case Reason::by_drag:
+      return "no position: velocity by drag";
   }
   return "";
 }

@@ -33,6 +33,7 @@ enum class Reason : std::uint8_t {  // why a command was refused, or a flight en
   no_battery,
   no_pressure,
   no_field,
+  by_drag,
 };
 const char* text_of(Reason reason);
 

@@ -20,7 +20,8 @@ Conditions Flight::conditions() const {
   now.set(Condition::tipped_over, tilt_cosine(estimator_.q_WB()) < kTipped_cos);
   now.set(Condition::motor_out, motors_.out());
   now.set(Condition::esc_silent, motors_.silent());
-  now.set(Condition::no_position, !estimator_.position_known());
+  now.set(Condition::no_position, !navigates());
+  now.set(Condition::by_drag, estimator_.velocity_source() == VelocitySource::drag);
   now.set(Condition::outside_fence,
           estimator_.position_known() && !fence().contains(estimator_.p_WB_W_m()));
   now.set(Condition::battery_empty, battery_.rest_V() < parameters_.get(Parameter::bat_empty_V));

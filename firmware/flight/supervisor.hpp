@@ -54,6 +54,7 @@ enum class Condition : std::uint8_t {
   battery_low,
   no_pressure,
   no_field,
+  by_drag,
   count
 };
 inline constexpr std::size_t kConditions = static_cast<std::size_t>(Condition::count);
@@ -109,6 +110,7 @@ inline constexpr Rule kRules[kConditions] = {
     {Condition::battery_low, Reason::battery_low, 3000, {stop, land, none, none}},
     {Condition::no_pressure, Reason::no_pressure, 0, {tell, tell, tell, tell}},
     {Condition::no_field, Reason::no_field, 0, {tell, tell, tell, tell}},
+    {Condition::by_drag, Reason::by_drag, 0, {none, tell, none, none}},
 };
 }  // namespace reaction
 using reaction::kRules;

@@ -147,6 +147,7 @@ std::span<const std::uint8_t> Telemetry::next(std::uint32_t time_ms, const Fault
   if (slot % 10 == 0) return send(attitude(time_ms));
   if (slot % 20 == 3) return send(position(time_ms));
   if (slot % 100 == 19) return send(highres_imu(time_ms));
+  if (slot == 21) return send(drag(time_ms));  // in the place of one of five
   if (slot % 40 == 21) return send(filter_attitudes(time_ms));
   if (slot % 40 == 33) return send(filters(time_ms));
   if (slot == 6) return send(heartbeat());
@@ -320,6 +321,14 @@ Message Telemetry::filter_attitudes(std::uint32_t time_ms) const {
     }
   }
   return m;
+}
+
+// Array 3: the drag coefficient and its standard deviation, the VelocitySource.
+Message Telemetry::drag(std::uint32_t time_ms) const {
+  const Estimator& e = flight_.estimator();
+  Message m = float_array(time_ms, 3, "drag", 3);
+  m.put(20, e.drag().drag_spm()).put(24, e.drag().sigma_spm());
+  return m.put(28, static_cast<float>(e.velocity_source()));
 }
 
 Message Telemetry::float_array(std::uint32_t time_ms, std::uint16_t id, const char* name,

@@ -2,8 +2,8 @@
 // that the 57600 baud of a half-duplex radio are filled evenly.
 //
 //   Down    HEARTBEAT 1 Hz, SYS_STATUS 1 Hz, ATTITUDE_QUATERNION 20 Hz, LOCAL_POSITION_NED 10 Hz,
-//           HIGHRES_IMU 2 Hz, DEBUG_FLOAT_ARRAY of the filters 5 Hz each, GPS_RAW_INT 1 Hz (with
-//           capture 0.2 Hz), GPS_GLOBAL_ORIGIN 1 Hz once there is one; COMMAND_ACK, STATUSTEXT and
+//           HIGHRES_IMU 2 Hz, DEBUG_FLOAT_ARRAY of the filters 5 and 4 Hz, of drag 1 Hz, GPS_RAW_INT
+//           1 Hz (with capture 0.2 Hz), GPS_GLOBAL_ORIGIN 1 Hz once there is one; COMMAND_ACK, STATUSTEXT and
 //           PARAM_VALUE in free slots
 //   Up      VICON_POSITION_ESTIMATE, SET_POSITION_TARGET_LOCAL_NED, COMMAND_LONG (400 arm, disarm;
 //           22 take off to param 7; 21 land; 512 of AUTOPILOT_VERSION, 520: it is sent; any other is
@@ -55,6 +55,7 @@ class Telemetry {
   mavlink::Message gps_origin() const;
   mavlink::Message filters(std::uint32_t time_ms) const;
   mavlink::Message filter_attitudes(std::uint32_t time_ms) const;
+  mavlink::Message drag(std::uint32_t time_ms) const;
   static mavlink::Message float_array(std::uint32_t time_ms, std::uint16_t id, const char* name,
                                       std::uint8_t count);
   void on_request_message(float message);

@@ -51,6 +51,11 @@ void Estimates::hear(const io::MavlinkFrame& frame, std::int64_t t_ns) {
     const auto uptime_ns = static_cast<std::int64_t>(array->time_usec) * 1000;
     const Moment& then = at(uptime_ns, bytes, t_ns);
     if (array->array_id == 1) return take_filters(*array, then);
+    if (array->array_id == 3) {
+      told_.drag_spm = array->data[0];
+      told_.drag_sigma_spm = array->data[1];
+      told_.velocity_source = array->data[2];
+    }
     if (array->array_id != 2) return;
     for (std::size_t i = 0; i < 2; ++i) {
       told_.filter_error_rad[i] = angle_rad(quaternion(array->data.data() + 4 * i), then.q_WB);

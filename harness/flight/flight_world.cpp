@@ -38,7 +38,8 @@ FlightWorld::FlightWorld(const FlightParams& params, plant::RotorSet rotors, std
     : place_(params.place),
       has_load_(params.vehicle.load.has_value()),
       vehicle_(params.vehicle, std::move(rotors), seed),
-      capture_(params.capture, seed) {
+      capture_(params.capture, seed),
+      drag_truth_(params.vehicle.airframe) {
   const auto type = std::find_if(types.begin(), types.end(), [&](const ControllerType& t) {
     return t.name == params.controller;
   });
@@ -109,6 +110,7 @@ void FlightWorld::move(std::int64_t t_ns) {
                      controllers_[i]->step(now_ns_, before.motors[i], before.bus_voltage_V));
   }
   vehicle_.step(kStep_s);
+  drag_truth_.step(vehicle_.state(), kStep_s);
 }
 
 void FlightWorld::send(std::int64_t t_ns, io::Batch& sensed) {

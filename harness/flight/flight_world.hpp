@@ -17,6 +17,7 @@
 
 #include "harness/flight/capture.hpp"
 #include "harness/flight/controllers.hpp"
+#include "harness/flight/drag_truth.hpp"
 #include "harness/flight/estimates.hpp"
 #include "harness/flight/flight_params.hpp"
 #include "harness/flight/guest_radio.hpp"
@@ -92,6 +93,7 @@ class FlightWorld : public World {
   std::shared_ptr<WaypointFlight> waypoints_;  // of the latest command; shared with the station
   Estimates estimates_;
   Receiver receiver_;
+  DragTruth drag_truth_;
   Transmitter transmitter_;
   TimedFaults faults_;
   std::vector<Signal> signals_;
