@@ -44,9 +44,9 @@ enum class AttitudeSource : std::uint8_t { explicit_filter = 0, velocity_aided =
 enum class VelocitySource : std::uint8_t {
   none,     // the accelerometer, for as long as that is good
   capture,  // fixes
-  gps,      // its solutions
   drag,     // filter 1's velocity through the air and the wind as it was when the fixes went; the
             // barometer's height; the magnetic field's heading. Position is what that adds up to
+  gps,      // its solutions
 };
 
 // What the flight logic knows of the moment.

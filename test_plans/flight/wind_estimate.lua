@@ -1,23 +1,42 @@
 -- Wind as the difference between velocity over ground and through the air (filters 1 and 2; thesis, section
--- 6.2): 3 m/s, then 2 m/s more.
+-- 6.2): 3 m/s, then 2 m/s more. The vehicle first finds its drag coefficient by one round of the figure 8; it is
+-- another one in each plan, and nobody tells it.
 include "include/hover.lua"
 
-plan "wind_estimate" {
-  image = "flight", board = "px4fmu_v1", vehicle = "hp_quad",
-  tags = { "flight" }, timeout = "90 s",
-  run = function(t)
-    hover(t)
-    t:step "3 m/s from the south"
-    t:gust { north = "3 m/s", duration = "60 s", edge = "2 s" }
-    t:wait "15 s"
-    local steady = t:record({ "wind_error_north", "wind_error_east", "attitude_error_1", "attitude_error_2", "offset" }, "10 s")
-    t:expect(steady:rms_error { wind_error_north = "0 m/s", wind_error_east = "0 m/s" }, "steady: RMS error"):at_most "0.3 m/s"
-    t:expect(steady:rms "attitude_error_2", "attitude of filter 2"):at_most "1 deg"
-    t:expect(steady:rms "offset", "off the place"):at_most "10 cm"
-    t:step "and 2 m/s from the west"
-    t:gust { east = "2 m/s", duration = "40 s", edge = "500 ms" }
-    t:wait "10 s"
-    local changed = t:record({ "wind_error_north", "wind_error_east" }, "10 s")
-    t:expect(changed:max_error { wind_error_north = "0 m/s", wind_error_east = "0 m/s" }, "10 s after the change: largest error"):at_most "0.3 m/s"
-  end,
-}
+local function wind_estimate(name, blades, tags)
+  plan("wind_estimate" .. name) {
+    image = "flight", board = "px4fmu_v1", vehicle = "hp_quad", vehicle_with = { rotor_drag_s_per_m = blades },
+    tags = tags, timeout = "120 s",
+    run = function(t)
+      hover(t)
+      t:step "finds its drag"
+      t:command { position = { north = "1 m" } }
+      t:within("5 s", function(s) return s.path_error_m < 0.15 end, "at the figure's start")
+      t:command { figure_8 = {} }
+      t:wait "20 s"
+      t:command { position = { north = "0 m", east = "0 m" } }
+      t:wait "5 s"
+      t:step "3 m/s from the south"
+      t:gust { north = "3 m/s", duration = "60 s", edge = "2 s" }
+      t:wait "15 s"
+      local signals = { "wind_error_north", "wind_error_east", "attitude_error_1", "attitude_error_2", "offset" }
+      local steady = t:record(signals, "10 s")
+      t:expect(steady:rms_error { wind_error_north = "0 m/s", wind_error_east = "0 m/s" }, "steady: RMS error"):at_most "0.3 m/s"
+      t:expect(steady:rms "attitude_error_2", "attitude of filter 2"):at_most "1 deg"
+      t:expect(steady:rms "offset", "off the place"):at_most "10 cm"
+      t:step "and 2 m/s from the west"
+      t:gust { east = "2 m/s", duration = "40 s", edge = "500 ms" }
+      t:wait "10 s"
+      local changed = t:record({ "wind_error_north", "wind_error_east" }, "10 s")
+      t:expect(changed:max_error { wind_error_north = "0 m/s", wind_error_east = "0 m/s" }, "10 s after the change: largest error"):at_most "0.3 m/s"
+    end,
+  }
+end
+
+-- The vehicle's file, and coefficients of 9 % and 25 % more and less than the thesis's 0.04: without the 0.007 that
+-- come from the blade elements.
+wind_estimate("", 0.033, { "flight" })
+wind_estimate("_drag_9_more", 0.0366, { "flight", "drag" })
+wind_estimate("_drag_9_less", 0.0294, { "flight", "drag" })
+wind_estimate("_drag_25_more", 0.043, { "flight", "drag" })
+wind_estimate("_drag_25_less", 0.023, { "flight", "drag" })
