@@ -1,7 +1,7 @@
 // Flies `whirl fly` with node-mavlink, a MAVLink library by other hands, then flies the recording again:
 //   node fly.mjs WHIRL PACE FOLDER
 // Asks what QGroundControl asks, sets a parameter, arms, takes off, goes to a place, lands, sees it disarm.
-import { execFileSync, spawn } from 'node:child_process'
+import { spawn, spawnSync } from 'node:child_process'
 import { readFileSync, realpathSync } from 'node:fs'
 import assert from 'node:assert/strict'
 import { common, standard, minimal, MavLinkProtocolV1 } from 'node-mavlink'
@@ -145,7 +145,9 @@ async function main() {
   const path = realpathSync(folder + '/runs/latest'), flown = run_json(path)
   assert.equal(flown.verdict, 'none')
   console.log(said().trim().split('\n').slice(-7).join('\n'))
-  const again = JSON.parse(execFileSync(program, ['run', path + '/commands.lua', '--out', folder, '--json']))
+  const rerun = spawnSync(program, ['run', path + '/commands.lua', '--out', folder, '--json'],
+                          { encoding: 'utf8', maxBuffer: 1 << 28 })
+  const again = JSON.parse(rerun.stdout)
   assert.equal(again.verdict, 'pass', again.reason)
   assert.equal(again.digest, flown.digest, 'the recording flies the same flight')
   console.log(`flown again: digest ${again.digest} over ${again.virtual_s} s`)
