@@ -31,8 +31,7 @@ struct Told {
   Eigen::Vector3d v_WB_error_W_mps = Eigen::Vector3d::Constant(kNothing);  // of what is flown by
   double baro_height_m = kNothing, baro_climb_mps = kNothing;
   double drag_spm = kNothing, drag_sigma_spm = kNothing;
-  double velocity_source = kNothing;  // 0 none, 1 capture, 2 drag
-  Eigen::Vector3d v_WB_error_W_mps = Eigen::Vector3d::Constant(kNothing);
+  double velocity_source = kNothing;  // 0 none, 1 capture, 2 drag, 3 GPS
   double baro_height_error_m = kNothing, baro_climb_error_mps = kNothing;
 };
 

@@ -179,17 +179,13 @@ void FlightWorld::name_estimate_signals() {
     add_signal(std::string("wind_error_") + ways[i], D::speed, "",
                [=] { return told().wind_error_W_mps[i]; });
   }
-  for (Eigen::Index i = 0; i < 3; ++i) {
-    add_signal(std::string("velocity_error_") + ways[i], D::speed, "of the velocity over ground",
-               [=] { return told().v_WB_error_W_mps[i]; });
-  }
   add_signal("drag_s_per_m", D::none,
              "of the plant's forces in the last 20 s, over thrust and air speed",
              [this] { return drag_truth_.coefficient_spm(); });
   add_signal("told_drag_s_per_m", D::none, "as identified", [=] { return told().drag_spm; });
   add_signal("told_drag_sigma_s_per_m", D::none, "its standard deviation, as told",
              [=] { return told().drag_sigma_spm; });
-  add_signal("told_velocity_source", D::none, "0 none, 1 motion capture, 2 drag",
+  add_signal("told_velocity_source", D::none, "0 none, 1 motion capture, 2 drag, 3 GPS",
              [=] { return told().velocity_source; });
   add_signal("told_baro_height", D::length, "by the barometer",
              [=] { return told().baro_height_m; });
