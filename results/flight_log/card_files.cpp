@@ -10,7 +10,8 @@ namespace {
 
 constexpr std::size_t kSector_bytes = 512, kEntry_bytes = 32;
 constexpr std::uint32_t kChain_mask = 0x0FFFFFFF, kFirst_cluster = 2;
-constexpr std::uint64_t kMost_log_bytes = 256u << 20;  // of one file, that a run copies
+constexpr std::uint64_t kMost_root_bytes = 2u << 20;    // 65536 entries, by the specification
+constexpr std::uint64_t kMost_logs_bytes = 512u << 20;  // of all, that a run takes in
 using Sector = std::array<std::uint8_t, kSector_bytes>;
 
 class CardVolume {
@@ -38,8 +39,10 @@ class CardVolume {
 
   Result<std::vector<CardFile>> logs() {
     std::vector<std::uint8_t> root;
-    if (auto whole = follow(root_, UINT64_MAX, root); !whole) return whole.error();
+    if (auto whole = follow(root_, kMost_root_bytes, root); !whole) return whole.error();
+    if (root.size() >= kMost_root_bytes) return wrong("has a root directory without an end");
     std::vector<CardFile> files;
+    std::uint64_t all_bytes = 0;
     for (std::size_t at = 0; at + kEntry_bytes <= root.size() && root[at] != 0;
          at += kEntry_bytes) {
       const std::string name(root.begin() + static_cast<std::ptrdiff_t>(at),
@@ -50,7 +53,8 @@ class CardVolume {
       const auto cluster =
           static_cast<std::uint32_t>(number(root, at + 20, 2) << 16 | number(root, at + 26, 2));
       const std::uint64_t size = number(root, at + 28, 4);
-      if (size > kMost_log_bytes) return wrong(name + " is larger than any log");
+      all_bytes += size;
+      if (all_bytes > kMost_logs_bytes) return wrong("has more than 512 MiB of logs");
       CardFile file{name.substr(0, 8) + "." + name.substr(8), {}};
       if (size > 0) {
         if (auto whole = follow(cluster, size, file.bytes); !whole) return whole.error();

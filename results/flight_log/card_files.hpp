@@ -4,7 +4,7 @@
 //   Files    LOGnnnnn.ULG by their directory entries' size and their chain in the first FAT. What the
 //            chain does not reach is not there, as for a PC
 //   Source   Microsoft FAT32 File System Specification 1.03
-//   Errors   bad_input: no such volume, or chains and entries that lead out of it
+//   Errors   bad_input: no such volume, chains and entries that lead out of it, more than 512 MiB of logs
 #pragma once
 #include <cstdint>
 #include <string>
