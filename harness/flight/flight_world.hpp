@@ -2,7 +2,7 @@
 //
 //   Step     controllers and station take what the target did; then everything moves 1 ms; then what is
 //            sensed goes out: body_motion, esc_state of each motor, uart_frame to the radio
-//   Command  Arm, TakeOff, GoTo, Figure8, Cruise, Land, Sticks, SetParameter. Take-off also streams the point above where the vehicle stands
+//   Command  Arm, TakeOff, GoTo, Figure8, Cruise, HoldAttitude, Land, Sticks, SetParameter. Take-off also streams the point above where the vehicle stands
 //            as its target; land and disarm end the stream
 //   Begins   standing at W's origin, or as the plan's `start` says (surroundings.hpp)
 //   Disturbed by Wind with a duration, Jet, Magnet
@@ -65,6 +65,7 @@ class FlightWorld : public World {
   void land();
   void fly_figure_8(const request::Figure8& figure);
   void cruise(const request::Cruise& command);
+  void hold_attitude(const request::HoldAttitude& command);
   Result<Done> blow(const request::Wind& wind, std::int64_t now_ns);
   Result<Done> add_jet(const request::Jet& wanted);
   Result<Done> add_magnet(const request::Magnet& wanted, std::int64_t now_ns);
