@@ -38,7 +38,7 @@ function(fw_image name)
     COMMAND sh ${gate} $<TARGET_FILE:${name}> ${ARG_FLASH} ${ARG_RAM})
 endfunction()
 
-set(FLIGHT_SOURCES images/flight.cpp ${FW_CORE} hal/clock.cpp hal/time_base.cpp hal/spi_master.cpp
+set(FLIGHT_SOURCES images/flight.cpp ${FW_CORE} hal/clock.cpp hal/time_base.cpp hal/spi_master.cpp hal/edge_capture.cpp
     hal/i2c_master.cpp hal/uart_link.cpp hal/flash.cpp)
 fw_image(flight FLASH 128 RAM 16 FOLDER . SOURCES ${FLIGHT_SOURCES})
 # The same for ESCs in mode 5, whose set-points span another range.

@@ -57,6 +57,7 @@ const char* text_of(Reason reason) {
 
 void Flight::tick() {
   estimator_.tick();
+  pilot_.tick();
   ++target_age_ms_;
   for (std::uint32_t& age : esc_silent_ms_) ++age;
 }
@@ -126,6 +127,16 @@ void Flight::on_velocity(const Vector3& v_W_mps, float z_m, float yaw_rad) {
   aim_ = Aim::velocity;
 }
 
+void Flight::on_attitude(const Quaternion& q_WB, float yaw_rate_radps, float thrust_share) {
+  target_age_ms_ = 0;
+  if (state_ != FlightState::flying || !airborne_ || lift_ < 1.0f) return;
+  if (tilt_cosine(q_WB) < kTipped_cos) return;
+  if (aim_ != Aim::attitude) attitude_reference_.start(wanted_.q_WB);
+  aim_ = Aim::attitude;
+  attitude_ = demand_of(q_WB, yaw_rate_radps);
+  thrust_share_ = thrust_share;
+}
+
 Reason Flight::first_esc_problem() const {
   for (unsigned i = 0; i < 4; ++i) {
     const std::uint8_t flags = esc_status_[i].flags;
@@ -187,6 +198,8 @@ void Flight::enter(FlightState state, Reason reason) {
   if (state == FlightState::flying) {
     reference_.start(estimator_.p_WB_W_m(), yaw_of(estimator_.q_WB()));
     attitude_control_.reset();
+    rotors_.start(config::kThrustMin_N);
+    setpoints_N_.fill(config::kThrustMin_N);
     position_control_.reset();
     velocity_control_.reset();
     aim_ = Aim::place;
@@ -279,6 +292,7 @@ void Flight::follow_reference() {
     lift_ = std::min(1.0f, lift_ + kPositionStep_s / kLiftTime_s);
     airborne_ = airborne_ || p_W.z() < ground_W_m_.z() - kAirborne_m;
     if (lift_ >= 1.0f) advance_reference();
+    if (aim_ == Aim::attitude) return;
   } else {
     const bool near = p_W.z() > ground_W_m_.z() - config::kTouchdownHeight_m;
     reference_.descend(near ? config::kTouchdown_mps : config::kDescent_mps, kPositionStep_s);
@@ -295,19 +309,28 @@ void Flight::follow_reference() {
                                    lift_, kPositionStep_s, integrate);
 }
 
+void Flight::stay() {
+  aim_ = Aim::place;
+  target_W_m_ = reference_.p_W_m();
+  target_yaw_rad_ = reference_.yaw_rad();
+}
+
 void Flight::advance_reference() {
   switch (aim_) {
     case Aim::place:
       return reference_.step(target_W_m_, target_yaw_rad_, kPositionStep_s);
     case Aim::trajectory:
-      if (target_age_ms_ > kTargetFresh_ms) {  // nobody leads any more: stay
-        aim_ = Aim::place;
-        target_W_m_ = reference_.p_W_m();
+      if (target_age_ms_ > kTargetFresh_ms) {  // nobody leads any more
+        stay();
         return reference_.step(target_W_m_, target_yaw_rad_, kPositionStep_s);
       }
       return reference_.follow(point_, jerk_W_mps3_,
                                kTargetDelay_s + 1e-3f * static_cast<float>(target_age_ms_),
                                kPositionStep_s);
+    case Aim::attitude:
+      reference_.start(estimator_.p_WB_W_m(), attitude_reference_.yaw_rad());
+      if (target_age_ms_ > kTargetFresh_ms) stay();
+      return;
     case Aim::velocity:
       return reference_.cruise(estimator_.p_WB_W_m(), target_v_W_mps_, target_W_m_.z(),
                                target_yaw_rad_, kPositionStep_s);
@@ -334,15 +357,30 @@ void Flight::detect_touchdown() {
   }
 }
 
+std::array<std::uint16_t, 4> Flight::send_setpoints() {
+  rotors_.sent(setpoints_N_);
+  return setpoints_;
+}
+
+void Flight::follow_attitude() {
+  if (aim_ != Aim::attitude || state_ != FlightState::flying) return;
+  attitude_reference_.step(attitude_);
+  attitude_reference_.put(wanted_);
+  wanted_.thrust_N = collective_N(thrust_share_, position_control_.hover_thrust_N());
+  wanted_.v_B_mps = wanted_.q_WB.conjugate() * estimator_.v_WB_W_mps();
+}
+
 void Flight::control() {
+  follow_attitude();
   if (!in_air()) return setpoints_.fill(state_ == FlightState::armed ? kIdle : 0);
   const bool trim = airborne_ && contact_s_ < 0.1f;
   const Vector3 tau_B = attitude_control_.torque(estimator_.q_WB(), estimator_.w_WB_B_radps(),
                                                  wanted_, kAttitudeStep_s, trim);
   // Until the next position step the wanted attitude goes on turning.
   wanted_.q_WB = turned(wanted_.q_WB, wanted_.w_B_radps, kAttitudeStep_s);
-  const RotorThrusts thrusts = mix(wanted_.thrust_N, tau_B);
-  for (unsigned i = 0; i < 4; ++i) setpoints_[i] = setpoint_for(thrusts[i]);
+  rotors_.step(kAttitudeStep_s);
+  setpoints_N_ = rotors_.setpoints_for(mix(wanted_.thrust_N, tau_B, rotors_.reach()));
+  for (unsigned i = 0; i < 4; ++i) setpoints_[i] = setpoint_for(setpoints_N_[i]);
 }
 
 }  // namespace fw

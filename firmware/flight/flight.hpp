@@ -10,12 +10,15 @@
 
 #include "firmware/config/parameters.hpp"
 #include "firmware/control/attitude_controller.hpp"
+#include "firmware/control/attitude_reference.hpp"
 #include "firmware/control/mixer.hpp"
 #include "firmware/control/position_controller.hpp"
 #include "firmware/control/reference.hpp"
+#include "firmware/control/rotor_response.hpp"
 #include "firmware/control/velocity_controller.hpp"
 #include "firmware/esc/core/protocol.hpp"
 #include "firmware/estimation/estimator.hpp"
+#include "firmware/flight/pilot.hpp"
 #include "firmware/math.hpp"
 
 namespace fw {
@@ -56,6 +59,9 @@ class Flight {
   void on_trajectory(const TrajectoryPoint& point);
   // A horizontal velocity to hold, at a height.
   void on_velocity(const Vector3& v_W_mps, float z_m, float yaw_rad);
+  // An attitude to hold, in the air only; thrust: share of the collective, hover at a half.
+  void on_attitude(const Quaternion& q_WB, float yaw_rate_radps, float thrust_share);
+  void on_rc(const CppmFrame& frame) { pilot_.on_frame(frame); }
   void on_esc_answered(unsigned motor) { esc_silent_ms_[motor] = 0; }
   void on_esc_status(unsigned motor, const esc::protocol::Status& status) {
     esc_status_[motor] = status;
@@ -75,6 +81,8 @@ class Flight {
 
   // Outputs.
   std::array<std::uint16_t, 4> setpoints() const { return setpoints_; }
+  // They go out: from here on the rotors follow them.
+  std::array<std::uint16_t, 4> send_setpoints();
   FlightState state() const { return state_; }
   Reason last_reason() const { return reason_; }
   std::uint32_t reason_count() const { return reason_count_; }  // steps with each new reason
@@ -82,6 +90,7 @@ class Flight {
   Reason ready_to_arm() const;
   const Estimator& estimator() const { return estimator_; }
   Estimator& estimator() { return estimator_; }
+  const Pilot& pilot() const { return pilot_; }
   const Reference& reference() const { return reference_; }
   const esc::protocol::Status& esc_status(unsigned motor) const { return esc_status_[motor]; }
   bool capture_fresh() const { return estimator_.fix_fresh(); }
@@ -105,12 +114,18 @@ class Flight {
   bool accept_target(const Vector3& p_W_m, float yaw_rad);
   void advance_reference();
   void follow_reference();
+  void follow_attitude();
+  void stay();
 
   Parameters parameters_;
+  Pilot pilot_;
   Estimator estimator_;
   AttitudeController attitude_control_;
   PositionController position_control_;
   VelocityController velocity_control_;
+  AttitudeReference attitude_reference_;
+  RotorResponse rotors_;
+  RotorThrusts setpoints_N_{};
   Reference reference_;
 
   FlightState state_ = FlightState::disarmed;
@@ -123,9 +138,11 @@ class Flight {
 
   Vector3 target_W_m_ = Vector3::Zero();
   float target_yaw_rad_ = 0.0f;
-  enum class Aim : std::uint8_t { place, trajectory, velocity } aim_ = Aim::place;
+  enum class Aim : std::uint8_t { place, trajectory, velocity, attitude } aim_ = Aim::place;
   TrajectoryPoint point_;
   Vector3 jerk_W_mps3_ = Vector3::Zero(), target_v_W_mps_ = Vector3::Zero();
+  AttitudeDemand attitude_;
+  float thrust_share_ = 0.0f;
   std::uint32_t target_age_ms_ = kNever;
   std::array<esc::protocol::Status, 4> esc_status_{};
   std::array<std::uint32_t, 4> esc_silent_ms_{kNever, kNever, kNever, kNever};

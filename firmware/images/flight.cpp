@@ -8,6 +8,7 @@
 
 #include "firmware/config/parameter_store.hpp"
 #include "firmware/config/vehicle.hpp"
+#include "firmware/drivers/cppm_receiver.hpp"
 #include "firmware/drivers/esc_bus.hpp"
 #include "firmware/drivers/hmc5883l.hpp"
 #include "firmware/drivers/mpu6000.hpp"
@@ -15,6 +16,7 @@
 #include "firmware/flight/flight.hpp"
 #include "firmware/flight/schedule.hpp"
 #include "firmware/hal/clock.hpp"
+#include "firmware/hal/edge_capture.hpp"
 #include "firmware/hal/fault_record.hpp"
 #include "firmware/hal/flash.hpp"
 #include "firmware/hal/i2c_master.hpp"
@@ -38,6 +40,8 @@ constinit EscBus<hal::I2cMaster<hal::EscI2c>> escs(hal::i2c3);
 constinit Ms5611<hal::I2cMaster<hal::SensorI2c>> barometer(hal::i2c2);
 constinit Hmc5883l<hal::I2cMaster<hal::SensorI2c>> magnetometer(hal::i2c2);
 constinit ParameterStore<hal::ParameterSectors> store(hal::parameter_sectors);
+constinit CppmReceiver receiver;
+volatile bool sticks_came = false;
 volatile std::uint32_t ticks_due = 0;
 volatile bool sample_ready = false;
 
@@ -78,6 +82,10 @@ void fallback_tick() {
   ticks_due = ticks_due + 1;
 }
 
+void receiver_edge(std::uint32_t edge_us) {
+  if (receiver.edge(edge_us)) sticks_came = true;
+}
+
 void esc_job_done(const hal::I2cJob& job, Status status) {
   escs.job_done(job, status);
 }
@@ -115,7 +123,17 @@ __attribute__((noinline)) void imu_task() {
   faults.imu_reconfigured = imu.reconfigured();
 }
 
+// A frame is ended by the gap after it: until then the one before stays whole.
+static void read_sticks() {
+  if (!sticks_came) return;
+  const hal::InterruptLock lock;
+  sticks_came = false;
+  const CppmFrame frame = receiver.frame();
+  flight().on_rc(frame);
+}
+
 __attribute__((noinline)) void attitude_task() {
+  read_sticks();
   flight().attitude_step();
 }
 
@@ -142,7 +160,7 @@ __attribute__((noinline)) void esc_task(std::uint32_t tick) {
     esc::protocol::Status status;
     if (escs.take_status(motor, status)) flight().on_esc_status(motor, status);
   }
-  if (schedule::setpoints(tick)) std::ignore = escs.write(flight().setpoints());
+  if (schedule::setpoints(tick)) std::ignore = escs.write(flight().send_setpoints());
   const int motor = schedule::status_read(tick);
   if (motor >= 0) std::ignore = escs.request_status(static_cast<unsigned>(motor));
   faults.esc_no_answer = escs.failures();
@@ -292,6 +310,7 @@ extern "C" void fw_main() {
   hal::i2c3.init();
   hal::i2c2.init();
   hal::radio.init();
+  hal::start_edge_capture();
   hal::start_watchdog();
   run();
 }

@@ -28,6 +28,7 @@ enum MessageId : std::uint32_t {
   kLocalPositionNed = 32,
   kCommandLong = 76,
   kCommandAck = 77,
+  kSetAttitudeTarget = 82,
   kSetPositionTargetLocalNed = 84,
   kViconPositionEstimate = 104,
   kHighresImu = 105,

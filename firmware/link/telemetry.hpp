@@ -4,8 +4,9 @@
 //   Down    HEARTBEAT 1 Hz, SYS_STATUS 1 Hz, ATTITUDE_QUATERNION 20 Hz, LOCAL_POSITION_NED 10 Hz,
 //           HIGHRES_IMU 2 Hz, DEBUG_FLOAT_ARRAY of the filters 5 Hz each; COMMAND_ACK, STATUSTEXT and
 //           PARAM_VALUE in free slots
-//   Up      VICON_POSITION_ESTIMATE, SET_POSITION_TARGET_LOCAL_NED, COMMAND_LONG (400 arm, disarm;
-//           22 take off to param 7; 21 land); the requests of parameter_link.hpp
+//   Up      VICON_POSITION_ESTIMATE, SET_POSITION_TARGET_LOCAL_NED, SET_ATTITUDE_TARGET (attitude, body
+//           yaw rate and thrust), COMMAND_LONG (400 arm, disarm; 22 take off to param 7; 21 land); the
+//           requests of parameter_link.hpp
 //   State   HEARTBEAT.custom_mode is the FlightState; system_status 2 not ready, 3 ready, 4 active,
 //           5 failsafe, 6 motors stopped in an emergency
 #pragma once
@@ -39,6 +40,7 @@ class Telemetry {
  private:
   void on_vicon(const mavlink::Frame& frame);
   void on_target(const mavlink::Frame& frame);
+  void on_attitude(const mavlink::Frame& frame);
   void on_command(const mavlink::Frame& frame);
 
   mavlink::Message heartbeat() const;

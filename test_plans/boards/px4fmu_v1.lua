@@ -1,7 +1,7 @@
 -- PX4FMU v1, wired as its schematics say: STM32F405RG, 24 MHz crystal. The IMU's interrupt reaches PC3
 -- through the jumper JP6. The ESCs hang on the expansion header's I2C3, as in the thesis (PX4 used I2C1).
 -- What the flight image has no driver for yet is left out: EEPROM (i2c2, 0x50), micro-SD (spi3, CS PA4), GPS
--- (usart6), PPM (PA10), battery voltage (PC0); L3GD20, BMA180 and buzzer are not modelled.
+-- (usart6), battery voltage (PC0); L3GD20, BMA180 and buzzer are not modelled.
 return {
   board = "px4fmu_v1",
   mcu = "stm32f405rg",
@@ -16,6 +16,7 @@ return {
     { name = "esc4", type = "esc_i2c", bus = "i2c3", address = 0x2C, motor = 4 },
     { name = "radio", type = "mavlink_link", bus = "usart2", baud = "57600 baud",
       params = { uplink_loss = "5 %" } },
+    { name = "rc", type = "cppm", bus = "PA10", params = { failsafe = "stop" } },
   },
   pins = { { name = "led_amber", pin = "PB14" }, { name = "led_blue", pin = "PB15" } },
   watch = { "fw::imu_task", "fw::attitude_task", "fw::position_task", "fw::esc_task", "fw::sensor_task", "fw::telemetry_task",

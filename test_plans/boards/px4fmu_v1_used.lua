@@ -15,6 +15,7 @@ return {
     { name = "esc4", type = "esc_i2c", bus = "i2c3", address = 0x2C, motor = 4 },
     { name = "radio", type = "mavlink_link", bus = "usart2", baud = "57600 baud",
       params = { uplink_loss = "5 %" } },
+    { name = "rc", type = "cppm", bus = "PA10", params = { failsafe = "stop" } },
   },
   pins = { { name = "led_amber", pin = "PB14" }, { name = "led_blue", pin = "PB15" } },
   watch = { "fw::imu_task", "fw::attitude_task", "fw::position_task", "fw::esc_task", "fw::sensor_task", "fw::telemetry_task" },
