@@ -25,9 +25,11 @@ struct Faults {                        // never decremented by firmware
   std::uint32_t i2c_timeouts = 0;
   std::uint32_t baro_failures = 0, mag_failures = 0;  // transactions and readings
   std::uint32_t sensor_reconfigured = 0;  // barometer or magnetometer had to be set up anew
-  std::uint32_t link_bad_frames = 0;      // frames with a wrong CRC
-  std::uint32_t link_overruns = 0;        // telemetry dropped because the queue was full
-  std::uint32_t deadline_missed = 0;      // ticks that started while the one before still ran
+  std::uint32_t gps_searches = 0;         // for a receiver that stopped, beside the first
+  std::uint32_t gps_bad_frames = 0;
+  std::uint32_t link_bad_frames = 0;  // frames with a wrong CRC
+  std::uint32_t link_overruns = 0;    // telemetry dropped because the queue was full
+  std::uint32_t deadline_missed = 0;  // ticks that started while the one before still ran
 };
 
 }  // namespace fw

@@ -141,6 +141,12 @@ Curves keep_messages(const RunFolder& folder, MessageWriter& messages, Filing& f
   return curves;
 }
 
+void keep_flight_logs(const RunFolder& folder, Report& report, Filing& filing) {
+  auto copied = copy_flight_logs(folder.path());
+  if (!copied) return filing.lose(copied.error());
+  report.flight_logs = std::move(copied.value());
+}
+
 void keep_page(const Report& report, const Curves& curves, Filing& filing) {
   filing.keep("junit.xml", junit_xml({&report}));
   filing.keep("index.html", page_html(report, curves));
@@ -152,6 +158,7 @@ bool write_run(const RunFolder& folder, Report& report, MessageWriter& messages)
   const auto begin = std::chrono::steady_clock::now();
   Filing filing(folder, report);
   const Curves curves = keep_messages(folder, messages, filing);
+  keep_flight_logs(folder, report, filing);
   conclude(report);  // what was lost is in what follows
   keep_page(report, curves, filing);
   report.host.results_s =

@@ -2,7 +2,8 @@
 //
 //   Files     messages.whirl (results/messages/message_file.hpp) and what is made of it: index.html,
 //             truth.csv, bus.csv, telemetry.tlog (serial.txt where it is no MAVLink); of nodes with
-//             names bus_NODE.csv and telemetry_NODE.tlog. run.json, junit.xml
+//             names bus_NODE.csv and telemetry_NODE.tlog. run.json, junit.xml. The firmware's own logs
+//             from the images of cards: flight.ulg, flight_2.ulg and so on
 //   Name      from the host's clock; a second run within one second gets a number
 //   Whole     it is written as .unfinished-..., and gets its name by one rename when all is in it. A
 //             run that was interrupted ends in "-interrupted", one that lost a file in "-incomplete".

@@ -24,7 +24,8 @@ Word word_of(const json& value, std::initializer_list<Word> all) {
 }
 
 Verdict verdict_of_word(const json& value) {
-  return word_of(value, {Verdict::pass, Verdict::fail, Verdict::inconclusive, Verdict::error});
+  return word_of(
+      value, {Verdict::pass, Verdict::fail, Verdict::inconclusive, Verdict::error, Verdict::none});
 }
 
 Blame blame_of_word(const json& value) {

@@ -6,7 +6,7 @@
 namespace whirl::results {
 namespace {
 
-std::string number(double x) {
+std::string shown_number(double x) {
   char text[40];
   std::snprintf(text, sizeof text, "%.6g", x);
   return text;
@@ -16,9 +16,9 @@ std::string number(double x) {
 
 std::string Expectation::limit_text() const {
   const std::string tail = unit.empty() ? "" : " " + unit;
-  if (low && high) return how + " " + number(*low) + " .. " + number(*high) + tail;
-  if (high) return how + " " + number(*high) + tail;
-  if (low) return how + " " + number(*low) + tail;
+  if (low && high) return how + " " + shown_number(*low) + " .. " + shown_number(*high) + tail;
+  if (high) return how + " " + shown_number(*high) + tail;
+  if (low) return how + " " + shown_number(*low) + tail;
   return how;
 }
 
@@ -28,7 +28,7 @@ std::string sentence(const Expectation& e) {
   std::string text = e.name + ": ";
   if (e.verdict == Verdict::inconclusive) return text + e.note;
   if (std::isnan(e.measured)) return text + (e.note.empty() ? "nothing to measure" : e.note);
-  text += number(e.measured) + (e.unit.empty() ? "" : " " + e.unit);
+  text += shown_number(e.measured) + (e.unit.empty() ? "" : " " + e.unit);
   return text + ", wanted " + e.limit_text();
 }
 
@@ -50,19 +50,21 @@ void add_reason(std::vector<Reason>& reasons, const Report& report, Verdict verd
 
 void conclude(Report& report) {
   std::vector<Reason> all = report.reasons;
-  add_reason(all, report, Verdict::fail, Blame::firmware);
-  add_reason(all, report, Verdict::inconclusive, Blame::not_shown);
-  if (report.expectations.empty()) {
+  if (report.judged) add_reason(all, report, Verdict::fail, Blame::firmware);
+  if (report.judged) add_reason(all, report, Verdict::inconclusive, Blame::not_shown);
+  if (report.judged && report.expectations.empty()) {
     all.push_back({Blame::user, report.file + ": the plan expects nothing, so it could not fail"});
   }
   const Reason* decides = deciding(all);
-  report.verdict = decides == nullptr ? Verdict::pass : verdict_of(decides->blame);
+  const Verdict good = report.judged ? Verdict::pass : Verdict::none;
+  report.verdict = decides == nullptr ? good : verdict_of(decides->blame);
   report.blame = decides == nullptr ? Blame::harness : decides->blame;
   report.reason = decides == nullptr ? "" : decides->what;
 }
 
 int exit_code(const Report& report) {
-  return report.verdict == Verdict::pass ? 0 : exit_code_of(report.blame);
+  const bool good = report.verdict == Verdict::pass || report.verdict == Verdict::none;
+  return good ? 0 : exit_code_of(report.blame);
 }
 
 }  // namespace whirl::results

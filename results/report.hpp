@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "results/flight_log/flight_logs.hpp"
 #include "results/verdict.hpp"
 
 namespace whirl::results {
@@ -106,9 +107,10 @@ struct Report {
   // What has been seen against a pass, in order. conclude() draws the next three from it and from the
   // expectations.
   std::vector<Reason> reasons;
+  bool judged = true;  // false: what was expected is told and decides nothing (whirl fly)
   Verdict verdict = Verdict::error;
-  Blame blame = Blame::harness;  // of all but a pass
-  std::string reason;            // one line; empty for a pass
+  Blame blame = Blame::harness;  // of all but pass and none
+  std::string reason;            // one line; empty for these
 
   std::uint64_t seed = 0;
   std::string digest;
@@ -125,6 +127,7 @@ struct Report {
   std::vector<Note> log;
   std::vector<Note> steps;  // t:step
   std::vector<CpuFaultRow> cpu_faults;
+  std::vector<FlightLogRow> flight_logs;
   std::string statistics_json;  // the (first) board's own words; may be empty
   std::vector<std::pair<std::string, std::string>> boards;  // of nodes with names: what each said
 

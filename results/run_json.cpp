@@ -86,6 +86,13 @@ ordered_json notes(const std::vector<Note>& all) {
   return out;
 }
 
+ordered_json flight_log(const FlightLogRow& row) {
+  return {{"file", row.file},     {"card", row.card},       {"name", row.name},
+          {"bytes", row.bytes},   {"samples", row.samples}, {"dropouts", row.dropouts},
+          {"closed", row.closed}, {"from_s", row.from_s},   {"to_s", row.to_s},
+          {"damage", row.damage}};
+}
+
 }  // namespace
 
 std::string run_json(const Report& r) {
@@ -94,7 +101,7 @@ std::string run_json(const Report& r) {
   out["file"] = r.file;
   out["tags"] = r.tags;
   out["verdict"] = name(r.verdict);
-  out["blame"] = name(r.blame);  // of all but a pass
+  out["blame"] = name(r.blame);  // of all but pass and none
   out["reason"] = r.reason;
   out["reasons"] = ordered_json::array();
   for (const Reason& why : r.reasons) {
@@ -136,6 +143,8 @@ std::string run_json(const Report& r) {
   out["findings"] = notes(r.findings);
   out["log"] = notes(r.log);
   out["steps"] = notes(r.steps);
+  out["flight_logs"] = ordered_json::array();
+  for (const FlightLogRow& row : r.flight_logs) out["flight_logs"].push_back(flight_log(row));
   out["histograms"] = ordered_json::array();
   for (const Histogram& h : r.histograms) {
     out["histograms"].push_back(

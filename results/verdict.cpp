@@ -17,6 +17,8 @@ const char* name(Verdict verdict) {
       return "inconclusive";
     case Verdict::error:
       return "error";
+    case Verdict::none:
+      return "none";
   }
   return "?";
 }

@@ -8,6 +8,7 @@
 //   not_shown    what the plan asks was never seen to hold or not to hold     inconclusive  3
 //   harness      a failed internal check, an emulator that crashed            error         4
 //
+//   none         nothing was judged (whirl fly), and nothing was at fault                     0
 //   Within a plan    what was seen of the firmware stays, whatever follows. Of other reasons the
 //                    first one stays, because what follows it may be its consequence; not_shown
 //                    counts only where there is no other.
@@ -22,7 +23,7 @@ struct Error;
 
 namespace whirl::results {
 
-enum class Verdict { pass, fail, inconclusive, error };
+enum class Verdict { pass, fail, inconclusive, error, none };
 const char* name(Verdict verdict);
 
 enum class Blame { firmware, user, host, not_shown, harness };

@@ -21,6 +21,14 @@ enum class Parameter : std::uint8_t {
                         // starts them anew, but not while they are flown by
   ctl_feedforward,      // 1: acceleration and rates of a trajectory are fed forward
   mag_declination_deg,  // of the magnetic field, towards east of north
+  fence_north_m,        // half the width of the box about the origin that is not left; 0: no limit
+  fence_east_m,
+  fence_top_m,     // its height over the origin
+  fence_radius_m,  // the same by GPS alone: a cylinder about where it began
+  fence_height_m,
+  bat_resistance_ohm,  // of pack and leads: the voltage at rest is what is measured, and R I
+  bat_low_V,           // at rest: lands, and does not arm
+  bat_empty_V,         // at rest: lands at once
 };
 
 enum class Numbers : std::uint8_t { real, whole };
@@ -44,6 +52,18 @@ inline constexpr ParameterRow kParameterTable[] = {
     // Canberra, from a map.
     {Parameter::mag_declination_deg, "MAG_DECLINATION", 12.4f, -180, 180, Numbers::real,
      WhileArmed::refused},
+    // The room of the thesis, 5 x 4 x 3 m.
+    {Parameter::fence_north_m, "FENCE_NORTH", 2.5f, 0, 10'000, Numbers::real, WhileArmed::refused},
+    {Parameter::fence_east_m, "FENCE_EAST", 2.0f, 0, 10'000, Numbers::real, WhileArmed::refused},
+    {Parameter::fence_top_m, "FENCE_TOP", 3.0f, 0, 10'000, Numbers::real, WhileArmed::refused},
+    {Parameter::fence_radius_m, "FENCE_RADIUS", 50, 0, 10'000, Numbers::real, WhileArmed::refused},
+    {Parameter::fence_height_m, "FENCE_HEIGHT", 30, 0, 10'000, Numbers::real, WhileArmed::refused},
+    // Four lithium-polymer cells: 3.6 V each at rest is some 15 % of the charge, 3.45 V some 5 %. A pack
+    // of 2200 mAh has 8 to 15 mOhm by its discharge rating, its leads and plugs as much.
+    {Parameter::bat_resistance_ohm, "BAT_RESISTANCE", 0.025f, 0, 1, Numbers::real,
+     WhileArmed::allowed},
+    {Parameter::bat_low_V, "BAT_LOW", 14.4f, 0, 60, Numbers::real, WhileArmed::refused},
+    {Parameter::bat_empty_V, "BAT_EMPTY", 13.8f, 0, 60, Numbers::real, WhileArmed::refused},
 };
 inline constexpr std::size_t kParameterCount = std::size(kParameterTable);
 

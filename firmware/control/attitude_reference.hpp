@@ -59,8 +59,8 @@ class AttitudeReference {
   float yaw_rad() const { return yaw_rad_; }
 
  private:
-  static constexpr std::size_t kFirst = 19, kSecond = 10, kThird = 9;  // steps of 5 ms
-  static constexpr std::size_t kLead = 4;                              // the hold of a set-point
+  static constexpr std::size_t kFirst = 19, kSecond = 10, kThird = 10;  // steps of 5 ms
+  static constexpr std::size_t kLead = 4;                               // the hold of a set-point
 
   struct Point {
     Quaternion q_WB = Quaternion::Identity();

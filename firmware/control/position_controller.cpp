@@ -47,11 +47,11 @@ float PositionController::height_force(const Vector3& p_WB_W_m, const Vector3& v
   return force(p_WB_W_m, v_WB_W_mps, reference, lift).z();
 }
 
-ThrustAndAttitude PositionController::sink(float speed_mps, const Vector3& v_WB_W_mps,
+ThrustAndAttitude PositionController::sink(float speed_mps, float sinking_mps,
                                            const Quaternion& q_WB, float yaw_rad,
                                            float lift) const {
   Vector3 f_W = integral_W_mps2_;
-  const float v_error = std::clamp(v_WB_W_mps.z() - speed_mps, -0.6f, 0.6f);
+  const float v_error = std::clamp(sinking_mps - speed_mps, -0.6f, 0.6f);
   f_W.z() += lift * kGravity_mps2 + config::kVelocityGain_ps[2] * v_error;
   return resolve({.f_W_mps2 = f_W}, q_WB, yaw_rad);
 }

@@ -20,8 +20,8 @@ class PositionController {
   float height_force(const Vector3& p_WB_W_m, const Vector3& v_WB_W_mps, const Reference& reference,
                      float lift, float dt_s, bool integrating);
   // Without a position: the trim found so far, level but for it, sinking at the given speed.
-  ThrustAndAttitude sink(float speed_mps, const Vector3& v_WB_W_mps, const Quaternion& q_WB,
-                         float yaw_rad, float lift) const;
+  ThrustAndAttitude sink(float speed_mps, float sinking_mps, const Quaternion& q_WB, float yaw_rad,
+                         float lift) const;
   // m g and what the integral has learned about thrust.
   float hover_thrust_N() const;
 

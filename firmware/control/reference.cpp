@@ -74,8 +74,11 @@ void Reference::cruise(const Vector3& p_WB_W_m, const Vector3& v_wanted_W_mps, f
   turn_to(yaw_rad, dt_s);
 }
 
-void Reference::descend(float speed_mps, float dt_s) {
-  drive({0.0f, 0.0f, speed_mps}, dt_s);
+void Reference::descend(const Vector3& place_W_m, float speed_mps, float dt_s) {
+  Vector3 wanted = config::kReferenceGain_ps * (place_W_m - p_W_m_);
+  wanted.z() = speed_mps;
+  wanted.head<2>() = clamp_norm<2>(wanted.head<2>(), config::kSpeedLimit_mps);
+  drive(wanted, dt_s);
 }
 
 }  // namespace fw

@@ -25,7 +25,8 @@ class Reference {
   void cruise(const Vector3& p_WB_W_m, const Vector3& v_wanted_W_mps, float z_m, float yaw_rad,
               float dt_s);
   // Straight down from where it is, for landing.
-  void descend(float speed_mps, float dt_s);
+  // Down at that speed, on the way over that place.
+  void descend(const Vector3& place_W_m, float speed_mps, float dt_s);
 
   const Vector3& p_W_m() const { return p_W_m_; }
   const Vector3& v_W_mps() const { return v_W_mps_; }

@@ -1,12 +1,14 @@
 // Driver for the InvenSense MPU-6000 on SPI. Needs a bus that transfers in the background.
 //
-//   Contract  setup_tick() once per millisecond until running(); data_ready() at the pin's edge and
-//             transfer_done() at the end of each transfer, both may come from interrupts
+//   Contract  setup_tick() once per millisecond; data_ready() at the pin's edge and transfer_done() at
+//             the end of each transfer, both may come from interrupts
 //   Output    the newest burst (acceleration, temperature, rate), as it came off the wire, with its
 //             time; decode() scales it. Axes of the sensor: the mounting belongs to the caller
 //   Settings  +-2000 deg/s, +-16 g, 188 Hz low-pass, 1 kHz; written, read back, and one of them
 //   read
 //             again after each sample while flying (at the slow clock: the part's limit is 1 MHz)
+//   Silence   10 ms without a sample while running: it is set up anew, for a part that has lost its
+//             supply sleeps
 //   Source    RM-MPU-6000A-00 rev 4.2 register map; PS-MPU-6000A-00 rev 3.4 for timing and scales
 #pragma once
 #include <algorithm>
@@ -117,6 +119,7 @@ class Mpu6000 {
   static constexpr std::uint8_t kRead = 0x80;
   static constexpr std::uint32_t kCheckEvery = 10;  // all nine settings in 90 ms
   static constexpr unsigned kPowerUp_ms = 30, kSettle_ms = 100;
+  static constexpr std::uint32_t kSilent_ms = 10;
 
   Status read_register(Address address) {
     return start(Transfer::setup, {static_cast<std::uint8_t>(address | kRead), 0});
@@ -134,6 +137,7 @@ class Mpu6000 {
     wait_ms_ = 0;
     next_ = 0;
     asked_ = false;
+    silent_ms_ = 0;
     return Status::busy;
   }
   Status fail(Status why) {
@@ -148,6 +152,7 @@ class Mpu6000 {
   Bus& bus_;
   Phase phase_ = Phase::power_up;
   volatile Transfer transfer_ = Transfer::none;
+  volatile std::uint32_t silent_ms_ = 0;
   Status error_ = Status::busy;
   bool asked_ = false;
   unsigned wait_ms_ = 0;
@@ -185,7 +190,12 @@ Status Mpu6000<Bus>::setup_tick() {
     case Phase::run:
       break;
   }
-  return Status::ok;
+  const std::uint32_t silent_ms = silent_ms_ + 1;
+  silent_ms_ = silent_ms;
+  if (silent_ms <= kSilent_ms) return Status::ok;
+  ++reconfigured_;
+  error_ = Status::no_answer;
+  return begin(Phase::write);
 }
 
 template <BackgroundSpi Bus>
@@ -204,6 +214,7 @@ Status Mpu6000<Bus>::verify() {
   if (asked_) ++next_;
   if (next_ == kSettings.size()) {
     next_ = 0;
+    silent_ms_ = 0;
     error_ = Status::ok;
     phase_ = Phase::run;
     return Status::ok;
@@ -231,6 +242,7 @@ bool Mpu6000<Bus>::transfer_done() {
   if (done == Transfer::burst && in.size() == 15) {
     std::copy(in.begin() + 1, in.end(), burst_.bytes.begin());
     burst_time_us_ = started_us_;
+    silent_ms_ = 0;
     // Not an error if it does not start: the next sample's check does.
     std::ignore =
         start(Transfer::check, {static_cast<std::uint8_t>(kSettings[next_].address | kRead), 0});

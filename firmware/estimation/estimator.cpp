@@ -12,6 +12,10 @@ constexpr float kHeadingShareGround = 1.0f, kHeadingShareFlight = 0.1f;
 constexpr float kCaptureVelocityDelay_s = 0.050f;
 constexpr float kLeastThrust_mps2 = 3.0f;  // below, drag says little about speed
 constexpr float kSteepest_cos = 0.3f;
+constexpr float kGpsDoubted_s = 2.0f;
+// The barometer wanders by a metre in ten minutes, the receiver's height by several in one.
+constexpr float kHeightByGps_ps = 1.0f / 600.0f, kMostHeightError_m = 5.0f;
+constexpr float kFieldShareGround = 0.05f, kFieldShareFlight = 0.01f;  // 75 Hz
 
 float seconds(std::uint32_t ms) {
   return 1e-3f * static_cast<float>(ms);
@@ -25,6 +29,7 @@ Estimator::Estimator() {
 
 void Estimator::tick() {
   ++fix_age_ms_;
+  gps_guard_.tick();
   ++pressure_age_ms_;
   ++field_age_ms_;
 }
@@ -38,10 +43,29 @@ void Estimator::on_imu(const ImuSample& sample) {
 
 const Quaternion& Estimator::q_WB() const {
   if (source_ == AttitudeSource::explicit_filter) return explicit_.q_WB();
-  return fix_fresh() ? inertial_.q_WB() : body_.q_WB();
+  return position_known() ? inertial_.q_WB() : body_.q_WB();
+}
+
+bool Estimator::position_good() const {
+  return fix_age_ms_ <= kFixFresh_ms || (!fix_fresh() && gps_guard_.fresh());
+}
+
+bool Estimator::position_settled() const {
+  constexpr std::uint32_t kCaptureFixes = 20, kGpsFixes = 10;  // in a row: half a second, two
+  return fix_fresh() ? still_fixes_ >= kCaptureFixes : gps_guard_.in_row() >= kGpsFixes;
+}
+
+bool Estimator::converged() const {
+  constexpr float kScaleOff = 0.15f, kApart_rad = 0.1f;
+  if (source_ == AttitudeSource::explicit_filter) return true;
+  const bool scales =
+      std::abs(body_.scale() - 1.0f) < kScaleOff && std::abs(inertial_.scale() - 1.0f) < kScaleOff;
+  return scales && body_.q_WB().angularDistance(inertial_.q_WB()) < kApart_rad;
 }
 
 void Estimator::on_fix(const CaptureFix& fix) {
+  // Who flies by GPS comes into a room in another frame: not before it has landed.
+  if (situation_.in_flight && gps_guard_.fresh()) return;
   const bool first = fix_age_ms_ >= kFixLost_ms && !situation_.in_flight;
   const float since_last_s = seconds(fix_age_ms_);
   explicit_.correct_heading(fix.yaw_rad,
@@ -49,6 +73,8 @@ void Estimator::on_fix(const CaptureFix& fix) {
   correct_velocity(fix, since_last_s);
   fix_ = fix;
   fix_age_ms_ = 0;
+  gps_frame_.forget();
+  gps_guard_.forget();
   if (first) return position_.start(fix.p_WB_W_m);
   position_.correct(fix.p_WB_W_m, since_last_s);
   // In the air an innovation is flight; standing still it tells whether the filter has settled.
@@ -62,6 +88,33 @@ void Estimator::correct_velocity(const CaptureFix& fix, float since_last_s) {
   capture_v_W_mps_ = 0.5f * capture_v_W_mps_ + 0.5f / since_last_s * (fix.p_WB_W_m - fix_.p_WB_W_m);
   inertial_.correct(capture_v_W_mps_, kCaptureVelocityDelay_s, since_last_s);
   inertial_.correct_heading(fix.yaw_rad, since_last_s);
+}
+
+void Estimator::on_gps(const GpsSolution& solution) {
+  gps_ = solution;
+  if (fix_fresh() || !solution.good()) return;
+  if (!gps_frame_.known()) {
+    // A vehicle that capture has placed goes on in the capture's frame.
+    if (situation_.resting && fix_age_ms_ >= kNever) gps_frame_.learn(solution);
+    if (!gps_frame_.known()) return;
+    position_.start(Vector3::Zero());
+  }
+  const Vector3 p_W_m = gps_frame_.local(solution);
+  const auto innovation = position_.gps_innovation(p_W_m, solution.v_W_mps, solution.age_s);
+  const float since_last_s = gps_guard_.age_s();
+  if (!gps_guard_.believe(innovation.p_W_m, innovation.v_W_mps)) {
+    // Nothing has moved it: what it was told before was wrong, or this is.
+    if (situation_.resting && since_last_s > kGpsDoubted_s) {
+      position_.start({p_W_m.x(), p_W_m.y(), position_.p_WB_W_m().z()});
+    }
+    return;
+  }
+  position_.correct_by_gps(innovation, since_last_s);
+  inertial_.correct(solution.v_W_mps, solution.age_s, since_last_s);
+  if (!situation_.airborne) return;
+  const float height_error_m = std::clamp(height_.z_m() - height_offset_m_ - p_W_m.z(),
+                                          -kMostHeightError_m, kMostHeightError_m);
+  height_offset_m_ += kHeightByGps_ps * std::min(since_last_s, 0.25f) * height_error_m;
 }
 
 void Estimator::on_pressure(float pressure_Pa) {
@@ -87,6 +140,11 @@ void Estimator::on_field(const Vector3& field_B_uT) {
   body_.correct_heading(field_B_uT, declination_rad_, seconds(field_age_ms_));
   field_age_ms_ = 0;
   field_B_uT_ = field_B_uT;
+  if (fix_fresh()) return;
+  const Vector3 field_W = explicit_.q_WB() * field_B_uT;
+  const float from_north_rad = declination_rad_ - std::atan2(field_W.y(), field_W.x());
+  explicit_.correct_heading(yaw_of(explicit_.q_WB()) + from_north_rad,
+                            situation_.in_flight ? kFieldShareFlight : kFieldShareGround);
 }
 
 void Estimator::set_start(float scale, float tilt_rad) {
@@ -117,11 +175,17 @@ void Estimator::step(const Situation& situation) {
     step_aided(raw_w_B_radps_ - gyro_zero_B_radps_);
   }
   position_.predict(q_WB(), a_B_mps2_, kStep_s);
-  if (situation.resting && fix_age_ms_ <= kFixFresh_ms) {
-    calibrate();
-  } else {
-    calibration_.restart();
-  }
+  if (!fix_fresh()) move_by_height();
+  if (!situation.resting) return calibration_.restart();
+  if (fix_age_ms_ <= kFixFresh_ms) return calibrate_by_capture();
+  if (fix_fresh()) return calibration_.restart();
+  calibrate_by_gravity();
+}
+
+// Without capture the height is the barometer's, and what rests does not move.
+void Estimator::move_by_height() {
+  if (pressure_fresh() && height_.ready()) position_.set_height(baro_z_m(), baro_vz_mps());
+  if (situation_.resting) position_.hold_still();
 }
 
 __attribute__((noinline)) void Estimator::step_explicit(const Vector3& w_B) {
@@ -135,7 +199,7 @@ __attribute__((noinline)) void Estimator::step_explicit(const Vector3& w_B) {
 }
 
 __attribute__((noinline)) void Estimator::step_aided(const Vector3& w_B) {
-  const FromInertialFilter to_body{fix_fresh(), inertial_.q_WB(),
+  const FromInertialFilter to_body{position_known(), inertial_.q_WB(),
                                    inertial_.v_WB_W_mps() - inertial_.wind_W_mps(),
                                    inertial_.accel_bias_B_mps2()};
   const FromBodyFilter to_inertial{body_.q_WB(), body_.q_WB() * body_.v_AB_B_mps(),
@@ -165,18 +229,37 @@ Vector3 Estimator::velocity_measured_B() const {
   return v_B;
 }
 
-void Estimator::calibrate() {
-  const Quaternion q_WB = from_euler(fix_.roll_rad, fix_.pitch_rad, fix_.yaw_rad);
-  if (!calibration_.add(raw_w_B_radps_, a_B_mps2_ + accel_zero_B_mps2_, q_WB)) return;
+// True: a window is over, and the gyro's zero point is the one of it.
+bool Estimator::new_zeros(const Quaternion& q_WB) {
+  if (!calibration_.add(raw_w_B_radps_, a_B_mps2_ + accel_zero_B_mps2_, q_WB)) return false;
   gyro_zero_B_radps_ = calibration_.gyro_bias_B_radps();
   explicit_.set_gyro_bias(gyro_zero_B_radps_);
+  return true;
+}
+
+void Estimator::calibrate_by_capture() {
+  const Quaternion q_WB = from_euler(fix_.roll_rad, fix_.pitch_rad, fix_.yaw_rad);
+  if (!new_zeros(q_WB)) return;
   accel_zero_B_mps2_ = calibration_.accel_bias_B_mps2();
-  if (!calibrated_) {
+  if (zeros_ != Zeros::by_capture) {
     explicit_.start(q_WB.conjugate() * Vector3(0.0f, 0.0f, -config::kGravity_mps2), fix_.yaw_rad);
     position_.start(fix_.p_WB_W_m);
     restart_aided();
   }
-  calibrated_ = true;
+  zeros_ = Zeros::by_capture;
+}
+
+// Upright is where the accelerometer points, and what its length is off is a zero point along that.
+void Estimator::calibrate_by_gravity() {
+  const Vector3 a_B_mps2 = a_B_mps2_ + accel_zero_B_mps2_;
+  if (!new_zeros(Quaternion::FromTwoVectors(-a_B_mps2, Vector3::UnitZ()))) return;
+  if (zeros_ == Zeros::by_capture) return;  // all three axes are known
+  accel_zero_B_mps2_ = calibration_.accel_bias_B_mps2();
+  if (zeros_ == Zeros::unknown) {
+    explicit_.start(a_B_mps2 - accel_zero_B_mps2_, yaw_of(explicit_.q_WB()));
+    restart_aided();
+  }
+  zeros_ = Zeros::by_gravity;
 }
 
 }  // namespace fw

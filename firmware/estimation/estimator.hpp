@@ -1,17 +1,24 @@
 // All that is estimated of the vehicle's motion, from what its sensors say.
 //
-//   Rates    on_imu 1 kHz, step 200 Hz, pressures 75 Hz, fields 75 Hz, fixes as they come
+//   Rates    on_imu 1 kHz, step 200 Hz, pressures 75 Hz, fields 75 Hz, fixes as they come, GPS 5 Hz
 //   Filters  all run all the time; choose() says whose attitude is flown by:
 //            explicit  quaternion filter (attitude_filter.hpp), heading from the capture system
 //            aided     velocity-aided filters 1 and 2 (body_filter.hpp, inertial_filter.hpp): the
 //                      attitude of filter 2 while it has a velocity over ground, else that of filter 1
 //   Ground   while it rests, with the capture system's attitude, the IMU's zero points are found
 //            anew each second; the barometer's zero follows the pressure
+//   Outdoors without capture. Position: GPS along the floor, the barometer's height, which GPS draws by
+//            1/600 s; W's origin: gps_frame.hpp. Velocity: GPS. Heading: the magnetic field, by filter 1 and
+//            the explicit filter. Zero points: the gyro's; of the accelerometer only its length at rest, so
+//            that its level axes' zero points stay in the attitude (0.15 m/s2: 0.9 degrees)
+//   Both     while there is capture, GPS counts nothing, nor after it: its frame would be another one
 #pragma once
 #include <cstdint>
 
 #include "firmware/estimation/attitude_filter.hpp"
 #include "firmware/estimation/body_filter.hpp"
+#include "firmware/estimation/gps_frame.hpp"
+#include "firmware/estimation/gps_guard.hpp"
 #include "firmware/estimation/ground_calibration.hpp"
 #include "firmware/estimation/height_filter.hpp"
 #include "firmware/estimation/inertial_filter.hpp"
@@ -50,6 +57,7 @@ class Estimator {
   void tick();  // each millisecond, before what came in it
   void on_imu(const ImuSample& sample);
   void on_fix(const CaptureFix& fix);
+  void on_gps(const GpsSolution& solution);
   void on_pressure(float pressure_Pa);
   void on_field(const Vector3& field_B_uT);
   void step(const Situation& situation);
@@ -65,15 +73,25 @@ class Estimator {
   const Vector3& p_WB_W_m() const { return position_.p_WB_W_m(); }
   const Vector3& v_WB_W_mps() const { return position_.v_WB_W_mps(); }
 
+  // What is flown by has settled: latent scales near 1, both velocity-aided attitudes of one mind.
+  bool converged() const;
   bool fix_fresh() const { return fix_age_ms_ < kFixLost_ms; }
+  // Where it is along the floor, and how fast it moves, by capture or GPS.
+  bool position_known() const { return fix_fresh() || gps_guard_.fresh(); }
+  // To be armed with: the same, and settled at rest.
+  bool position_good() const;
+  bool position_settled() const;
   std::uint32_t fix_age_ms() const { return fix_age_ms_; }
-  bool calibrated() const { return calibrated_; }
-  std::uint32_t still_fixes() const { return still_fixes_; }
+  bool calibrated() const {
+    return zeros_ == Zeros::by_capture || (zeros_ == Zeros::by_gravity && !fix_fresh());
+  }
   bool pressure_fresh() const { return pressure_age_ms_ < kSlowSensorLost_ms; }
   bool field_fresh() const { return field_age_ms_ < kSlowSensorLost_ms; }
   float pressure_Pa() const { return pressure_Pa_; }
   const Vector3& field_B_uT() const { return field_B_uT_; }
   const ImuSample& imu() const { return sample_; }
+  const GpsSolution& gps() const { return gps_; }
+  const GpsFrame& gps_frame() const { return gps_frame_; }
 
   const AttitudeFilter& explicit_filter() const { return explicit_; }
   const BodyFilter& body() const { return body_; }
@@ -88,7 +106,10 @@ class Estimator {
   void restart_aided();
   void step_explicit(const Vector3& w_B);
   void step_aided(const Vector3& w_B);
-  void calibrate();
+  bool new_zeros(const Quaternion& q_WB);
+  void calibrate_by_capture();
+  void calibrate_by_gravity();
+  void move_by_height();
   Vector3 velocity_measured_B() const;
   void correct_velocity(const CaptureFix& fix, float since_last_s);
 
@@ -106,11 +127,15 @@ class Estimator {
   int sum_count_ = 0;
   Vector3 a_B_mps2_ = Vector3::Zero(), raw_w_B_radps_ = Vector3::Zero();
   Vector3 accel_zero_B_mps2_ = Vector3::Zero(), gyro_zero_B_radps_ = Vector3::Zero();
-  bool started_ = false, calibrated_ = false;
+  bool started_ = false;
+  enum class Zeros : std::uint8_t { unknown, by_gravity, by_capture } zeros_ = Zeros::unknown;
 
   CaptureFix fix_;
   std::uint32_t fix_age_ms_ = kNever, still_fixes_ = 0;
   Vector3 capture_v_W_mps_ = Vector3::Zero();
+  GpsFrame gps_frame_;
+  GpsGuard gps_guard_;
+  GpsSolution gps_;
   float pressure_Pa_ = 0.0f, resting_Pa_ = 0.0f, height_offset_m_ = 0.0f;
   std::uint32_t pressure_age_ms_ = kNever, field_age_ms_ = kNever;
   Vector3 field_B_uT_ = Vector3::Zero();

@@ -2,8 +2,10 @@
 //
 //   Rates   on_imu 1 kHz, attitude_step 200 Hz, position_step 40 Hz. Knows no bus and no clock but
 //           its own count of ticks
-//   States  disarmed -> armed -> flying -> landing -> disarmed; failsafe landing from the two in the
-//           air; motors off at once where nothing can be controlled (IMU lost, tipped over)
+//   States  disarmed -> armed -> flying -> landing -> disarmed; what is taken in which of them, and
+//           what is done about what goes wrong: the tables of supervisor.hpp
+//   Files   flight.cpp commands and states; flight_watch.cpp what holds now, and what keeps it from
+//           arming; flight_control.cpp from the reference to set-points; flight_manual.cpp from sticks
 #pragma once
 #include <array>
 #include <cstdint>
@@ -18,32 +20,15 @@
 #include "firmware/control/velocity_controller.hpp"
 #include "firmware/esc/core/protocol.hpp"
 #include "firmware/estimation/estimator.hpp"
+#include "firmware/flight/battery_watch.hpp"
+#include "firmware/flight/fence.hpp"
+#include "firmware/flight/flight_state.hpp"
+#include "firmware/flight/motor_watch.hpp"
 #include "firmware/flight/pilot.hpp"
+#include "firmware/flight/supervisor.hpp"
 #include "firmware/math.hpp"
 
 namespace fw {
-
-enum class FlightState : std::uint8_t { disarmed, armed, flying, landing, failsafe };
-
-enum class Reason : std::uint8_t {  // why a command was refused, or a flight ended
-  none,
-  imu_not_running,
-  imu_frozen,
-  imu_not_calibrated,
-  no_capture,
-  estimate_not_converged,
-  tilted,
-  esc_not_armed,
-  esc_fault,
-  esc_silent,
-  no_setpoints,
-  tipped_over,
-  landed,
-  commanded,
-  wrong_state,
-  height_out_of_range,
-};
-const char* text_of(Reason reason);
 
 class Flight {
  public:
@@ -52,6 +37,7 @@ class Flight {
   void on_imu_missing();                                      // a tick without a sample
   void set_imu_frozen(bool frozen) { imu_frozen_ = frozen; }  // samples that stopped changing
   void on_fix(const CaptureFix& fix);
+  void on_gps(const GpsSolution& solution) { estimator_.on_gps(solution); }
   void on_pressure(float pressure_Pa) { estimator_.on_pressure(pressure_Pa); }
   void on_field(const Vector3& field_B_uT) { estimator_.on_field(field_B_uT); }
   void on_target(const Vector3& p_W_m, float yaw_rad);
@@ -62,10 +48,12 @@ class Flight {
   // An attitude to hold, in the air only; thrust: share of the collective, hover at a half.
   void on_attitude(const Quaternion& q_WB, float yaw_rate_radps, float thrust_share);
   void on_rc(const CppmFrame& frame) { pilot_.on_frame(frame); }
-  void on_esc_answered(unsigned motor) { esc_silent_ms_[motor] = 0; }
+  void on_esc_answered(unsigned motor) { motors_.on_answered(motor); }
   void on_esc_status(unsigned motor, const esc::protocol::Status& status) {
-    esc_status_[motor] = status;
+    motors_.on_status(motor, status);
   }
+  void on_battery(float voltage_V);     // 100 Hz
+  void on_link() { link_age_ms_ = 0; }  // anything valid from the ground station
   // Commands: none if accepted.
   Reason arm();
   Reason disarm();
@@ -91,35 +79,58 @@ class Flight {
   const Estimator& estimator() const { return estimator_; }
   Estimator& estimator() { return estimator_; }
   const Pilot& pilot() const { return pilot_; }
+  bool steered_by_hand() const { return steered_ != PilotMode::autonomous; }
   const Reference& reference() const { return reference_; }
-  const esc::protocol::Status& esc_status(unsigned motor) const { return esc_status_[motor]; }
-  bool capture_fresh() const { return estimator_.fix_fresh(); }
+  const esc::protocol::Status& esc_status(unsigned motor) const { return motors_.status(motor); }
+  const BatteryWatch& battery() const { return battery_; }
+  Conditions conditions() const;
+  Reason take_warning() { return supervisor_.take_warning(); }
 
  private:
   static constexpr std::uint32_t kNever = Estimator::kNever;
-  static constexpr std::uint32_t kEscSilent_ms = 500, kTargetFresh_ms = 500, kTargetsLost_ms = 3000;
-  static constexpr std::uint32_t kImuLost_ms = 20;
+  static constexpr std::uint32_t kTargetFresh_ms = 500, kTargetsLost_ms = 3000;
+  static constexpr std::uint32_t kImuLost_ms = 20, kLinkLost_ms = 3000;
+  static constexpr float kAboveGround_m = 0.3f;  // a target below that does not mean flight
 
   void tick();
   void apply_parameters();
   void estimate();
   void supervise();
-  void watch_flight();
+  void react(const Decision& decision);
+  void follow_target_into_air();
   void detect_touchdown();
   void control();
   void enter(FlightState state, Reason reason);
   void stop_motors(Reason reason, bool emergency);
   Reason first_esc_problem() const;
+  Reason first_sensor_problem() const;
+  Fence fence() const;
   bool in_air() const { return state_ >= FlightState::flying; }
+  // Downward speed and height over where it armed, by the best that is known now.
+  float sinking_mps() const;
+  float height_m() const;
+  float descent_mps() const;  // 0 while it is on its way back inside the fence
   bool accept_target(const Vector3& p_W_m, float yaw_rad);
   void advance_reference();
   void follow_reference();
+  void follow_pilot();
+  void follow_arm_switch(const PilotDemand& sticks);
+  void follow_sticks(const PilotDemand& sticks);
+  void hand_over(PilotMode mode);
+  void begin_armed();
+  void refuse(Reason reason);
   void follow_attitude();
   void stay();
+  void descend();
 
   Parameters parameters_;
   Pilot pilot_;
+  PilotMode steered_ = PilotMode::autonomous;  // by whom; a lost link changes nothing
+  bool arm_switch_ = true;
   Estimator estimator_;
+  Supervisor supervisor_;
+  MotorWatch motors_;
+  BatteryWatch battery_;
   AttitudeController attitude_control_;
   PositionController position_control_;
   VelocityController velocity_control_;
@@ -144,12 +155,11 @@ class Flight {
   AttitudeDemand attitude_;
   float thrust_share_ = 0.0f;
   std::uint32_t target_age_ms_ = kNever;
-  std::array<esc::protocol::Status, 4> esc_status_{};
-  std::array<std::uint32_t, 4> esc_silent_ms_{kNever, kNever, kNever, kNever};
+  std::uint32_t link_age_ms_ = kNever;
 
   Vector3 ground_W_m_ = Vector3::Zero();
   float lift_ = 0.0f;  // share of the weight that the rotors are asked to carry
-  float contact_s_ = 0.0f, state_s_ = 0.0f, tipped_s_ = 0.0f;
+  float contact_s_ = 0.0f, state_s_ = 0.0f, blind_longest_s_ = 0.0f;
   bool airborne_ = false;
   ThrustAndAttitude wanted_;
   std::array<std::uint16_t, 4> setpoints_{};

@@ -3,14 +3,16 @@
 //   Set-points go out in the ticks 0, 20, 40 .. right after the attitude task that computed them.
 //   Status reads come every 50 ms per ESC, at 2, 4, 6, 8 ms from the set-points' ticks or halfway
 //   between them, so that no write ever waits for a read (a write of all four takes 0.5 ms).
+//   The log is sampled at 150 Hz: in the ticks 4, 11 and 18 of each 20.
 #pragma once
 #include <cstdint>
 
 namespace fw::schedule {
 
 inline constexpr std::uint32_t kAttitudePeriod = 5, kPositionPeriod = 25, kSetpointPeriod = 20,
-                               kStatusPeriod = 50, kTelemetryPeriod = 5, kSensorPeriod = 10;
-inline constexpr std::uint32_t kPositionTick = 3, kTelemetryTick = 2, kSensorTick = 9;
+                               kStatusPeriod = 50, kTelemetryPeriod = 5, kGpsPeriod = 5,
+                               kSensorPeriod = 10;
+inline constexpr std::uint32_t kPositionTick = 3, kTelemetryTick = 2, kGpsTick = 1, kSensorTick = 9;
 
 constexpr bool attitude(std::uint32_t tick) {
   return tick % kAttitudePeriod == 0;
@@ -24,9 +26,16 @@ constexpr bool setpoints(std::uint32_t tick) {
 constexpr bool telemetry(std::uint32_t tick) {
   return tick % kTelemetryPeriod == kTelemetryTick;
 }
-
+constexpr bool gps(std::uint32_t tick) {
+  return tick % kGpsPeriod == kGpsTick;
+}
 constexpr bool sensors(std::uint32_t tick) {
   return tick % kSensorPeriod == kSensorTick;
+}
+
+constexpr bool log(std::uint32_t tick) {
+  const std::uint32_t phase = tick % 20;
+  return phase == 4 || phase == 11 || phase == 18;
 }
 
 // The motor (0..3) whose status is read in this tick, or -1.

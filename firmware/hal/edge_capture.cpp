@@ -31,7 +31,7 @@ void start_edge_capture() {
   TIM1::DIER::write(TIM1::CC3IE);
   TIM1::CNT::write((now_us() - kBehind_us) & 0xFFFF);
   TIM1::CR1::set(TIM1::CEN);
-  Nvic<Irq::TIM1_CC>::enable(kPriorityRadio);
+  Nvic<Irq::TIM1_CC>::enable(kPriorityUart);
 }
 
 }  // namespace fw::hal

@@ -8,7 +8,7 @@ enum Priority : std::uint32_t {
   kPriorityImu = 1,
   kPriorityTick = 2,
   kPriorityI2c = 3,
-  kPriorityRadio = 4
+  kPriorityUart = 4
 };
 
 class InterruptLock {  // for the few words that interrupts and tasks share

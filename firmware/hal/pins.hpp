@@ -26,6 +26,7 @@ struct Pin {
     Port::MODER::replace(3u << (2 * kPin), 0);
     Port::PUPDR::replace(3u << (2 * kPin), static_cast<std::uint32_t>(pull) << (2 * kPin));
   }
+  static void analog() { Port::MODER::set(3u << (2 * kPin)); }
   static void set(bool level) { Port::BSRR::write(1u << (level ? kPin : kPin + 16)); }
   static bool level() { return Port::IDR::has(1u << kPin); }
 
@@ -38,11 +39,16 @@ struct Pin {
 };
 
 // PX4FMU v1; the ESCs hang on the expansion header.
-using SpiSck = Pin<hw::GPIOA, 5>;
-using SpiMiso = Pin<hw::GPIOA, 6>;
-using SpiMosi = Pin<hw::GPIOA, 7>;
+using ImuSck = Pin<hw::GPIOA, 5>;
+using ImuMiso = Pin<hw::GPIOA, 6>;
+using ImuMosi = Pin<hw::GPIOA, 7>;
 using ImuSelect = Pin<hw::GPIOB, 0>;
-using ImuReady = Pin<hw::GPIOC, 3>;  // by the jumper JP6
+using ImuReady = Pin<hw::GPIOC, 3>;      // by the jumper JP6
+using BatterySense = Pin<hw::GPIOC, 0>;  // 10 k of 57 k
+using CardSelect = Pin<hw::GPIOA, 4>;
+using CardSck = Pin<hw::GPIOC, 10>;
+using CardMiso = Pin<hw::GPIOC, 11>;
+using CardMosi = Pin<hw::GPIOB, 5>;
 using EscScl = Pin<hw::GPIOA, 8>;
 using EscSda = Pin<hw::GPIOC, 9>;
 using SensorScl = Pin<hw::GPIOB, 10>;
@@ -50,6 +56,8 @@ using SensorSda = Pin<hw::GPIOB, 11>;
 using ReceiverPulses = Pin<hw::GPIOA, 10>;
 using RadioTx = Pin<hw::GPIOA, 2>;
 using RadioRx = Pin<hw::GPIOA, 3>;
+using GpsTx = Pin<hw::GPIOC, 6>;
+using GpsRx = Pin<hw::GPIOC, 7>;
 using LedAmber = Pin<hw::GPIOB, 14>;  // lit when low
 using LedBlue = Pin<hw::GPIOB, 15>;   // lit when low
 

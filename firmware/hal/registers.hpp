@@ -27,9 +27,10 @@ struct RCC {
   static constexpr std::uint32_t GPIOAEN = bit(0), GPIOBEN = bit(1), GPIOCEN = bit(2),
                                  CCMDATARAMEN = bit(20), DMA1EN = bit(21), DMA2EN = bit(22);
   static constexpr std::uint32_t TIM2EN = bit(0), TIM5EN = bit(3), TIM6EN = bit(4), TIM7EN = bit(5),
-                                 USART2EN = bit(17), I2C2EN = bit(22), I2C3EN = bit(23),
-                                 PWREN = bit(28);
-  static constexpr std::uint32_t TIM1EN = bit(0), SPI1EN = bit(12), SYSCFGEN = bit(14);
+                                 SPI3EN = bit(15), USART2EN = bit(17), I2C2EN = bit(22),
+                                 I2C3EN = bit(23), PWREN = bit(28);
+  static constexpr std::uint32_t TIM1EN = bit(0), USART6EN = bit(5), ADC1EN = bit(8),
+                                 SPI1EN = bit(12), SYSCFGEN = bit(14);
   static constexpr std::uint32_t RMVF = bit(24), BORRSTF = bit(25), PADRSTF = bit(26),
                                  PORRSTF = bit(27), SFTRSTF = bit(28), WDGRSTF = bit(29),
                                  WWDGRSTF = bit(30), LPWRRSTF = bit(31);
@@ -71,6 +72,19 @@ using GPIOA = Gpio<0x4002'0000>;
 using GPIOB = Gpio<0x4002'0400>;
 using GPIOC = Gpio<0x4002'0800>;
 
+struct ADC1 {
+  static constexpr std::uint32_t base = 0x4001'2000;
+  using SR = Reg32<base + 0x00>;
+  using CR2 = Reg32<base + 0x08>;
+  using SMPR1 = Reg32<base + 0x0C>;  // channels 10 to 18, three bits each
+  using SQR1 = Reg32<base + 0x2C>;
+  using SQR3 = Reg32<base + 0x34>;
+  using DR = Reg32<base + 0x4C>;
+  using CCR = Reg32<base + 0x304>;  // common to the three converters
+  static constexpr std::uint32_t EOC = bit(1), ADON = bit(0), SWSTART = bit(30);
+  static constexpr std::uint32_t SMP_56 = 3u, ADCPRE_DIV4 = 1u << 16;
+};
+
 struct SYSCFG {
   using EXTICR1 = Reg32<0x4001'3808>;  // lines 0..3, four bits each
 };
@@ -82,18 +96,21 @@ struct EXTI {
   using PR = Reg32<base + 0x14>;
 };
 
-struct SPI1 {
-  static constexpr std::uint32_t base = 0x4001'3000;
+template <std::uint32_t base>
+struct Spi {
   using CR1 = Reg32<base + 0x00>;
   using CR2 = Reg32<base + 0x04>;
   using SR = Reg32<base + 0x08>;
   using DR = Reg32<base + 0x0C>;
   static constexpr std::uint32_t CPHA = bit(0), CPOL = bit(1), MSTR = bit(2), SPE = bit(6),
                                  SSI = bit(8), SSM = bit(9);
-  static constexpr std::uint32_t BR_Msk = 7u << 3, BR_DIV8 = 2u << 3, BR_DIV128 = 6u << 3;
+  static constexpr std::uint32_t BR_Msk = 7u << 3, BR_DIV2 = 0u << 3, BR_DIV8 = 2u << 3,
+                                 BR_DIV128 = 6u << 3;
   static constexpr std::uint32_t RXDMAEN = bit(0), TXDMAEN = bit(1);
   static constexpr std::uint32_t BSY = bit(7);
 };
+using SPI1 = Spi<0x4001'3000>;
+using SPI3 = Spi<0x4000'3C00>;
 
 template <std::uint32_t base>
 struct I2c {
@@ -116,8 +133,8 @@ struct I2c {
 using I2C2 = I2c<0x4000'5800>;
 using I2C3 = I2c<0x4000'5C00>;
 
-struct USART2 {
-  static constexpr std::uint32_t base = 0x4000'4400;
+template <std::uint32_t base>
+struct Usart {
   using SR = Reg32<base + 0x00>;
   using DR = Reg32<base + 0x04>;
   using BRR = Reg32<base + 0x08>;
@@ -126,6 +143,8 @@ struct USART2 {
   static constexpr std::uint32_t RE = bit(2), TE = bit(3), UE = bit(13);
   static constexpr std::uint32_t DMAR = bit(6), DMAT = bit(7);
 };
+using USART2 = Usart<0x4000'4400>;
+using USART6 = Usart<0x4001'1400>;
 
 template <std::uint32_t kBase>
 struct Timer {
@@ -170,12 +189,16 @@ struct DmaStream {
   static constexpr std::uint32_t channel(std::uint32_t n) { return n << 25; }
 };
 inline constexpr std::uint32_t kDma1 = 0x4002'6000, kDma2 = 0x4002'6400;
+using Spi3RxDma = DmaStream<kDma1, 0>;    // channel 0
+using Spi3TxDma = DmaStream<kDma1, 7>;    // channel 0
 using I2c3RxDma = DmaStream<kDma1, 2>;    // channel 3
 using I2c2RxDma = DmaStream<kDma1, 3>;    // channel 7
 using Usart2RxDma = DmaStream<kDma1, 5>;  // channel 4
 using Usart2TxDma = DmaStream<kDma1, 6>;  // channel 4
 using Spi1RxDma = DmaStream<kDma2, 0>;    // channel 3
+using Usart6RxDma = DmaStream<kDma2, 2>;  // channel 5
 using Spi1TxDma = DmaStream<kDma2, 3>;    // channel 3
+using Usart6TxDma = DmaStream<kDma2, 6>;  // channel 5
 
 // Interrupt numbers, RM0090 table 61.
 enum class Irq : std::uint8_t {
@@ -190,6 +213,7 @@ enum class Irq : std::uint8_t {
   TIM6_DAC = 54,
   TIM7_Global = 55,
   DMA2_Stream0 = 56,
+  DMA2_Stream6 = 69,
   I2C3_EV = 72,
   I2C3_ER = 73,
 };

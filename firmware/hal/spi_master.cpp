@@ -1,6 +1,5 @@
 #include "firmware/hal/spi_master.hpp"
 
-#include <algorithm>
 #include <bit>
 
 #include "firmware/hal/interrupts.hpp"
@@ -12,23 +11,107 @@ namespace fw::hal {
 
 using namespace hw;
 
-constinit SpiMaster spi1;
+struct ImuBus {
+  using Block = SPI1;
+  using RxDma = Spi1RxDma;
+  using TxDma = Spi1TxDma;
+  using Select = ImuSelect;
+  using Sck = ImuSck;
+  using Miso = ImuMiso;
+  using Mosi = ImuMosi;
+  static constexpr std::uint32_t kAlternate = 5, kDmaChannel = 3;
+  static constexpr std::uint32_t kMode = SPI1::CPOL | SPI1::CPHA;
+  static constexpr std::uint32_t kSlow = SPI1::BR_DIV128, kFast = SPI1::BR_DIV8;
+  static constexpr std::uint32_t kRxPriority = 3, kTxPriority = 2;
+  static constexpr std::uint32_t kAtEnd = RxDma::TCIE | RxDma::TEIE;
+  static constexpr Pull kMisoPull = Pull::none;
+  static void start_clocks() {
+    RCC::AHB1ENR::set(RCC::GPIOAEN | RCC::GPIOBEN | RCC::GPIOCEN | RCC::DMA2EN);
+    RCC::APB2ENR::set(RCC::SPI1EN | RCC::SYSCFGEN);
+  }
+};
+
+struct CardBus {
+  using Block = SPI3;
+  using RxDma = Spi3RxDma;
+  using TxDma = Spi3TxDma;
+  using Select = CardSelect;
+  using Sck = CardSck;
+  using Miso = CardMiso;
+  using Mosi = CardMosi;
+  static constexpr std::uint32_t kAlternate = 6, kDmaChannel = 0;
+  static constexpr std::uint32_t kMode = 0;
+  static constexpr std::uint32_t kSlow = SPI3::BR_DIV128, kFast = SPI3::BR_DIV2;
+  static constexpr std::uint32_t kRxPriority = 1, kTxPriority = 0;  // the log waits for the others
+  static constexpr std::uint32_t kAtEnd = 0;
+  static constexpr Pull kMisoPull = Pull::up;  // board 1.6 has no resistor there
+  static void start_clocks() {
+    RCC::AHB1ENR::set(RCC::GPIOAEN | RCC::GPIOBEN | RCC::GPIOCEN | RCC::DMA1EN);
+    RCC::APB1ENR::set(RCC::SPI3EN);
+  }
+};
+
+constinit SpiMaster<ImuBus> spi1;
+constinit SpiMaster<CardBus> spi3;
+constinit ImuLink imu_link;
+
+template <typename Bus>
+void SpiMaster<Bus>::init() {
+  using Block = typename Bus::Block;
+  Bus::start_clocks();
+  Bus::Select::output(false, true);
+  Bus::Sck::alternate(Bus::kAlternate, false, Pull::none);
+  Bus::Miso::alternate(Bus::kAlternate, false, Bus::kMisoPull);
+  Bus::Mosi::alternate(Bus::kAlternate, false, Pull::none);
+  Block::CR1::write(Block::SSM | Block::SSI | Block::MSTR | Bus::kMode | Bus::kSlow);
+  Block::CR2::write(Block::RXDMAEN | Block::TXDMAEN);
+  Bus::RxDma::PAR::write(Block::DR::address);
+  Bus::TxDma::PAR::write(Block::DR::address);
+}
+
+template <typename Bus>
+void SpiMaster<Bus>::select(bool on) {
+  Bus::Select::set(!on);
+}
+
+template <typename Bus>
+bool SpiMaster<Bus>::done() const {
+  return !Bus::RxDma::CR::has(Bus::RxDma::EN);  // cleared by the hardware with the last byte
+}
+
+template <typename Bus>
+Status SpiMaster<Bus>::start(std::span<std::uint8_t> bytes, bool fast) {
+  using Block = typename Bus::Block;
+  using Rx = typename Bus::RxDma;
+  using Tx = typename Bus::TxDma;
+  if (!done()) return Status::busy;
+  Block::CR1::replace(Block::BR_Msk | Block::SPE, fast ? Bus::kFast : Bus::kSlow);
+  Rx::IFCR::write(Rx::all_flags);
+  Tx::IFCR::write(Tx::all_flags);
+  Rx::M0AR::write(std::bit_cast<std::uint32_t>(bytes.data()));
+  Tx::M0AR::write(std::bit_cast<std::uint32_t>(bytes.data()));
+  Rx::NDTR::write(bytes.size());
+  Tx::NDTR::write(bytes.size());
+  Rx::CR::write(Rx::channel(Bus::kDmaChannel) | Rx::priority(Bus::kRxPriority) | Rx::MINC |
+                Bus::kAtEnd | Rx::EN);
+  Tx::CR::write(Tx::channel(Bus::kDmaChannel) | Tx::priority(Bus::kTxPriority) | Tx::MINC |
+                Tx::DIR_M2P | Tx::EN);
+  __asm volatile("dsb" ::: "memory");  // the buffer is in memory before the first byte leaves it
+  Block::CR1::set(Block::SPE);
+  return Status::ok;
+}
+
+template class SpiMaster<ImuBus>;
+template class SpiMaster<CardBus>;
+
+// ---- The IMU's
 
 namespace {
 
-constexpr std::uint32_t kAfSpi1 = 5, kDmaChannel = 3, kImuReadyLine = 3;
-
-void init_pins() {
-  RCC::AHB1ENR::set(RCC::GPIOAEN | RCC::GPIOBEN | RCC::GPIOCEN | RCC::DMA2EN);
-  RCC::APB2ENR::set(RCC::SPI1EN | RCC::SYSCFGEN);
-  ImuSelect::output(false, true);
-  SpiSck::alternate(kAfSpi1, false, Pull::none);
-  SpiMiso::alternate(kAfSpi1, false, Pull::none);
-  SpiMosi::alternate(kAfSpi1, false, Pull::none);
-  ImuReady::input(Pull::none);
-}
+constexpr std::uint32_t kImuReadyLine = 3;
 
 void init_data_ready() {
+  ImuReady::input(Pull::none);
   SYSCFG::EXTICR1::replace(0xFu << 12, 2u << 12);  // line 3 from port C
   EXTI::RTSR::set(bit(kImuReadyLine));
   EXTI::PR::write(bit(kImuReadyLine));
@@ -38,40 +121,23 @@ void init_data_ready() {
 
 }  // namespace
 
-void SpiMaster::init() {
-  init_pins();
-  SPI1::CR1::write(SPI1::SSM | SPI1::SSI | SPI1::MSTR | SPI1::CPOL | SPI1::CPHA | SPI1::BR_DIV128);
-  SPI1::CR2::write(SPI1::RXDMAEN | SPI1::TXDMAEN);
-  Spi1RxDma::PAR::write(SPI1::DR::address);
-  Spi1TxDma::PAR::write(SPI1::DR::address);
-  Spi1RxDma::M0AR::write(std::bit_cast<std::uint32_t>(in_.data()));
-  Spi1TxDma::M0AR::write(std::bit_cast<std::uint32_t>(out_.data()));
+void ImuLink::init() {
+  spi1.init();
   Nvic<Irq::DMA2_Stream0>::enable(kPriorityImu);
   init_data_ready();
 }
 
-Status SpiMaster::start(std::span<const std::uint8_t> out, bool fast) {
+Status ImuLink::start(std::span<const std::uint8_t> out, bool fast) {
   if (running_ || out.size() > kMaxLength) return Status::busy;
   running_ = true;
-  std::copy(out.begin(), out.end(), out_.begin());
+  std::copy(out.begin(), out.end(), bytes_.begin());
   length_ = out.size();
-  SPI1::CR1::replace(SPI1::BR_Msk | SPI1::SPE, fast ? SPI1::BR_DIV8 : SPI1::BR_DIV128);
-  ImuSelect::set(false);
-  Spi1RxDma::IFCR::write(Spi1RxDma::all_flags);
-  Spi1TxDma::IFCR::write(Spi1TxDma::all_flags);
-  Spi1RxDma::NDTR::write(length_);
-  Spi1TxDma::NDTR::write(length_);
-  Spi1RxDma::CR::write(Spi1RxDma::channel(kDmaChannel) | Spi1RxDma::priority(3) | Spi1RxDma::MINC |
-                       Spi1RxDma::TCIE | Spi1RxDma::TEIE | Spi1RxDma::EN);
-  Spi1TxDma::CR::write(Spi1TxDma::channel(kDmaChannel) | Spi1TxDma::priority(2) | Spi1TxDma::MINC |
-                       Spi1TxDma::DIR_M2P | Spi1TxDma::EN);
-  __asm volatile("dsb" ::: "memory");  // the buffer is in memory before the first byte leaves it
-  SPI1::CR1::set(SPI1::SPE);
-  return Status::ok;
+  spi1.select(true);
+  return spi1.start(std::span(bytes_).first(length_), fast);
 }
 
-void SpiMaster::finish() {
-  ImuSelect::set(true);
+void ImuLink::finish() {
+  spi1.select(false);
   running_ = false;
 }
 
@@ -79,7 +145,7 @@ void SpiMaster::finish() {
 
 extern "C" void dma2_stream0_handler() {
   fw::hw::Spi1RxDma::IFCR::write(fw::hw::Spi1RxDma::all_flags);
-  fw::hal::spi1.finish();
+  fw::hal::imu_link.finish();
   fw::imu_transfer_done();
 }
 

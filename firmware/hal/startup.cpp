@@ -17,6 +17,7 @@ FW_WEAK void tim5_handler();
 FW_WEAK void tim6_dac_handler();
 FW_WEAK void tim7_handler();
 FW_WEAK void dma2_stream0_handler();
+FW_WEAK void dma2_stream6_handler();
 FW_WEAK void i2c3_ev_handler();
 FW_WEAK void i2c3_er_handler();
 #undef FW_WEAK
@@ -41,6 +42,7 @@ constexpr auto make_vectors() {
   on(Irq::TIM6_DAC, tim6_dac_handler);
   on(Irq::TIM7_Global, tim7_handler);
   on(Irq::DMA2_Stream0, dma2_stream0_handler);
+  on(Irq::DMA2_Stream6, dma2_stream6_handler);
   on(Irq::I2C3_EV, i2c3_ev_handler);
   on(Irq::I2C3_ER, i2c3_er_handler);
   return table;

@@ -12,31 +12,63 @@ namespace fw::hal {
 
 using namespace hw;
 
-constinit UartLink radio;
+struct RadioUart {
+  using Block = USART2;
+  using RxDma = Usart2RxDma;
+  using TxDma = Usart2TxDma;
+  using Tx = RadioTx;
+  using Rx = RadioRx;
+  static constexpr std::uint32_t kAf = 7, kDmaChannel = 4, kClock_Hz = kPclk1_Hz;
+  static constexpr Irq kSent = Irq::DMA1_Stream6;
+  static void start_clocks() {
+    RCC::AHB1ENR::set(RCC::GPIOAEN | RCC::DMA1EN);
+    RCC::APB1ENR::set(RCC::USART2EN);
+  }
+};
 
-namespace {
-constexpr std::uint32_t kAfUsart2 = 7, kDmaChannel = 4, kBaud = 57'600;
+struct GpsUart {
+  using Block = USART6;
+  using RxDma = Usart6RxDma;
+  using TxDma = Usart6TxDma;
+  using Tx = GpsTx;
+  using Rx = GpsRx;
+  static constexpr std::uint32_t kAf = 8, kDmaChannel = 5, kClock_Hz = kPclk2_Hz;
+  static constexpr Irq kSent = Irq::DMA2_Stream6;
+  static void start_clocks() {
+    RCC::AHB1ENR::set(RCC::GPIOCEN | RCC::DMA2EN);
+    RCC::APB2ENR::set(RCC::USART6EN);
+  }
+};
+
+constinit UartLink<RadioUart> radio;
+constinit UartLink<GpsUart> gps_uart;
+
+template <typename Port>
+void UartLink<Port>::init(std::uint32_t baud) {
+  using Block = typename Port::Block;
+  using Dma = typename Port::RxDma;
+  Port::start_clocks();
+  Port::Tx::alternate(Port::kAf, false, Pull::none);
+  Port::Rx::alternate(Port::kAf, false, Pull::up);
+  set_baud(baud);
+  Block::CR3::write(Block::DMAR | Block::DMAT);
+  Block::CR1::write(Block::UE | Block::TE | Block::RE);
+  Dma::PAR::write(Block::DR::address);
+  Dma::M0AR::write(std::bit_cast<std::uint32_t>(rx_.data()));
+  Dma::NDTR::write(kRxSize);
+  Dma::CR::write(Dma::channel(Port::kDmaChannel) | Dma::MINC | Dma::CIRC | Dma::EN);
+  Port::TxDma::PAR::write(Block::DR::address);
+  Nvic<Port::kSent>::enable(kPriorityUart);
 }
 
-void UartLink::init() {
-  RCC::AHB1ENR::set(RCC::GPIOAEN | RCC::DMA1EN);
-  RCC::APB1ENR::set(RCC::USART2EN);
-  RadioTx::alternate(kAfUsart2, false, Pull::none);
-  RadioRx::alternate(kAfUsart2, false, Pull::up);
-  USART2::BRR::write((kPclk1_Hz + kBaud / 2) / kBaud);
-  USART2::CR3::write(USART2::DMAR | USART2::DMAT);
-  USART2::CR1::write(USART2::UE | USART2::TE | USART2::RE);
-  Usart2RxDma::PAR::write(USART2::DR::address);
-  Usart2RxDma::M0AR::write(std::bit_cast<std::uint32_t>(rx_.data()));
-  Usart2RxDma::NDTR::write(kRxSize);
-  Usart2RxDma::CR::write(Usart2RxDma::channel(kDmaChannel) | Usart2RxDma::MINC | Usart2RxDma::CIRC |
-                         Usart2RxDma::EN);
-  Usart2TxDma::PAR::write(USART2::DR::address);
-  Nvic<Irq::DMA1_Stream6>::enable(kPriorityRadio);
+template <typename Port>
+void UartLink<Port>::set_baud(std::uint32_t baud) {
+  Port::Block::BRR::write((Port::kClock_Hz + baud / 2) / baud);
 }
 
-std::size_t UartLink::read(std::span<std::uint8_t> out) {
-  const std::size_t end = (kRxSize - Usart2RxDma::NDTR::read()) % kRxSize;
+template <typename Port>
+std::size_t UartLink<Port>::read(std::span<std::uint8_t> out) {
+  const std::size_t end = (kRxSize - Port::RxDma::NDTR::read()) % kRxSize;
   std::size_t n = 0;
   while (rx_next_ != end && n < out.size()) {
     // Volatile, for the DMA writes behind the compiler's back.
@@ -46,7 +78,8 @@ std::size_t UartLink::read(std::span<std::uint8_t> out) {
   return n;
 }
 
-Status UartLink::send(std::span<const std::uint8_t> frame) {
+template <typename Port>
+Status UartLink<Port>::send(std::span<const std::uint8_t> frame) {
   const InterruptLock lock;
   if (frame.size() > kTxSize - tx_count_) return Status::busy;
   for (const std::uint8_t byte : frame) tx_[(tx_head_ + tx_count_++) % kTxSize] = byte;
@@ -54,26 +87,35 @@ Status UartLink::send(std::span<const std::uint8_t> frame) {
   return Status::ok;
 }
 
-void UartLink::piece_sent() {
+template <typename Port>
+void UartLink<Port>::piece_sent() {
+  Port::TxDma::IFCR::write(Port::TxDma::all_flags);
   tx_head_ = (tx_head_ + tx_piece_) % kTxSize;
   tx_count_ -= tx_piece_;
   tx_piece_ = 0;
   if (tx_count_ > 0) send_next_piece();
 }
 
-void UartLink::send_next_piece() {
+template <typename Port>
+void UartLink<Port>::send_next_piece() {
+  using Dma = typename Port::TxDma;
   tx_piece_ = std::min(tx_count_, kTxSize - tx_head_);
-  Usart2TxDma::IFCR::write(Usart2TxDma::all_flags);
-  Usart2TxDma::M0AR::write(std::bit_cast<std::uint32_t>(tx_.data() + tx_head_));
-  Usart2TxDma::NDTR::write(tx_piece_);
+  Dma::IFCR::write(Dma::all_flags);
+  Dma::M0AR::write(std::bit_cast<std::uint32_t>(tx_.data() + tx_head_));
+  Dma::NDTR::write(tx_piece_);
   __asm volatile("dsb" ::: "memory");
-  Usart2TxDma::CR::write(Usart2TxDma::channel(kDmaChannel) | Usart2TxDma::MINC |
-                         Usart2TxDma::DIR_M2P | Usart2TxDma::TCIE | Usart2TxDma::EN);
+  Dma::CR::write(Dma::channel(Port::kDmaChannel) | Dma::MINC | Dma::DIR_M2P | Dma::TCIE | Dma::EN);
 }
+
+template class UartLink<RadioUart>;
+template class UartLink<GpsUart>;
 
 }  // namespace fw::hal
 
 extern "C" void dma1_stream6_handler() {
-  fw::hw::Usart2TxDma::IFCR::write(fw::hw::Usart2TxDma::all_flags);
   fw::hal::radio.piece_sent();
+}
+
+extern "C" void dma2_stream6_handler() {
+  fw::hal::gps_uart.piece_sent();
 }

@@ -1,5 +1,9 @@
-// USART2 at 57600 8N1 for the radio: reception into a ring by circular DMA, transmission from a
-// ring by DMA, piece by piece. Tasks call read() often enough that 256 bytes never wrap (44 ms).
+// A UART, 8N1: reception into a ring by circular DMA, transmission from a ring by DMA, piece by piece.
+//
+//   UARTs    radio: USART2 (PA2, PA3), 57600 baud; gps_uart: USART6 (PC6, PC7)
+//   Read     tasks call read() often enough that 256 bytes never wrap: 44 ms at 57600 baud
+//   Baud     set_baud() acts at once, on what is still in the ring of transmission, too: a caller that
+//            changes it waits until its bytes are out
 #pragma once
 #include <array>
 #include <cstdint>
@@ -9,9 +13,12 @@
 
 namespace fw::hal {
 
+// Port: which block, pins and DMA streams (uart_link.cpp).
+template <typename Port>
 class UartLink {
  public:
-  void init();
+  void init(std::uint32_t baud);
+  void set_baud(std::uint32_t baud);
   // Copies what has come in since the last call; at most out.size().
   std::size_t read(std::span<std::uint8_t> out);
   Status send(std::span<const std::uint8_t> frame);  // all of it, or busy: no room
@@ -28,6 +35,9 @@ class UartLink {
   std::size_t tx_head_ = 0, tx_count_ = 0, tx_piece_ = 0;
 };
 
-extern UartLink radio;
+struct RadioUart;
+struct GpsUart;
+extern UartLink<RadioUart> radio;
+extern UartLink<GpsUart> gps_uart;
 
 }  // namespace fw::hal

@@ -13,8 +13,11 @@
 #include "firmware/drivers/hmc5883l.hpp"
 #include "firmware/drivers/mpu6000.hpp"
 #include "firmware/drivers/ms5611.hpp"
+#include "firmware/drivers/sd_card.hpp"
+#include "firmware/drivers/ublox_gps.hpp"
 #include "firmware/flight/flight.hpp"
 #include "firmware/flight/schedule.hpp"
+#include "firmware/hal/battery_adc.hpp"
 #include "firmware/hal/clock.hpp"
 #include "firmware/hal/edge_capture.hpp"
 #include "firmware/hal/fault_record.hpp"
@@ -27,6 +30,7 @@
 #include "firmware/hal/uart_link.hpp"
 #include "firmware/hal/watchdog.hpp"
 #include "firmware/link/telemetry.hpp"
+#include "firmware/log/flight_log.hpp"
 
 namespace fw {
 
@@ -35,15 +39,22 @@ constinit Health health;
 
 namespace {
 
-constinit Mpu6000<hal::SpiMaster> imu(hal::spi1);
+constinit Mpu6000<hal::ImuLink> imu(hal::imu_link);
 constinit EscBus<hal::I2cMaster<hal::EscI2c>> escs(hal::i2c3);
 constinit Ms5611<hal::I2cMaster<hal::SensorI2c>> barometer(hal::i2c2);
 constinit Hmc5883l<hal::I2cMaster<hal::SensorI2c>> magnetometer(hal::i2c2);
+constinit UbloxGps<hal::UartLink<hal::GpsUart>> gps(hal::gps_uart);
 constinit ParameterStore<hal::ParameterSectors> store(hal::parameter_sectors);
 constinit CppmReceiver receiver;
 volatile bool sticks_came = false;
+using Card = SdCard<hal::SpiMaster<hal::CardBus>>;
+constinit Card card(hal::spi3);
+// 16 MiB hold ten minutes, more than a battery does; what is not used is given back.
+constinit LogVolume<Card> volume(card, {.file_bytes = 16u << 20, .least_bytes = 1u << 20});
 volatile std::uint32_t ticks_due = 0;
 volatile bool sample_ready = false;
+volatile std::uint32_t data_ready_us = 0;
+constinit TickTimes times;  // the worst since they were logged
 
 enum Ran : std::uint8_t {
   kImu = 1,
@@ -52,7 +63,9 @@ enum Ran : std::uint8_t {
   kEsc = 8,
   kTelemetry = 16,
   kSensors = 32,
-  kAll = 63
+  kLog = 64,
+  kGps = 128,
+  kAll = 255
 };
 
 Flight& flight() {  // built at the first call: Eigen's vectors have no constant initialisers
@@ -65,10 +78,17 @@ Telemetry& telemetry() {
   return instance;
 }
 
+FlightLog<LogVolume<Card>>& flight_log() {
+  static FlightLog<LogVolume<Card>> instance(volume, flight());
+  return instance;
+}
+
 }  // namespace
 
 void imu_data_ready() {
-  if (!imu.data_ready(hal::now_us())) ticks_due = ticks_due + 1;
+  const std::uint32_t now_us = hal::now_us();
+  data_ready_us = now_us;
+  if (!imu.data_ready(now_us)) ticks_due = ticks_due + 1;
 }
 
 void imu_transfer_done() {
@@ -105,7 +125,7 @@ __attribute__((noinline)) void imu_task() {
   constexpr std::uint32_t kFrozen_samples = 50;
   static constinit ImuBurst last;
   static constinit std::uint32_t same = 0;
-  if (!imu.running()) std::ignore = imu.setup_tick();
+  std::ignore = imu.setup_tick();
   if (!sample_ready) return flight().on_imu_missing();
   sample_ready = false;
   const ImuBurst burst = imu.burst();
@@ -145,9 +165,41 @@ __attribute__((noinline)) void sensor_task() {
   magnetometer.step();
   if (barometer.take(pressure)) flight().on_pressure(pressure.pressure_Pa);
   if (magnetometer.take(field)) flight().on_field(mounted(field.field_uT, config::kMagMounting));
+  if (const auto voltage_V = hal::battery_adc.next_V()) flight().on_battery(*voltage_V);
   faults.baro_failures = barometer.failures();
   faults.mag_failures = magnetometer.failures();
   faults.sensor_reconfigured = barometer.restarts() + magnetometer.reconfigured();
+}
+
+static GpsSolution solution_of(const GpsFix& fix) {
+  const auto velocity_mps = [](std::int32_t cmps) { return 0.01f * static_cast<float>(cmps); };
+  const auto metres = [](std::uint32_t mm) { return 1e-3f * static_cast<float>(mm); };
+  GpsSolution out;
+  out.latitude_e7_deg = fix.latitude_e7_deg;
+  out.longitude_e7_deg = fix.longitude_e7_deg;
+  out.height_mm = fix.height_mm;
+  out.v_W_mps = {velocity_mps(fix.v_north_cmps), velocity_mps(fix.v_east_cmps),
+                 velocity_mps(fix.v_down_cmps)};
+  out.level_accuracy_m = metres(fix.level_accuracy_mm);
+  out.down_accuracy_m = metres(fix.down_accuracy_mm);
+  out.speed_accuracy_mps = 0.01f * static_cast<float>(fix.speed_accuracy_cmps);
+  out.fix_type = fix.fix_type;
+  out.satellites = fix.satellites;
+  out.within_limits = fix.usable();
+  out.age_s = config::kGpsLatency_s + 1e-6f * static_cast<float>(fix.age_us(hal::now_us()));
+  return out;
+}
+
+__attribute__((noinline)) void gps_task() {
+  std::array<std::uint8_t, 64> bytes;
+  const std::uint32_t now_us = hal::now_us();
+  const std::size_t n = hal::gps_uart.read(bytes);
+  for (std::size_t i = 0; i < n; ++i) gps.push(bytes[i], now_us);
+  gps.tick(now_us);
+  GpsFix fix;
+  if (gps.take(fix)) flight().on_gps(solution_of(fix));
+  faults.gps_searches = gps.searches();
+  faults.gps_bad_frames = gps.bad_frames();
 }
 
 __attribute__((noinline)) void position_task() {
@@ -160,7 +212,10 @@ __attribute__((noinline)) void esc_task(std::uint32_t tick) {
     esc::protocol::Status status;
     if (escs.take_status(motor, status)) flight().on_esc_status(motor, status);
   }
-  if (schedule::setpoints(tick)) std::ignore = escs.write(flight().send_setpoints());
+  if (schedule::setpoints(tick)) {
+    std::ignore = escs.write(flight().send_setpoints());
+    TickTimes::keep_worst(times.setpoint_us, hal::now_us() - data_ready_us);
+  }
   const int motor = schedule::status_read(tick);
   if (motor >= 0) std::ignore = escs.request_status(static_cast<unsigned>(motor));
   faults.esc_no_answer = escs.failures();
@@ -187,6 +242,21 @@ __attribute__((noinline)) void telemetry_task() {
   if (!frame.empty() && hal::radio.send(frame) != Status::ok) ++faults.link_overruns;
 }
 
+// What the ground is told of the log; null: all is well.
+static const char* log_trouble() {
+  if (!card.ready()) return "log: no SD card";
+  if (volume.state() == LogState::refused) return "log: no FAT32 volume, or no room on it";
+  return flight_log().dropouts() > 0 ? "log: the SD card is too slow, samples are lost" : nullptr;
+}
+
+// The log first: what it appends can go to the card in the same tick.
+__attribute__((noinline)) void log_task(std::uint32_t tick, std::uint32_t now_us) {
+  flight_log().step(tick, now_us, health.load_permille, faults.deadline_missed, times);
+  volume.tick(now_us);
+  card.tick(now_us);
+  health.log_trouble = log_trouble();
+}
+
 // The core stalls for each word of flash: never while the motors may turn.
 __attribute__((noinline)) void store_task() {
   if (flight().state() == FlightState::disarmed) store.step(flight().parameters());
@@ -196,7 +266,7 @@ __attribute__((noinline)) void store_task() {
 namespace {
 
 // Runs what is due in this tick. The attitude task comes before the set-points that use it.
-std::uint8_t run_tick(std::uint32_t tick) {
+std::uint8_t run_tick(std::uint32_t tick, std::uint32_t now_us) {
   std::uint8_t ran = kImu;
   imu_task();
   if (schedule::attitude(tick)) {
@@ -215,23 +285,27 @@ std::uint8_t run_tick(std::uint32_t tick) {
     sensor_task();
     ran |= kSensors;
   }
+  if (schedule::gps(tick)) {
+    gps_task();
+    ran |= kGps;
+  }
   if (schedule::telemetry(tick)) {
     telemetry_task();
     ran |= kTelemetry;
   }
   store_task();
-  return ran;
+  log_task(tick, now_us);
+  return ran | kLog;
 }
 
-// Sleeps until a tick is due; returns the time slept.
+// Sleeps until a tick is due; returns when that was.
 std::uint32_t wait_for_tick() {
-  const std::uint32_t from_us = hal::now_us();
   for (;;) {
     const hal::InterruptLock lock;
     if (ticks_due > 0) {
       if (ticks_due > 1) ++faults.deadline_missed;
       ticks_due = 0;
-      return hal::now_us() - from_us;
+      return hal::now_us();
     }
     hal::wait_for_interrupt();
   }
@@ -244,10 +318,14 @@ void show_state() {
 
 [[noreturn]] void run() {
   std::uint8_t ran = 0;
-  std::uint32_t slept_us = 0;
+  std::uint32_t slept_us = 0, ended_us = hal::now_us();
   for (std::uint32_t tick = 0;; ++tick) {
-    slept_us += wait_for_tick();
-    ran |= run_tick(tick);
+    const std::uint32_t now_us = wait_for_tick();
+    slept_us += now_us - ended_us;
+    TickTimes::keep_worst(times.start_us, now_us - data_ready_us);
+    ran |= run_tick(tick, now_us);
+    ended_us = hal::now_us();
+    TickTimes::keep_worst(times.tick_us, ended_us - now_us);
     if (ran == kAll) {
       hal::feed_watchdog();
       ran = 0;
@@ -305,11 +383,14 @@ extern "C" void fw_main() {
   if (hal::start_clocks() != Status::ok) stay_on_ground();
   store.load(flight().parameters());  // may erase: before the watchdog and the ticks
   hal::start_time_base();
-  hal::spi1.init();  // switches on the clocks of all ports in use
+  hal::imu_link.init();  // switches on the clocks of all ports in use
   start_leds();
   hal::i2c3.init();
   hal::i2c2.init();
-  hal::radio.init();
+  hal::spi3.init();
+  hal::battery_adc.init();
+  hal::radio.init(57'600);
+  hal::gps_uart.init(57'600);  // the driver searches from there
   hal::start_edge_capture();
   hal::start_watchdog();
   run();

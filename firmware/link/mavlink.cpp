@@ -14,6 +14,8 @@ int crc_extra(std::uint32_t id) {
       return 50;
     case kSysStatus:
       return 124;
+    case kPing:
+      return 237;
     case kParamRequestRead:
       return 214;
     case kParamRequestList:
@@ -22,10 +24,24 @@ int crc_extra(std::uint32_t id) {
       return 220;
     case kParamSet:
       return 168;
+    case kGpsRawInt:
+      return 24;
     case kAttitudeQuaternion:
       return 246;
     case kLocalPositionNed:
       return 185;
+    case kMissionRequestList:
+      return 132;
+    case kMissionCount:
+      return 221;
+    case kMissionClearAll:
+      return 232;
+    case kMissionAck:
+      return 153;
+    case kCommandInt:
+      return 158;
+    case kGpsGlobalOrigin:
+      return 39;
     case kCommandLong:
       return 152;
     case kCommandAck:
@@ -38,6 +54,10 @@ int crc_extra(std::uint32_t id) {
       return 56;
     case kHighresImu:
       return 93;
+    case kTimesync:
+      return 34;
+    case kAutopilotVersion:
+      return 178;
     case kStatustext:
       return 83;
     case kDebugFloatArray:
@@ -47,49 +67,62 @@ int crc_extra(std::uint32_t id) {
 }
 
 bool Parser::push(std::uint8_t byte) {
-  const std::size_t at = have_++;
-  if (at == 0) {
-    if (byte != kStart) have_ = 0;
-    return false;
+  raw_[have_++] = byte;
+  for (;;) {
+    find_start();
+    if (have_ < kHeader) return false;
+    const int extra = crc_extra(message_id());
+    if (extra < 0) {
+      drop(1);
+      continue;
+    }
+    const std::size_t end = kHeader + raw_[1],
+                      total = end + 2 + ((raw_[2] & kSigned) != 0 ? kSignature : 0);
+    if (have_ < total) return false;
+    if (is_whole(end, static_cast<std::uint8_t>(extra))) {
+      read_frame();
+      drop(total);
+      return true;
+    }
+    ++bad_frames_;
+    drop(1);
   }
-  if (at < kHeader) {
-    header_[at] = byte;
-    if (at == 2 && (byte & ~kSigned) != 0) have_ = 0;
-    if (at + 1 == kHeader) begin_payload();
-    return false;
-  }
-  const std::size_t payload_end = kHeader + frame_.length;
-  if (at < payload_end) {
-    frame_.payload[at - kHeader] = byte;
-    crc_ = crc_add(crc_, byte);
-  } else if (at == payload_end) {
-    crc_received_ = byte;
-  } else if (at == payload_end + 1) {
-    crc_received_ = static_cast<std::uint16_t>(crc_received_ | byte << 8);
-  }
-  return have_ == total_ && end_frame();
 }
 
-void Parser::begin_payload() {
-  frame_.length = header_[1];
-  frame_.sequence = header_[4];
-  frame_.system = header_[5];
-  frame_.component = header_[6];
-  frame_.id = header_[7] | static_cast<std::uint32_t>(header_[8]) << 8 |
-              static_cast<std::uint32_t>(header_[9]) << 16;
+// Drops what no frame can begin with.
+void Parser::find_start() {
+  std::size_t at = 0;
+  const auto may_begin = [this](std::size_t i) {
+    return raw_[i] == kStart && (i + 2 >= have_ || (raw_[i + 2] & ~kSigned) == 0);
+  };
+  while (at < have_ && !may_begin(at)) ++at;
+  if (at > 0) drop(at);
+}
+
+void Parser::drop(std::size_t bytes) {
+  have_ -= bytes;
+  std::memmove(raw_.data(), raw_.data() + bytes, have_);
+}
+
+std::uint32_t Parser::message_id() const {
+  return raw_[7] | static_cast<std::uint32_t>(raw_[8]) << 8 |
+         static_cast<std::uint32_t>(raw_[9]) << 16;
+}
+
+bool Parser::is_whole(std::size_t end, std::uint8_t extra) const {
+  std::uint16_t crc = kCrcStart;
+  for (std::size_t i = 1; i < end; ++i) crc = crc_add(crc, raw_[i]);
+  return crc_add(crc, extra) == (raw_[end] | raw_[end + 1] << 8);
+}
+
+void Parser::read_frame() {
+  frame_.length = raw_[1];
+  frame_.sequence = raw_[4];
+  frame_.system = raw_[5];
+  frame_.component = raw_[6];
+  frame_.id = message_id();
   frame_.payload.fill(0);
-  total_ = kHeader + frame_.length + 2 + ((header_[2] & kSigned) != 0 ? kSignature : 0);
-  crc_ = kCrcStart;
-  for (std::size_t i = 1; i < kHeader; ++i) crc_ = crc_add(crc_, header_[i]);
-}
-
-bool Parser::end_frame() {
-  have_ = 0;
-  const int extra = crc_extra(frame_.id);
-  if (extra < 0) return false;
-  if (crc_add(crc_, static_cast<std::uint8_t>(extra)) == crc_received_) return true;
-  ++bad_frames_;
-  return false;
+  std::memcpy(frame_.payload.data(), raw_.data() + kHeader, frame_.length);
 }
 
 std::span<const std::uint8_t> Message::frame(std::uint8_t system, std::uint8_t component,

@@ -1,8 +1,10 @@
 // MAVLink v2 frames: bytes in, checked frames out, and the way back.
 //
 //   Source  mavlink.io/en/guide/serialization.html; CRC-16/MCRF4XX with the message's CRC_EXTRA
-//   Accept  the messages we know; others pass unchecked and unseen. Signed frames are read, their
-//           signature is not checked; frames with other incompatibility flags are dropped
+//   Accept  the messages we know. Signed frames are read, their signature is not checked; frames with
+//           other incompatibility flags are dropped
+//   Resync  what turns out to be no frame loses its first byte only, the rest is searched again: noise,
+//           and messages that we do not know, swallow nothing of what follows them
 #pragma once
 #include <array>
 #include <cstdint>
@@ -20,18 +22,28 @@ inline constexpr std::uint8_t kSystem = 1, kComponent = 1;  // ours
 enum MessageId : std::uint32_t {
   kHeartbeat = 0,
   kSysStatus = 1,
+  kPing = 4,
   kParamRequestRead = 20,
   kParamRequestList = 21,
   kParamValue = 22,
   kParamSet = 23,
+  kGpsRawInt = 24,
   kAttitudeQuaternion = 31,
   kLocalPositionNed = 32,
+  kMissionRequestList = 43,
+  kMissionCount = 44,
+  kMissionClearAll = 45,
+  kMissionAck = 47,
+  kCommandInt = 75,
+  kGpsGlobalOrigin = 49,
   kCommandLong = 76,
   kCommandAck = 77,
   kSetAttitudeTarget = 82,
   kSetPositionTargetLocalNed = 84,
   kViconPositionEstimate = 104,
   kHighresImu = 105,
+  kTimesync = 111,
+  kAutopilotVersion = 148,
   kStatustext = 253,
   kDebugFloatArray = 350,
 };
@@ -61,16 +73,25 @@ class Parser {
   std::uint32_t bad_frames() const { return bad_frames_; }
 
  private:
-  void begin_payload();
-  bool end_frame();
+  void find_start();
+  void drop(std::size_t bytes);
+  std::uint32_t message_id() const;
+  bool is_whole(std::size_t end, std::uint8_t extra) const;
+  void read_frame();
 
   static constexpr std::size_t kHeader = 10, kSignature = 13;
   Frame frame_;
-  std::array<std::uint8_t, kHeader> header_{};
-  std::size_t have_ = 0, total_ = 0;
-  std::uint16_t crc_ = 0, crc_received_ = 0;
+  std::array<std::uint8_t, kMaxPayload + kOverhead + kSignature> raw_{};  // from a start on
+  std::size_t have_ = 0;                                                  // less than a frame
   std::uint32_t bad_frames_ = 0;
 };
+
+// The two bytes target_system and target_component at this offset name us; 0 is everybody.
+inline bool for_us(const Frame& frame, std::size_t offset) {
+  const auto system = frame.get<std::uint8_t>(offset),
+             component = frame.get<std::uint8_t>(offset + 1);
+  return (system == kSystem || system == 0) && (component == kComponent || component == 0);
+}
 
 // A message under construction: fields in any order, then the frame. No payload above 64 bytes.
 class Message {

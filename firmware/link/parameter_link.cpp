@@ -5,17 +5,10 @@
 namespace fw {
 namespace {
 
-using mavlink::Frame, mavlink::kComponent, mavlink::kSystem, mavlink::Message;
+using mavlink::for_us, mavlink::Frame, mavlink::Message;
 
 constexpr std::uint8_t kReal32 = 9;  // MAV_PARAM_TYPE
 constexpr std::size_t kNameLength = 16;
-
-// The two bytes target_system and target_component; 0 is everybody.
-bool for_us(const Frame& frame, std::size_t offset) {
-  const auto system = frame.get<std::uint8_t>(offset),
-             component = frame.get<std::uint8_t>(offset + 1);
-  return (system == kSystem || system == 0) && (component == kComponent || component == 0);
-}
 
 std::optional<std::size_t> index_named(const Frame& frame, std::size_t offset) {
   const auto name = frame.get<std::array<char, kNameLength>>(offset);

@@ -1,5 +1,7 @@
 #include "firmware/link/telemetry.hpp"
 
+#include <algorithm>
+
 #include "firmware/config/vehicle.hpp"
 
 namespace fw {
@@ -9,7 +11,13 @@ using mavlink::Frame, mavlink::kComponent, mavlink::kSystem, mavlink::Message;
 
 constexpr std::uint32_t kSlotsPerSecond = 200;
 
-enum Command : std::uint16_t { kNavLand = 21, kNavTakeoff = 22, kArmDisarm = 400 };
+enum Command : std::uint16_t {
+  kNavLand = 21,
+  kNavTakeoff = 22,
+  kArmDisarm = 400,
+  kRequestMessage = 512,
+  kRequestCapabilities = 520
+};
 enum AckResult : std::uint8_t {
   kAccepted = 0,
   kTemporarilyRejected = 1,
@@ -51,6 +59,9 @@ void Telemetry::receive(std::span<const std::uint8_t> bytes) {
     if (frame.id == mavlink::kSetPositionTargetLocalNed) on_target(frame);
     if (frame.id == mavlink::kSetAttitudeTarget) on_attitude(frame);
     if (frame.id == mavlink::kCommandLong) on_command(frame);
+    flight_.on_link();
+    requests_.on_frame(frame);
+    if (const auto command = requests_.take_command_int()) acknowledge(*command, kUnsupported);
     parameters_.on_frame(frame, flight_.parameters(), flight_.state() != FlightState::disarmed);
   }
 }
@@ -68,7 +79,7 @@ void Telemetry::on_target(const Frame& frame) {
   constexpr std::uint16_t kNoLevelPosition = 0x0003, kNoHeight = 0x0004, kNoVelocity = 0x0038,
                           kNoAcceleration = 0x01C0;
   constexpr std::uint8_t kLocalNed = 1;
-  if (frame.get<std::uint8_t>(50) != kSystem || frame.get<std::uint8_t>(52) != kLocalNed) return;
+  if (!mavlink::for_us(frame, 50) || frame.get<std::uint8_t>(52) != kLocalNed) return;
   const auto mask = frame.get<std::uint16_t>(48);
   if ((mask & kNoHeight) != 0) return;
   const Vector3 p_W = get_vector(frame, 4), v_W = get_vector(frame, 16),
@@ -102,23 +113,42 @@ void Telemetry::on_attitude(const Frame& frame) {
 }
 
 void Telemetry::on_command(const Frame& frame) {
-  if (frame.get<std::uint8_t>(30) != kSystem) return;
-  ack_command_ = frame.get<std::uint16_t>(28);
-  ack_due_ = true;
-  switch (ack_command_) {
+  if (!mavlink::for_us(frame, 30)) return;
+  const auto command = frame.get<std::uint16_t>(28);
+  Reason reason = Reason::none;
+  switch (command) {
     case kArmDisarm:
-      ack_reason_ = frame.get<float>(0) > 0.5f ? flight_.arm() : flight_.disarm();
+      reason = frame.get<float>(0) > 0.5f ? flight_.arm() : flight_.disarm();
       break;
     case kNavTakeoff:
-      ack_reason_ = flight_.take_off(frame.get<float>(24));
+      reason = flight_.take_off(frame.get<float>(24));
       break;
     case kNavLand:
-      ack_reason_ = flight_.land();
+      reason = flight_.land();
+      break;
+    case kRequestMessage:
+      return on_request_message(frame.get<float>(0));
+    case kRequestCapabilities:
+      requests_.on_version_wanted();
       break;
     default:
-      ack_reason_ = Reason::none;
+      return acknowledge(command, kUnsupported);
   }
-  refusal_due_ = ack_reason_ != Reason::none;
+  acknowledge(command, result_of(reason));
+  if (reason == Reason::none) return;
+  refusal_ = reason;
+  refusal_due_ = true;
+}
+
+// Numbers of messages travel as floats. Those of the slots come by themselves.
+void Telemetry::on_request_message(float message) {
+  const bool version = message == static_cast<float>(mavlink::kAutopilotVersion);
+  if (version) requests_.on_version_wanted();
+  acknowledge(kRequestMessage, version ? kAccepted : kDenied);
+}
+
+void Telemetry::acknowledge(std::uint16_t command, std::uint8_t result) {
+  if (acks_due_ < acks_.size()) acks_[acks_due_++] = {command, result};
 }
 
 std::span<const std::uint8_t> Telemetry::send(const Message& message) {
@@ -136,7 +166,10 @@ std::span<const std::uint8_t> Telemetry::next(std::uint32_t time_ms, const Fault
   if (slot % 40 == 33) return send(filters(time_ms));
   if (slot == 6) return send(heartbeat());
   if (slot == 106) return send(sys_status(faults, health));
-  if (ack_due_) return send(ack());
+  if (slot == 46 && flight_.estimator().gps_frame().known()) return send(gps_origin());
+  if (slot == 146) return send(gps_raw(time_ms));
+  if (acks_due_ > 0) return send(ack());
+  if (slot % 10 == 2 && requests_.due()) return send(requests_.next(time_ms));
   if (slot % 10 == 7 && parameters_.due()) return send(parameters_.next(flight_.parameters()));
   if (slot % 50 != 8) return {};  // texts are long: four a second at most
   if (!booted_told_ && time_ms > 500) {
@@ -145,16 +178,24 @@ std::span<const std::uint8_t> Telemetry::next(std::uint32_t time_ms, const Fault
   }
   if (refusal_due_) {
     refusal_due_ = false;
-    return send(status_text(text_of(ack_reason_), true));
+    return send(status_text(text_of(refusal_), true));
   }
   if (unsaved_told_ != health.parameters_unsaved) {
     unsaved_told_ = health.parameters_unsaved;
     if (unsaved_told_) return send(status_text("parameters not saved, restart to make room", true));
   }
+  // A card has two seconds to come up before it is missed.
+  if (log_told_ != health.log_trouble && time_ms > 2000) {
+    log_told_ = health.log_trouble;
+    if (log_told_ != nullptr) return send(status_text(log_told_, true));
+  }
   if (reasons_told_ != flight_.reason_count()) {
     reasons_told_ = flight_.reason_count();
     const bool bad = flight_.emergency() || flight_.state() == FlightState::failsafe;
     return send(status_text(text_of(flight_.last_reason()), bad));
+  }
+  if (const Reason warning = flight_.take_warning(); warning != Reason::none) {
+    return send(status_text(text_of(warning), true));
   }
   return {};
 }
@@ -174,17 +215,35 @@ Message Telemetry::heartbeat() const {
 }
 
 Message Telemetry::sys_status(const Faults& faults, const Health& health) const {
-  constexpr std::uint32_t kGyroAccel = 0x3, kVisionPosition = 0x80;
-  const Reason reason = flight_.ready_to_arm();
-  const bool imu_ok = reason != Reason::imu_not_running && reason != Reason::imu_frozen;
-  const std::uint32_t healthy =
-      (imu_ok ? kGyroAccel : 0) | (flight_.capture_fresh() ? kVisionPosition : 0);
+  // MAV_SYS_STATUS_SENSOR
+  constexpr std::uint32_t kGyroAccel = 0x3, kField = 0x4, kPressure = 0x8, kGps = 0x20,
+                          kVisionPosition = 0x80, kMotors = 0x8000, kFence = 0x10'0000,
+                          kLogging = 0x100'0000, kBattery = 0x200'0000;
+  constexpr std::uint32_t kAll = kGyroAccel | kField | kPressure | kGps | kVisionPosition |
+                                 kMotors | kFence | kLogging | kBattery;
+  const Conditions now = flight_.conditions();
+  std::uint32_t healthy = kAll;
+  const auto spoils = [&](Condition condition, std::uint32_t bits) {
+    if (now.has(condition)) healthy &= ~bits;
+  };
+  spoils(Condition::imu_not_running, kGyroAccel);
+  spoils(Condition::imu_frozen, kGyroAccel);
+  spoils(Condition::no_field, kField);
+  spoils(Condition::no_pressure, kPressure);
+  if (!flight_.estimator().gps().good()) healthy &= ~kGps;
+  if (!flight_.estimator().fix_fresh()) healthy &= ~kVisionPosition;
+  spoils(Condition::motor_out, kMotors);
+  spoils(Condition::esc_silent, kMotors);
+  spoils(Condition::outside_fence, kFence);
+  spoils(Condition::battery_low, kBattery);
+  if (health.log_trouble != nullptr) healthy &= ~kLogging;
   std::int32_t current_mA = 0;
   for (unsigned i = 0; i < 4; ++i) current_mA += flight_.esc_status(i).current_mA;
   Message m(mavlink::kSysStatus, 31);
-  m.put(0, kGyroAccel | kVisionPosition).put(4, kGyroAccel | kVisionPosition).put(8, healthy);
-  m.put(12, health.load_permille)
-      .put<std::uint16_t>(14, 0xFFFF);  // the bus voltage is not measured
+  m.put(0, kAll).put(4, kAll).put(8, healthy).put(12, health.load_permille);
+  const float battery_mV = 1000.0f * std::clamp(flight_.battery().voltage_V(), 0.0f, 65.0f);
+  m.put(14, flight_.battery().connected() ? static_cast<std::uint16_t>(battery_mV)
+                                          : std::uint16_t{0xFFFF});
   m.put(16, static_cast<std::int16_t>(current_mA / 10)).put(20, count16(faults.link_bad_frames));
   m.put(22, count16(faults.esc_no_answer)).put(24, count16(faults.i2c_recoveries));
   m.put(26, count16(faults.imu_samples_lost + faults.imu_reconfigured));
@@ -228,6 +287,28 @@ Message Telemetry::highres_imu(std::uint32_t time_ms) const {
   return m;
 }
 
+Message Telemetry::gps_raw(std::uint32_t time_ms) const {
+  const GpsSolution& gps = flight_.estimator().gps();
+  const auto cm = [](float m) {
+    return static_cast<std::uint16_t>(std::clamp(100.0f * m, 0.0f, 65534.0f));
+  };
+  constexpr std::uint16_t kUnknownCourse = 0xFFFF;
+  Message m(mavlink::kGpsRawInt, 30);
+  m.put(0, std::uint64_t{time_ms} * 1000u).put(8, gps.latitude_e7_deg);
+  m.put(12, gps.longitude_e7_deg).put(16, gps.height_mm);
+  m.put(20, cm(gps.level_accuracy_m)).put(22, cm(gps.down_accuracy_m));
+  m.put(24, cm(gps.v_W_mps.head<2>().norm())).put(26, kUnknownCourse);
+  return m.put(28, gps.fix_type).put(29, gps.satellites);
+}
+
+Message Telemetry::gps_origin() const {
+  const GpsFrame& frame = flight_.estimator().gps_frame();
+  Message m(mavlink::kGpsGlobalOrigin, 12);
+  return m.put(0, frame.latitude_e7_deg())
+      .put(4, frame.longitude_e7_deg())
+      .put(8, frame.height_mm());
+}
+
 // Array 1: scales of filters 1 and 2, velocity through the air, wind, height and its rate by the
 // barometer.
 Message Telemetry::filters(std::uint32_t time_ms) const {
@@ -262,12 +343,11 @@ Message Telemetry::float_array(std::uint32_t time_ms, std::uint16_t id, const ch
 }
 
 Message Telemetry::ack() {
-  ack_due_ = false;
-  const bool known =
-      ack_command_ == kArmDisarm || ack_command_ == kNavTakeoff || ack_command_ == kNavLand;
+  const Ack first = acks_[0];
+  --acks_due_;
+  std::copy_n(acks_.begin() + 1, acks_due_, acks_.begin());
   Message m(mavlink::kCommandAck, 3);
-  m.put(0, ack_command_);
-  return m.put(2, static_cast<std::uint8_t>(known ? result_of(ack_reason_) : kUnsupported));
+  return m.put(0, first.command).put(2, first.result);
 }
 
 Message Telemetry::status_text(const char* text, bool bad) {

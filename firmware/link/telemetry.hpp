@@ -2,14 +2,16 @@
 // that the 57600 baud of a half-duplex radio are filled evenly.
 //
 //   Down    HEARTBEAT 1 Hz, SYS_STATUS 1 Hz, ATTITUDE_QUATERNION 20 Hz, LOCAL_POSITION_NED 10 Hz,
-//           HIGHRES_IMU 2 Hz, DEBUG_FLOAT_ARRAY of the filters 5 Hz each; COMMAND_ACK, STATUSTEXT and
-//           PARAM_VALUE in free slots
+//           HIGHRES_IMU 2 Hz, DEBUG_FLOAT_ARRAY of the filters 5 Hz each, GPS_RAW_INT 1 Hz,
+//           GPS_GLOBAL_ORIGIN 1 Hz once there is one; COMMAND_ACK, STATUSTEXT and PARAM_VALUE in free slots
 //   Up      VICON_POSITION_ESTIMATE, SET_POSITION_TARGET_LOCAL_NED, SET_ATTITUDE_TARGET (attitude, body
-//           yaw rate and thrust), COMMAND_LONG (400 arm, disarm; 22 take off to param 7; 21 land); the
-//           requests of parameter_link.hpp
+//           yaw rate and thrust), COMMAND_LONG (400 arm, disarm;
+//           22 take off to param 7; 21 land; 512 of AUTOPILOT_VERSION, 520: it is sent; any other is
+//           acknowledged as unsupported); the requests of parameter_link.hpp and request_link.hpp
 //   State   HEARTBEAT.custom_mode is the FlightState; system_status 2 not ready, 3 ready, 4 active,
 //           5 failsafe, 6 motors stopped in an emergency
 #pragma once
+#include <array>
 #include <concepts>
 #include <cstdint>
 #include <span>
@@ -17,14 +19,16 @@
 #include "firmware/flight/flight.hpp"
 #include "firmware/link/mavlink.hpp"
 #include "firmware/link/parameter_link.hpp"
+#include "firmware/link/request_link.hpp"
 #include "firmware/status.hpp"
 
 namespace fw {
 
 struct Health {  // what only the image knows
   std::uint16_t load_permille = 0;
-  const char* boot_text = "";       // reset cause, sent once
-  bool parameters_unsaved = false;  // flash did not take the last change
+  const char* boot_text = "";         // reset cause, sent once
+  bool parameters_unsaved = false;    // flash did not take the last change
+  const char* log_trouble = nullptr;  // why there is no log, or not all of it; null: all is well
 };
 
 class Telemetry {
@@ -48,10 +52,14 @@ class Telemetry {
   mavlink::Message attitude(std::uint32_t time_ms) const;
   mavlink::Message position(std::uint32_t time_ms) const;
   mavlink::Message highres_imu(std::uint32_t time_ms) const;
+  mavlink::Message gps_raw(std::uint32_t time_ms) const;
+  mavlink::Message gps_origin() const;
   mavlink::Message filters(std::uint32_t time_ms) const;
   mavlink::Message filter_attitudes(std::uint32_t time_ms) const;
   static mavlink::Message float_array(std::uint32_t time_ms, std::uint16_t id, const char* name,
                                       std::uint8_t count);
+  void on_request_message(float message);
+  void acknowledge(std::uint16_t command, std::uint8_t result);
   mavlink::Message ack();
   static mavlink::Message status_text(const char* text, bool bad);
   std::span<const std::uint8_t> send(const mavlink::Message& message);
@@ -59,13 +67,19 @@ class Telemetry {
   Flight& flight_;
   mavlink::Parser parser_;
   ParameterLink parameters_;
+  RequestLink requests_;
   mavlink::Message last_{mavlink::kHeartbeat, 9};
   std::uint32_t slot_ = 0;
   std::uint8_t sequence_ = 0;
-  bool ack_due_ = false;
-  std::uint16_t ack_command_ = 0;
-  Reason ack_reason_ = Reason::none;
+  struct Ack {
+    std::uint16_t command = 0;
+    std::uint8_t result = 0;
+  };
+  std::array<Ack, 8> acks_{};  // due; those of a burst beyond are lost, and asked for again
+  std::size_t acks_due_ = 0;
+  Reason refusal_ = Reason::none;
   std::uint32_t reasons_told_ = 0;
+  const char* log_told_ = nullptr;
   bool refusal_due_ = false, booted_told_ = false, unsaved_told_ = false;
 };
 

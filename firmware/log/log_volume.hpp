@@ -68,6 +68,8 @@ class LogVolume {
   void tick(std::uint32_t now_us);
   // False: dropped and counted; it is not logging, or the buffer is full.
   bool append(std::span<const std::uint8_t> record);
+  // Bytes that append() would take now.
+  std::size_t room() const { return state() == LogState::logging ? kBuffer_bytes - held_ : 0; }
   void close() { close_wanted_ = true; }
   void open() { close_wanted_ = false; }                           // again, in a new file
   void set_time(std::uint16_t fat_date, std::uint16_t fat_time) {  // of files begun from now on

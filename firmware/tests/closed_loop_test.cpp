@@ -109,7 +109,7 @@ TEST(Flight, LosesTheCaptureAndLandsBlind) {
   hover.vehicle.capture_on_ = false;
   hover.vehicle.run(hover.flight, 0.6);
   EXPECT_EQ(hover.flight.state(), FlightState::failsafe);
-  EXPECT_EQ(hover.flight.last_reason(), Reason::no_capture);
+  EXPECT_EQ(hover.flight.last_reason(), Reason::no_position);
   double fastest = 0.0;
   for (int i = 0; i < 12'000 && hover.flight.state() == FlightState::failsafe; ++i) {
     hover.vehicle.step(hover.flight);
@@ -119,6 +119,92 @@ TEST(Flight, LosesTheCaptureAndLandsBlind) {
   EXPECT_GT(hover.vehicle.p_W_.z(), -VehicleModel::kFoot_m - 0.02);  // on the ground, not above it
   EXPECT_LT(fastest, 1.0);
   EXPECT_LT(hover.vehicle.tilt_rad(), 0.1);
+}
+
+TEST(Flight, CutsTheMotorsWithinATenthOfASecondOfAnEscThatSaysItsMotorStands) {
+  Hovering hover({});
+  hover.vehicle.esc_on_[2] = false;
+  hover.flight.on_esc_status(2, {0, 0, esc::flag_armed});
+  hover.vehicle.run(hover.flight, 0.01);
+  EXPECT_EQ(hover.flight.state(), FlightState::disarmed);
+  EXPECT_EQ(hover.flight.last_reason(), Reason::motor_out);
+  EXPECT_TRUE(hover.flight.emergency());
+}
+
+TEST(Flight, LandsWithABatteryThatIsLowAndDoesNotArmWithIt) {
+  Hovering hover({});
+  hover.vehicle.battery_V_ = 14.3;
+  hover.vehicle.run(hover.flight, 2.0);
+  EXPECT_EQ(hover.flight.state(), FlightState::flying);  // a moment is no state of charge
+  hover.vehicle.run(hover.flight, 4.0);
+  EXPECT_EQ(hover.flight.state(), FlightState::landing);
+  EXPECT_EQ(hover.flight.last_reason(), Reason::battery_low);
+  hover.vehicle.run(hover.flight, 10.0);
+  EXPECT_EQ(hover.flight.state(), FlightState::disarmed);
+  hover.vehicle.run(hover.flight, 3.0);
+  EXPECT_EQ(hover.flight.arm(), Reason::battery_low);
+}
+
+TEST(Flight, AnEmptyBatteryIsAFailSafe) {
+  Hovering hover({});
+  hover.vehicle.battery_V_ = 13.0;
+  hover.vehicle.run(hover.flight, 5.0);
+  EXPECT_EQ(hover.flight.state(), FlightState::failsafe);
+  EXPECT_EQ(hover.flight.last_reason(), Reason::battery_empty);
+}
+
+TEST(Flight, WarnsOfAMissingBarometerAndMagnetometerAndFliesOn) {
+  Hovering hover({});
+  EXPECT_EQ(hover.flight.take_warning(), Reason::none);
+  hover.vehicle.pressure_on_ = hover.vehicle.field_on_ = false;
+  hover.vehicle.run(hover.flight, 1.0);
+  EXPECT_EQ(hover.flight.take_warning(), Reason::no_pressure);
+  EXPECT_EQ(hover.flight.take_warning(), Reason::no_field);
+  EXPECT_EQ(hover.flight.state(), FlightState::flying);
+}
+
+TEST(Flight, ATargetBeyondTheFenceIsDrawnInside) {
+  Hovering hover({});
+  for (int i = 0; i < 100; ++i) {
+    hover.flight.on_target({9.0f, -9.0f, -9.0f}, 0.0f);
+    hover.vehicle.run(hover.flight, 0.1);
+  }
+  EXPECT_EQ(hover.flight.state(), FlightState::flying);
+  EXPECT_TRUE(near(hover.vehicle.p_W_.x(), 2.1, stated(0.06, "the sensors' noise and bias")));
+  EXPECT_TRUE(near(hover.vehicle.p_W_.y(), -1.6, stated(0.06, "the sensors' noise and bias")));
+  EXPECT_TRUE(near(hover.vehicle.p_W_.z(), -2.6, stated(0.06, "the sensors' noise and bias")));
+}
+
+TEST(Flight, AVelocityTowardsTheFenceEndsBeforeIt) {
+  Hovering hover({});
+  for (int i = 0; i < 100; ++i) {
+    hover.flight.on_velocity({1.0f, 0.0f, 0.0f}, -1.1f, 0.0f);
+    hover.vehicle.run(hover.flight, 0.1);
+    EXPECT_LT(hover.vehicle.p_W_.x(), 2.3);
+  }
+  EXPECT_GT(hover.vehicle.p_W_.x(), 1.9);
+  EXPECT_EQ(hover.flight.state(), FlightState::flying);
+}
+
+TEST(Flight, BlownOutOfTheFenceItLandsBackInside) {
+  Hovering hover({});
+  hover.vehicle.p_W_.x() = 2.7;
+  hover.vehicle.run(hover.flight, 1.0);
+  EXPECT_EQ(hover.flight.state(), FlightState::failsafe);
+  EXPECT_EQ(hover.flight.last_reason(), Reason::outside_fence);
+  hover.vehicle.run(hover.flight, 12.0);
+  EXPECT_EQ(hover.flight.state(), FlightState::disarmed);
+  EXPECT_LT(hover.vehicle.p_W_.x(), 2.3);
+}
+
+TEST(Flight, LandsWhenTheStationFallsSilentThoughItKnowsWhereItIs) {
+  Hovering hover({});
+  hover.flight.on_link();
+  hover.vehicle.run(hover.flight, 2.9);
+  EXPECT_EQ(hover.flight.state(), FlightState::flying);
+  hover.vehicle.run(hover.flight, 0.2);
+  EXPECT_EQ(hover.flight.state(), FlightState::landing);
+  EXPECT_EQ(hover.flight.last_reason(), Reason::no_link);
 }
 
 TEST(Flight, CutsTheMotorsWhenTheImuDies) {
@@ -218,11 +304,27 @@ TEST(Flight, RefusesToArmAndSaysWhy) {
   VehicleModel vehicle({});
   vehicle.capture_on_ = false;
   vehicle.run(flight, 3.0);
-  EXPECT_EQ(flight.arm(), Reason::no_capture);
+  EXPECT_EQ(flight.arm(), Reason::no_position);
   vehicle.capture_on_ = true;
   vehicle.run(flight, 0.3);
   EXPECT_EQ(flight.arm(), Reason::imu_not_calibrated);
   vehicle.run(flight, 2.0);
+  vehicle.pressure_on_ = false;
+  vehicle.run(flight, 0.3);
+  EXPECT_EQ(flight.arm(), Reason::no_pressure);
+  vehicle.pressure_on_ = true;
+  vehicle.field_on_ = false;
+  vehicle.run(flight, 0.3);
+  EXPECT_EQ(flight.arm(), Reason::no_field);
+  vehicle.field_on_ = true;
+  vehicle.battery_V_ = 14.0;
+  vehicle.run(flight, 3.0);
+  EXPECT_EQ(flight.arm(), Reason::battery_low);
+  vehicle.battery_V_ = 0.0;
+  vehicle.run(flight, 3.0);
+  EXPECT_EQ(flight.arm(), Reason::no_battery);
+  vehicle.battery_V_ = 16.4;
+  vehicle.run(flight, 6.0);
   flight.on_esc_status(2, {0, 0, esc::flag_armed | esc::flag_under_voltage});
   EXPECT_EQ(flight.arm(), Reason::esc_fault);
   flight.on_esc_status(2, {0, 0, 0});

@@ -148,6 +148,22 @@ TEST(Mpu6000Driver, NoticesALostSettingInFlightAndRestoresIt) {
   EXPECT_EQ(spi.registers[0x1B], 0x18);
 }
 
+TEST(Mpu6000Driver, APartThatFallsAsleepIsSetUpAnew) {
+  FakeSpi spi;
+  Mpu6000<FakeSpi> imu(spi);
+  ASSERT_GT(ticks_until_running(imu, spi, 400), 0);
+  for (int i = 0; i < 100; ++i) {
+    sample(imu, spi);
+    EXPECT_EQ(imu.setup_tick(), Status::ok);
+  }
+  spi.registers[0x6B] = 0x40;  // its supply was away: it sleeps, and tells no sample any more
+  for (int i = 0; i < 9; ++i) EXPECT_EQ(imu.setup_tick(), Status::ok);
+  EXPECT_EQ(imu.setup_tick(), Status::busy);
+  EXPECT_EQ(imu.reconfigured(), 1u);
+  EXPECT_LT(ticks_until_running(imu, spi, 400), 30);
+  EXPECT_EQ(spi.registers[0x6B], 0x01);
+}
+
 class FakeQueue {
  public:
   Status submit(const hal::I2cJob& job) {

@@ -59,6 +59,27 @@ TEST(Mavlink, FindsTheNextFrameAfterNoise) {
   EXPECT_EQ(complete_frames(parser, bytes), 2);
 }
 
+std::vector<std::uint8_t> together(std::initializer_list<std::vector<std::uint8_t>> parts) {
+  std::vector<std::uint8_t> all;
+  for (const auto& part : parts) all.insert(all.end(), part.begin(), part.end());
+  return all;
+}
+
+// A start with a long length, a message that we do not know, one that breaks off: what follows is read.
+TEST(Mavlink, WhatIsNoFrameSwallowsNothingOfWhatFollows) {
+  const std::vector<std::uint8_t> long_start{0xFD, 0xFF, 0x00},
+      unknown{0xFD, 0xC8, 0x00, 0x00, 0x00, 0x01, 0x01, 0xFF, 0xFF, 0x7F, 0x01},
+      broken_off(kArmFrame.begin(), kArmFrame.begin() + 30), starts(40, 0xFD);
+  for (const auto& noise : {long_start, unknown, starts}) {
+    Parser parser;
+    EXPECT_EQ(complete_frames(parser, together({noise, kHeartbeatFrame, kArmFrame})), 2);
+  }
+  Parser
+      parser;  // its last fourteen bytes are those of the next frame: that is found with what follows
+  EXPECT_EQ(complete_frames(parser, together({broken_off, kHeartbeatFrame, kArmFrame})), 2);
+  EXPECT_EQ(parser.bad_frames(), 1u);
+}
+
 // The heartbeat with other incompatibility flags, and the CRC that goes with them.
 std::vector<std::uint8_t> heartbeat_with_flags(std::uint8_t flags) {
   std::vector<std::uint8_t> bytes = kHeartbeatFrame;

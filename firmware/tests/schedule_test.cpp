@@ -48,5 +48,18 @@ TEST(Schedule, RatesAreThoseOfTheDesign) {
   EXPECT_EQ(asked, 100);
 }
 
+TEST(Schedule, TheLogIsSampledAt150HzAsEvenlyAsTicksAllow) {
+  std::uint32_t last = 0, samples = 0;
+  for (std::uint32_t tick = 0; tick < 1000; ++tick) {
+    if (!log(tick)) continue;
+    if (samples++ > 0) {
+      EXPECT_GE(tick - last, 6u) << tick;
+      EXPECT_LE(tick - last, 7u) << tick;
+    }
+    last = tick;
+  }
+  EXPECT_EQ(samples, 150u);
+}
+
 }  // namespace
 }  // namespace fw::schedule

@@ -118,7 +118,7 @@ TEST(Telemetry, PosesOverTheRadioReachTheEstimate) {
   m.put(8, 1.0f).put(12, -2.0f).put(16, -0.5f).put(28, 0.7f);
   telemetry.receive(m.frame(255, 190, 0));
   EXPECT_EQ(flight.estimator().p_WB_W_m(), Vector3(1.0f, -2.0f, -0.5f));
-  EXPECT_TRUE(flight.capture_fresh());
+  EXPECT_TRUE(flight.estimator().position_known());
 }
 
 // Bits of the mask: 0 to 2 place, 3 to 5 velocity, 6 to 8 acceleration are to be ignored.
@@ -199,7 +199,36 @@ TEST(Telemetry, ANonFinitePoseIsNotFlown) {
   Message m(mavlink::kViconPositionEstimate, 32);
   m.put(8, std::nanf(""));
   telemetry.receive(m.frame(255, 190, 0));
-  EXPECT_FALSE(flight.capture_fresh());
+  EXPECT_FALSE(flight.estimator().position_known());
+}
+
+// STATUSTEXT after the two seconds that a card has to come up, and bit 24 of SYS_STATUS' health
+// (MAV_SYS_STATUS_LOGGING).
+TEST(Telemetry, SaysThatThereIsNoLogOnceAndInItsHealth) {
+  Flight flight;
+  Telemetry telemetry(flight);
+  mavlink::Parser parser;
+  int texts = 0;
+  std::uint32_t health_of_log = 0;
+  const auto listen_s = [&](std::uint32_t from_s, std::uint32_t to_s, const char* trouble) {
+    for (std::uint32_t ms = 1000 * from_s; ms < 1000 * to_s; ms += 5) {
+      for (const std::uint8_t byte : telemetry.next(ms, {}, {.log_trouble = trouble})) {
+        if (!parser.push(byte)) continue;
+        const mavlink::Frame& frame = parser.frame();
+        if (frame.id == mavlink::kSysStatus) health_of_log = frame.get<std::uint32_t>(8) >> 24 & 1;
+        const std::string words(frame.payload.begin() + 1, frame.payload.begin() + 4);
+        if (frame.id == mavlink::kStatustext && words == "log") ++texts;
+      }
+    }
+  };
+  listen_s(0, 2, "log: no SD card");
+  EXPECT_EQ(texts, 0);
+  EXPECT_EQ(health_of_log, 0u);
+  listen_s(2, 5, "log: no SD card");
+  EXPECT_EQ(texts, 1);
+  listen_s(5, 7, nullptr);
+  EXPECT_EQ(texts, 1);
+  EXPECT_EQ(health_of_log, 1u);
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 //   Frame    W north-east-down, B forward-right-down, both at the centre of mass; SI, double
 //   Rotors   thrust follows its set-point with a first-order lag of 25 ms and a gain error
 //   Sensors  IMU at 1 kHz with white noise, bias and a 2 ms delay; capture at 40 Hz, 10 ms late,
-//            with losses
+//            with losses; barometer and magnetometer at 100 Hz, perfect; the battery's voltage
 //   Ground   four stiff damped feet with friction, at the arms' ends, 0.1 m below the centre
 //   Left out blade aerodynamics, battery, vibration: the stand has those
 #pragma once
@@ -40,7 +40,8 @@ class VehicleModel {
 
   Eigen::Vector3d p_W_{0, 0, -kFoot_m}, v_W_{0, 0, 0}, w_B_{0, 0, 0}, wind_W_{0, 0, 0};
   Eigen::Quaterniond q_WB_{1, 0, 0, 0};
-  bool capture_on_ = true, imu_on_ = true;
+  bool capture_on_ = true, imu_on_ = true, pressure_on_ = true, field_on_ = true;
+  double battery_V_ = 16.4;
   std::array<bool, 4> esc_on_{true, true, true, true};
   double tilt_rad() const { return std::acos((q_WB_ * Eigen::Vector3d::UnitZ()).z()); }
   double time_s() const { return 1e-3 * ms_; }
@@ -49,6 +50,7 @@ class VehicleModel {
  private:
   void physics(double dt_s);
   void sense(Flight& flight);
+  void slow_sensors(Flight& flight);
   void escs(Flight& flight);
   Eigen::Vector3d noise(double sigma) {
     std::normal_distribution<double> normal(0.0, sigma);
@@ -114,6 +116,7 @@ inline void VehicleModel::sense(Flight& flight) {
   if (imu_line_.size() > 2) imu_line_.pop_front();
   if (imu_on_) flight.on_imu(imu_line_.front());
   if (!imu_on_) flight.on_imu_missing();
+  if (ms_ % 10 == 9) slow_sensors(flight);
   std::uniform_real_distribution<double> luck(0.0, 1.0);
   if (ms_ % 25 == 7 && luck(random_) > scenario_.capture_loss && capture_on_) {
     const Eigen::Matrix3d R = q_WB_.toRotationMatrix();
@@ -127,6 +130,15 @@ inline void VehicleModel::sense(Flight& flight) {
     flight.on_fix(fix_line_.front().fix);
     fix_line_.pop_front();
   }
+}
+
+inline void VehicleModel::slow_sensors(Flight& flight) {
+  constexpr double declination = 12.4 * M_PI / 180.0;
+  const Eigen::Vector3d field_W(23.0 * std::cos(declination), 23.0 * std::sin(declination), -53.0);
+  const Eigen::Vector3d field_B = q_WB_.conjugate() * field_W;
+  if (pressure_on_) flight.on_pressure(static_cast<float>(94'000.0 + 10.9 * p_W_.z()));
+  if (field_on_) flight.on_field(field_B.cast<float>());
+  flight.on_battery(static_cast<float>(battery_V_));
 }
 
 inline void VehicleModel::escs(Flight& flight) {

@@ -97,6 +97,12 @@ Vector3d read_field(const Table& t) {
 }
 
 void read_air(const Table& t, plant::AirParams& air) {
+  const auto wind_mps = [&t](const char* key) {
+    return t.quantity_or(key, Dimension::speed, 0.0, between(-50.0, 50.0));
+  };
+  air.steady_wind_W_mps = {wind_mps("wind_north"), wind_mps("wind_east"), 0.0};
+  air.dryden.wind_at_6m_mps =
+      t.quantity_or("turbulence", Dimension::speed, 0.0, between(0.0, 50.0));
   air.ground_height_m = t.quantity_or("above_sea", Dimension::length, 0.0, between(-500.0, 9000.0));
   if (!t.has("temperature")) return;
   const double standard_K = plant::standard_atmosphere(air.ground_height_m).temperature_K;

@@ -72,6 +72,8 @@ std::string word(results::Verdict verdict) {
       return "INCONCLUSIVE ";
     case results::Verdict::error:
       return "ERROR ";
+    case results::Verdict::none:
+      return "FLOWN ";
   }
   return "?";
 }

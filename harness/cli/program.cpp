@@ -11,6 +11,7 @@
 #include "harness/cli/devices_command.hpp"
 #include "harness/cli/doctor.hpp"
 #include "harness/cli/export_command.hpp"
+#include "harness/cli/fly_command.hpp"
 #include "harness/cli/fuzz_command.hpp"
 #include "harness/cli/history_command.hpp"
 #include "harness/cli/job_command.hpp"
@@ -30,6 +31,8 @@ constexpr const char* kExamples = R"(Examples:
   whirl run test_plans/flight --tag quick      the quick ones of a folder
   whirl run test_plans/flight/hover.lua --seed 7 --twice
   whirl run test_plans/flight/hover.lua --gdb  then: gdb-multiarch build/firmware/flight.elf
+  whirl fly --pace 1                           a flight in real time for QGroundControl or another
+                                               MAVLink client, on UDP 127.0.0.1:14550
   whirl list                                   what plans there are
   whirl sweep test_plans/vehicles/hp_quad.lua  motor, propeller and hover point in figures and curves
   whirl validate                               the plant over its reference points
@@ -44,7 +47,7 @@ constexpr const char* kExamples = R"(Examples:
 
 Exit codes: 0 pass, 1 a plan failed, 2 bad input or usage, 3 inconclusive (the host was at fault, the
 run was interrupted, or what the plan asks was not shown), 4 internal error; of several plans the
-worst counts: 4, then 2, 1, 3, 0.
+worst counts: 4, then 2, 1, 3, 0. A flight of `whirl fly` that ended in order is 0, without a verdict.
 Results: results/runs/latest/index.html, run.json, junit.xml, messages.whirl (all that crossed), and
 of it truth.csv, bus.csv, telemetry.tlog (serial.txt on a stand), bus_NODE.csv of boards with names)";
 
@@ -116,6 +119,26 @@ struct RunCommand {
   std::vector<std::string> settings;
 };
 
+// Its seed and --out are parsed as those of `whirl run`.
+CLI::App* add_fly(CLI::App& app, FlyOptions& options, RunCommand& run) {
+  auto* fly = app.add_subcommand(
+      "fly", "a flight paced to real time, for a MAVLink client on UDP; gives no verdict");
+  fly->add_option("plan", options.plan, "vehicle, surroundings and script (default: free.lua)");
+  fly->add_option("--only", run.options.only, "the plan of this name");
+  fly->add_option("--udp", options.udp, "HOST:PORT where the client listens (127.0.0.1:14550)");
+  fly->add_option("--listen", options.listen, "our own port (default: one that is free)");
+  fly->add_option("--pace", options.pace, "virtual seconds to one of the host (1)")
+      ->check(CLI::Range(0.001, 1000.0));
+  fly->add_option("--seconds", options.seconds, "of virtual time (default: until Ctrl-C)")
+      ->check(CLI::Range(0.001, 1e6));
+  fly->add_option("--image", options.image, "instead of the plan's");
+  fly->add_option("--board", options.board, "instead of the plan's");
+  fly->add_option("--vehicle", options.vehicle, "instead of the plan's");
+  fly->add_option("--seed", run.seed, "instead of the plan's own")->check(seed_complaint);
+  fly->add_option("--out", run.options.out, "where the run goes (default: results)");
+  return fly;
+}
+
 CLI::App* add_export(CLI::App& app, ExportOptions& options) {
   auto* command = app.add_subcommand("export", "a run's messages in other formats");
   command->add_option("run", options.run, "a run's folder, or its messages.whirl")->required();
@@ -135,6 +158,9 @@ int run_chosen(int argc, char** argv, Composition composition) {
 
   RunCommand run(app);
   RunOptions& options = run.options;
+
+  FlyOptions flying;
+  auto* fly = add_fly(app, flying, run);
 
   auto* list = app.add_subcommand("list", "list plans");
   add_plan_options(*list, options);
@@ -194,6 +220,7 @@ int run_chosen(int argc, char** argv, Composition composition) {
   }
   if (const auto good = run.parse_texts(); !good) return complain(good.error());
   if (!options.out.empty()) composition.results = options.out;
+  if (*fly) return fly_command(flying, options, composition);
   if (*list) return list_command(options, composition);
   if (*past) return history_command(history, composition.results);
   if (*exports) return export_command(exported);

@@ -177,7 +177,7 @@ void add_versions(const Prepared& prepared, const plan::Plan& plan, const std::s
 // `folder`: where its messages are written; null: nowhere.
 Result<RunRecord> run_record(const PlanChoice& choice, const RunOptions& options,
                              const Composition& composition, const ProgressSink& progress,
-                             const RunFolder* folder) {
+                             const RunFolder* folder, const Company* company = nullptr) {
   // Loaded anew: no run sees what another left in its Lua.
   auto file = plan::PlanFile::load(choice.file, {}, options.settings);
   if (!file) return file.error();
@@ -197,11 +197,18 @@ Result<RunRecord> run_record(const PlanChoice& choice, const RunOptions& options
   if (folder != nullptr) {
     messages.emplace(folder->messages(), run_head(*plan, parts.nodes, *parts.world, seed));
   }
-  RunRecord record = execute({*file.value(), *plan, parts.nodes, *parts.world, *parts.target, seed,
-                              messages ? &*messages : nullptr},
-                             progress);
+  RunRecord record =
+      execute({*file.value(), *plan, parts.nodes, *parts.world, *parts.target, seed,
+               messages ? &*messages : nullptr, folder == nullptr ? "" : folder->path(),
+               company == nullptr ? nullptr : &company->companion},
+              progress);
   record.messages = std::move(messages);
   add_versions(parts, *plan, composition.root, record);
+  if (company != nullptr && folder != nullptr) {
+    const auto left =
+        company->leave(folder->path(), record.report, *plan, file.value()->sandbox().files_below());
+    if (!left) record.report.reasons.push_back(results::reason_of(left.error(), "results lost: "));
+  }
   return record;
 }
 
@@ -285,11 +292,12 @@ Finished file_refusal(RunFolder& folder, results::Report report) {
 }  // namespace
 
 Finished run_one(const PlanChoice& choice, const RunOptions& options,
-                 const Composition& composition, const ProgressSink& progress) {
+                 const Composition& composition, const ProgressSink& progress,
+                 const Company* company) {
   try {
     auto folder = RunFolder::create(composition.results, choice.name);
     if (!folder) return {refused(choice, options, folder.error()), ""};
-    auto record = run_record(choice, options, composition, progress, &folder.value());
+    auto record = run_record(choice, options, composition, progress, &folder.value(), company);
     if (!record) return file_refusal(folder.value(), refused(choice, options, record.error()));
     results::Report& report = record.value().report;
     if (options.twice && interrupted_by() == 0) {

@@ -84,12 +84,14 @@ class Run {
         script_(parts.file, parts.plan, stage_),
         lockstep_(parts.world, parts.target),
         acted_(parts.nodes.size()) {
+    stage_.folder = parts.folder;
     results::Report& r = record_.report;
     r.plan = parts.plan.name;
     r.file = parts.plan.file;
     r.tags = parts.plan.tags;
     r.seed = parts.seed;
     r.timing_profile = timing_profile(parts.nodes);
+    r.judged = parts.companion == nullptr;
   }
 
   RunRecord go(const ProgressSink& progress) {
@@ -128,7 +130,7 @@ class Run {
   }
 
   void loop(const ProgressSink& progress) {
-    while (act() && step()) {
+    while (act() && accompany() && step()) {
       if (!progress || stage_.now_ns % kProgress_ns != 0) continue;
       progress({static_cast<double>(stage_.now_ns) * 1e-9, script_.step_name(), parts_.world});
     }
@@ -137,11 +139,17 @@ class Run {
   // The script's turn. False: the run is over.
   bool act() {
     Stopwatch watch(record_.report.host.script_s);
-    if (stage_.now_ns >= parts_.plan.timeout_ns) return time_out();
+    if (stage_.now_ns >= parts_.plan.timeout_ns && parts_.companion == nullptr) return time_out();
     const auto state = script_.advance();
     if (!state) return end_for(state.error());
     completed_ = state.value() == plan::Script::State::done;
-    return !completed_;
+    return !completed_ || parts_.companion != nullptr;
+  }
+
+  bool accompany() {
+    if (parts_.companion == nullptr) return true;
+    const auto goes_on = parts_.companion->turn(stage_.now_ns, parts_.world);
+    return goes_on ? goes_on.value() : end_for(goes_on.error());
   }
 
   bool step() {
@@ -153,10 +161,23 @@ class Run {
     if (!arrived) return ended_by(arrived.error());
     stage_.now_ns = lockstep_.now_ns();
     file_row();
+    log_texts();
+    if (parts_.companion != nullptr) {
+      parts_.companion->on_happened(stage_.now_ns, lockstep_.happened(), parts_.world);
+    }
     if (!file_batch(lockstep_.happened()) || !firmware_is_well()) return false;
     if (interrupted_by() != 0) return interrupted();
     if (arrived.value() == TargetState::running) return true;
     return stopped_early(arrived.value());
+  }
+
+  // What the firmware says of itself, for the page and run.json.
+  void log_texts() {
+    const std::vector<std::string>& texts = parts_.world.told_texts();
+    for (; texts_logged_ < texts.size(); ++texts_logged_) {
+      record_.report.log.push_back(
+          {static_cast<double>(stage_.now_ns) * 1e-9, "firmware", texts[texts_logged_]});
+    }
   }
 
   // The target gave up. What it still told counts; its time stays where it last was, since nothing is
@@ -190,8 +211,8 @@ class Run {
     for (std::size_t i = 0; i < parts_.nodes.size(); ++i) report_node(parts_.nodes[i], logs_[i]);
     // Guards and windows are judged also when the run has failed: their figures help to see why.
     for (const Error& error : script_.finish(completed_)) end_for(error);
-    if (completed_) judge_faults();
-    if (completed_) judge_evidence();
+    if (completed_ && report.judged) judge_faults();
+    if (completed_ && report.judged) judge_evidence();
     for (std::size_t i = 0; i < parts_.nodes.size(); ++i) {
       for (const results::TextRecord& f : logs_[i].findings) {
         report.findings.push_back(
@@ -353,7 +374,8 @@ class Run {
   plan::Script script_;
   Lockstep lockstep_;
   Digest digest_;
-  bool completed_ = false;   // the script has returned
+  bool completed_ = false;  // the script has returned
+  std::size_t texts_logged_ = 0;
   std::vector<bool> acted_;  // of the nodes: their firmware was seen to run
 };
 

@@ -4,6 +4,8 @@
 //   Step     at t_k the script acts; then the target runs (t_k, t_k+1] while the world takes the same
 //            step with what the target had done until t_k, and what had happened is filed
 //   Digest   over every batch, both ways, in order; host times enter nowhere but Report::host
+//   Beside   a companion (companion.hpp) may pace the run and command it; then the script's end is not the
+//            run's, and nothing is judged
 //   Ends     the script returns; a fault of the core; the plan's timeout in virtual time; an error
 #pragma once
 #include <functional>
@@ -11,6 +13,7 @@
 #include <optional>
 
 #include "harness/board/node.hpp"
+#include "harness/executive/companion.hpp"
 #include "harness/plan/plan_file.hpp"
 #include "harness/target/target.hpp"
 #include "harness/world/world.hpp"
@@ -27,6 +30,8 @@ struct RunParts {
   Target& target;
   std::uint64_t seed = 1;
   results::MessageWriter* messages = nullptr;  // what crosses is written there; null: nowhere
+  std::string folder = {};         // where the boards' parts leave their files; empty: nowhere
+  Companion* companion = nullptr;  // null: nobody
 };
 
 struct RunRecord {

@@ -44,6 +44,9 @@ void Estimates::hear(const io::MavlinkFrame& frame, std::int64_t t_ns) {
     const Moment& then = at(std::int64_t{flown->time_boot_ms} * 1'000'000, bytes, t_ns);
     const float wxyz[] = {flown->q1, flown->q2, flown->q3, flown->q4};
     told_.attitude_error_rad = angle_rad(quaternion(wxyz), then.q_WB);
+  } else if (const auto moved = io::unpack<io::LocalPositionNed>(frame)) {
+    const Moment& then = at(std::int64_t{moved->time_boot_ms} * 1'000'000, bytes, t_ns);
+    told_.v_WB_error_W_mps = Eigen::Vector3d(moved->vx, moved->vy, moved->vz) - then.v_W_mps;
   } else if (const auto array = io::unpack<io::DebugFloatArray>(frame)) {
     const auto uptime_ns = static_cast<std::int64_t>(array->time_usec) * 1000;
     const Moment& then = at(uptime_ns, bytes, t_ns);

@@ -5,7 +5,7 @@
 //            least that any frame took, less its own bits. Kept to a millisecond or two
 //   Out      last values and errors; NaN until something was told. An error stays as it was until the
 //            next frame
-//   Frames   ATTITUDE_QUATERNION: what is flown by; DEBUG_FLOAT_ARRAY 1 and 2 of the flight image:
+//   Frames   ATTITUDE_QUATERNION, LOCAL_POSITION_NED: what is flown by; DEBUG_FLOAT_ARRAY 1 and 2 of the flight image:
 //            the velocity-aided filters
 #pragma once
 #include <Eigen/Geometry>
@@ -28,6 +28,7 @@ struct Told {
   Eigen::Vector3d v_AB_error_B_mps = Eigen::Vector3d::Constant(kNothing);
   Eigen::Vector3d wind_W_mps = Eigen::Vector3d::Constant(kNothing);
   Eigen::Vector3d wind_error_W_mps = Eigen::Vector3d::Constant(kNothing);
+  Eigen::Vector3d v_WB_error_W_mps = Eigen::Vector3d::Constant(kNothing);  // of what is flown by
   double baro_height_m = kNothing, baro_climb_mps = kNothing;
   double baro_height_error_m = kNothing, baro_climb_error_mps = kNothing;
 };

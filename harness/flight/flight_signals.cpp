@@ -44,6 +44,8 @@ void FlightWorld::name_signals() {
                const auto& target = station_.target();
                return target ? (state().p_WB_W_m - target->p_W_m).norm() : 0.0;
              });
+  add_signal("waypoint", D::none, "how many of { waypoints = ... } were reached and held",
+             [this] { return waypoints_ ? waypoints_->reached() : 0.0; });
   add_signal("bus_voltage", D::voltage, "at the ESCs", [=] { return state().bus_voltage_V; });
   add_signal("battery_current", D::current, "", [=] { return state().battery_current_A; });
   add_signal("charge_used", D::charge, "", [=] { return state().charge_used_C; });
@@ -59,6 +61,7 @@ void FlightWorld::name_signals() {
   name_motor_signals();
   name_telemetry_signals();
   name_estimate_signals();
+  name_receiver_signals();
 }
 
 void FlightWorld::name_load_signals() {
@@ -119,6 +122,8 @@ void FlightWorld::name_telemetry_signals() {
   add_signal("told_voltage", D::voltage, "", [=] { return reported().voltage_V; });
   add_signal("told_current", D::current, "", [=] { return reported().current_A; });
   add_signal("told_load", D::ratio, "processor load", [=] { return reported().load; });
+  add_signal("told_logging", D::none, "1: SYS_STATUS says that it logs, or can",
+             [=] { return reported().logging; });
   add_signal("heartbeat_age", D::time, "", [=] { return reported().heartbeat_age_s; });
   add_signal("command_result", D::none, "of the last COMMAND_ACK; -1 waiting for it, -2 never came",
              [this] { return static_cast<double>(station_.last_result()); });
@@ -131,6 +136,21 @@ void FlightWorld::name_telemetry_signals() {
              [this] { return station_.parameters().last_value(); });
   add_signal("parameter_pending", D::none, "1: a parameter waits for its answer",
              [this] { return station_.parameters().pending() ? 1.0 : 0.0; });
+}
+
+void FlightWorld::name_receiver_signals() {
+  const auto length = [this](const char* name, const char* about, std::function<double()> value) {
+    add_signal(name, Dimension::length, about, std::move(value));
+  };
+  const char* error = "of the GPS receiver, in W";
+  const char* shown = "where the receiver sees it, in the frame of GPS_GLOBAL_ORIGIN";
+  length("gps_error_north", error, [this] { return receiver_.error_W_m().x(); });
+  length("gps_error_east", error, [this] { return receiver_.error_W_m().y(); });
+  length("gps_error_down", error, [this] { return receiver_.error_W_m().z(); });
+  const auto seen_m = [this] { return receiver_.place_m(vehicle_.state().p_WB_W_m); };
+  length("receiver_north", shown, [=] { return seen_m().x(); });
+  length("receiver_east", shown, [=] { return seen_m().y(); });
+  length("receiver_height", shown, [=] { return -seen_m().z(); });
 }
 
 void FlightWorld::name_estimate_signals() {
@@ -152,6 +172,8 @@ void FlightWorld::name_estimate_signals() {
                [=] { return told().v_AB_B_mps[i]; });
     add_signal(std::string("air_velocity_error_") + axes[i], D::speed, "",
                [=] { return told().v_AB_error_B_mps[i]; });
+    add_signal(std::string("velocity_error_") + ways[i], D::speed, "over ground, as flown by",
+               [=] { return told().v_WB_error_W_mps[i]; });
     add_signal(std::string("told_wind_") + ways[i], D::speed, "",
                [=] { return told().wind_W_mps[i]; });
     add_signal(std::string("wind_error_") + ways[i], D::speed, "",

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "base/check.hpp"
+#include "harness/flight/teleoperation.hpp"
 #include "plant/base/motor_count.hpp"
 
 namespace whirl::flight {
@@ -49,8 +50,10 @@ FlightWorld::FlightWorld(const FlightParams& params, plant::RotorSet rotors, std
         params.vehicle.airframe.rotors[static_cast<std::size_t>(motor) - 1].unbalance_kgm /
         params.vehicle.airframe.mass_kg);
   }
-  station_.on_frame(
-      [this](const io::MavlinkFrame& frame, std::int64_t at_ns) { estimates_.hear(frame, at_ns); });
+  station_.on_frame([this](const io::MavlinkFrame& frame, std::int64_t at_ns) {
+    estimates_.hear(frame, at_ns);
+    receiver_.hear(frame);
+  });
   if (place_.start) begin(*place_.start);
   name_signals();
 }
@@ -87,6 +90,8 @@ void FlightWorld::on_messages(const io::Batch& happened) {
       } else {
         ++setpoints_refused_;
       }
+    } else if (header.kind == io::Kind::gnss_solution) {
+      receiver_.on_solution(reader.as<io::GnssSolution>());
     } else if (header.kind == io::Kind::uart_received && header.port == kRadioPort) {
       station_.receive(reader.payload(), header.t_ns);
     } else if (header.kind == io::Kind::uart_delivered && header.port == kRadioPort) {
@@ -139,6 +144,7 @@ void FlightWorld::send(std::int64_t t_ns, io::Batch& sensed) {
     sensed.add(io::Kind::uart_frame, kRadioPort, at_ns, frame.data(),
                static_cast<std::uint32_t>(frame.size()));
   };
+  guest_.send(kRadioPort, t_ns, sensed);
   const plant::Truth seen{.p_WB_W_m = s.p_WB_W_m, .v_WB_W_mps = s.v_WB_W_mps, .q_WB = s.q_WB};
   const auto hidden = [&] { return faults_.any(kCapture_lost, t_ns); };
   if (const auto pose = capture_.look(t_ns, seen, hidden)) station_.send_pose(*pose, send);
@@ -159,6 +165,11 @@ Result<Done> FlightWorld::command(const Command& command, std::int64_t /*now_ns*
           [this](const request::HoldAttitude& c) -> Result<Done> {
             return hold_attitude(c), Done{};
           },
+          [this](const request::Waypoints& c) -> Result<Done> { return fly_waypoints(c), Done{}; },
+          [this](const request::Teleoperation& c) -> Result<Done> {
+            return teleoperate(c), Done{};
+          },
+          [this](const request::Radio& c) -> Result<Done> { return add_guest(c), Done{}; },
           [this](const request::Sticks& c) -> Result<Done> { return transmitter_.set(c), Done{}; },
           [this](const request::SetParameter& c) -> Result<Done> {
             station_.request_parameter(
@@ -186,8 +197,12 @@ void FlightWorld::land() {
   station_.command(kLand, {});
 }
 
+Target FlightWorld::present_target() const {
+  return station_.target().value_or(Target{vehicle_.state().p_WB_W_m, 0.0});
+}
+
 void FlightWorld::go_to(const request::GoTo& command) {
-  Target target = station_.target().value_or(Target{vehicle_.state().p_WB_W_m, 0.0});
+  Target target = present_target();
   target.yaw_rad = command.yaw_rad.value_or(target.yaw_rad);
   target.p_W_m = {command.north_m.value_or(target.p_W_m.x()),
                   command.east_m.value_or(target.p_W_m.y()),
@@ -212,13 +227,13 @@ void FlightWorld::fly_figure_8(const request::Figure8& figure) {
 }
 
 void FlightWorld::cruise(const request::Cruise& command) {
-  Target at = station_.target().value_or(Target{vehicle_.state().p_WB_W_m, 0.0});
+  Target at = present_target();
   at.p_W_m.z() = -command.height_m.value_or(-at.p_W_m.z());
   station_.cruise({command.north_mps, command.east_mps, 0.0}, at);
 }
 
 void FlightWorld::hold_attitude(const request::HoldAttitude& command) {
-  const Target now = station_.target().value_or(Target{vehicle_.state().p_WB_W_m, 0.0});
+  const Target now = present_target();
   const Target held{now.p_W_m, command.yaw_rad.value_or(now.yaw_rad)};
   station_.hold({.roll_rad = command.roll_rad,
                  .pitch_rad = command.pitch_rad,
@@ -226,6 +241,22 @@ void FlightWorld::hold_attitude(const request::HoldAttitude& command) {
                  .yaw_rate_radps = command.yaw_rate_radps,
                  .thrust = command.thrust},
                 held);
+}
+
+void FlightWorld::fly_waypoints(const request::Waypoints& wanted) {
+  waypoints_ = std::make_shared<WaypointFlight>(wanted, present_target(), now_ns_);
+  station_.guide([this, flight = waypoints_](std::int64_t t_ns) {
+    return flight->at(t_ns, station_.last_pose());
+  });
+}
+
+void FlightWorld::teleoperate(const request::Teleoperation& wanted) {
+  const auto hand = std::make_shared<Teleoperation>(wanted, present_target(), now_ns_);
+  station_.guide([hand](std::int64_t t_ns) { return hand->at(t_ns); });
+}
+
+void FlightWorld::add_guest(const request::Radio& radio) {
+  if (guest_.add(radio.bytes)) station_.set_target(std::nullopt);
 }
 
 Result<Done> FlightWorld::disturb(const Disturbance& disturbance, std::int64_t now_ns) {

@@ -2,8 +2,10 @@
 //
 //   Step     controllers and station take what the target did; then everything moves 1 ms; then what is
 //            sensed goes out: body_motion, esc_state of each motor, uart_frame to the radio
-//   Command  Arm, TakeOff, GoTo, Figure8, Cruise, HoldAttitude, Land, Sticks, SetParameter. Take-off also streams the point above where the vehicle stands
+//   Command  Arm, TakeOff, GoTo, Figure8, Cruise, HoldAttitude, Waypoints, Teleoperation, Land, Sticks, SetParameter, Radio. Take-off also streams the point above where the vehicle stands
 //            as its target; land and disarm end the stream
+//   Radio    bytes of another ground station go up with the next step. Who commanded last leads: with a set-point, an
+//            arming, a take-off or a landing of the other one ours ends its own set-points until it is commanded anew
 //   Begins   standing at W's origin, or as the plan's `start` says (surroundings.hpp)
 //   Disturbed by Wind with a duration, Jet, Magnet
 //   Faults   capture_lost; supply_dip (value: volts below); esc_stopped (of a motor, or of the device that is its ESC)
@@ -17,8 +19,11 @@
 #include "harness/flight/controllers.hpp"
 #include "harness/flight/estimates.hpp"
 #include "harness/flight/flight_params.hpp"
+#include "harness/flight/guest_radio.hpp"
+#include "harness/flight/receiver.hpp"
 #include "harness/flight/station.hpp"
 #include "harness/flight/transmitter.hpp"
+#include "harness/flight/waypoint_flight.hpp"
 #include "harness/world/world.hpp"
 #include "plant/vehicle.hpp"
 
@@ -38,6 +43,7 @@ class FlightWorld : public World {
   void step(std::int64_t t_ns, const io::Batch& happened, io::Batch& sensed) override;
   Result<Done> command(const Command& command, std::int64_t now_ns) override;
   Result<Done> disturb(const Disturbance& disturbance, std::int64_t now_ns) override;
+  const std::vector<std::string>& told_texts() const override { return station_.texts(); }
   std::int64_t command_on_wire_ns() const override { return station_.on_wire_ns(); }
   Result<bool> take_fault(const FaultSpec& fault) override;
   std::vector<std::uint32_t> applied_faults() const override { return faults_.acted(); }
@@ -59,6 +65,7 @@ class FlightWorld : public World {
   void name_motor_signals();
   void name_telemetry_signals();
   void name_estimate_signals();
+  void name_receiver_signals();
   void arm(const request::Arm& command);
   void take_off(const request::TakeOff& command);
   void go_to(const request::GoTo& command);
@@ -66,6 +73,10 @@ class FlightWorld : public World {
   void fly_figure_8(const request::Figure8& figure);
   void cruise(const request::Cruise& command);
   void hold_attitude(const request::HoldAttitude& command);
+  void fly_waypoints(const request::Waypoints& wanted);
+  void teleoperate(const request::Teleoperation& wanted);
+  void add_guest(const request::Radio& radio);
+  Target present_target() const;  // as commanded; where it is, if nothing was
   Result<Done> blow(const request::Wind& wind, std::int64_t now_ns);
   Result<Done> add_jet(const request::Jet& wanted);
   Result<Done> add_magnet(const request::Magnet& wanted, std::int64_t now_ns);
@@ -78,7 +89,10 @@ class FlightWorld : public World {
   std::vector<double> unbalance_m_;                            // likewise, over the vehicle's mass
   Capture capture_;
   Station station_;
+  GuestRadio guest_;
+  std::shared_ptr<WaypointFlight> waypoints_;  // of the latest command; shared with the station
   Estimates estimates_;
+  Receiver receiver_;
   Transmitter transmitter_;
   TimedFaults faults_;
   std::vector<Signal> signals_;

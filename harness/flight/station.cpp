@@ -22,6 +22,7 @@ Station::Station()
           [this](const io::MavlinkFrame& frame, std::span<const std::uint8_t>) { hear(frame); }) {}
 
 void Station::send_pose(const CapturedPose& pose, const Send& send) {
+  last_pose_ = pose;
   io::ViconPositionEstimate message;
   message.usec = static_cast<std::uint64_t>(pose.exposed_ns / 1000);
   message.x = static_cast<float>(pose.p_WB_W_m.x());
@@ -61,6 +62,7 @@ void Station::set_target(const std::optional<Target>& target) {
   target_ = target;
   goal_speed_mps_ = 0.0;
   path_ = nullptr;
+  guide_ = nullptr;
   cruise_W_mps_.reset();
   attitude_.reset();
 }
@@ -80,6 +82,11 @@ void Station::hold(const HeldAttitude& attitude, const Target& after) {
   set_target(after);
   attitude_ = attitude;
   next_target_ns_ = std::min(next_target_ns_, last_step_ns_);
+}
+
+void Station::guide(const Guide& guide) {
+  set_target(guide(last_step_ns_).target);
+  guide_ = guide;
 }
 
 void Station::move_target(const Target& goal, double speed_mps) {
@@ -114,6 +121,11 @@ void Station::step(std::int64_t t_ns, const Send& send) {
     target_->p_W_m += left_m.norm() <= reach_m ? left_m : left_m.normalized() * reach_m;
   }
   if (path_) target_->p_W_m = path_(static_cast<double>(t_ns - path_start_ns_) * 1e-9).p_W_m;
+  if (guide_) {
+    const SetPoint now = guide_(t_ns);
+    target_ = now.target;
+    cruise_W_mps_ = now.v_W_mps;
+  }
   last_step_ns_ = t_ns;
   if (target_ && t_ns >= next_target_ns_) send_target(t_ns, send);
   if (!commands_.empty() && t_ns >= commands_.front().next_ns) send_command(t_ns, send);
@@ -214,12 +226,14 @@ void Station::hear(const io::MavlinkFrame& frame) {
     telemetry_.voltage_V = status->voltage_battery / 1000.0;
     telemetry_.current_A = status->current_battery / 100.0;
     telemetry_.load = status->load / 1000.0;
+    constexpr std::uint32_t kLogging = 1u << 24;  // MAV_SYS_STATUS_LOGGING
+    telemetry_.logging = (status->sensors_health & kLogging) != 0 ? 1.0 : 0.0;
   } else if (const auto attitude = io::unpack<io::AttitudeQuaternion>(frame)) {
     // cos(tilt) is the z-z element of the rotation: 1 - 2 (x^2 + y^2).
     const double x = attitude->q2, y = attitude->q3;
     telemetry_.tilt_rad = std::acos(std::clamp(1.0 - 2.0 * (x * x + y * y), -1.0, 1.0));
   } else if (const auto text = io::unpack<io::Statustext>(frame)) {
-    last_text_ = text->string();
+    texts_.push_back(text->string());
   }
 }
 

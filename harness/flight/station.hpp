@@ -20,14 +20,10 @@
 
 #include "harness/flight/capture.hpp"
 #include "harness/flight/parameter_requests.hpp"
+#include "harness/flight/set_point.hpp"
 #include "io_bridges/protocols/mavlink_messages.hpp"
 
 namespace whirl::flight {
-
-struct Target {  // where the vehicle shall be, frame W
-  Eigen::Vector3d p_W_m = Eigen::Vector3d::Zero();
-  double yaw_rad = 0.0;
-};
 
 struct PathPoint {
   Eigen::Vector3d p_W_m, v_W_mps, a_W_mps2;
@@ -37,6 +33,7 @@ struct HeldAttitude {
   double thrust = 0.0;  // 0..1
 };
 using Path = std::function<PathPoint(double t_s)>;  // t from when it was begun
+using Guide = std::function<SetPoint(std::int64_t t_ns)>;
 
 // What telemetry has told, NaN until it did.
 struct Telemetry {
@@ -46,6 +43,7 @@ struct Telemetry {
   double height_m = std::nan(""), north_m = std::nan(""), east_m = std::nan("");
   double tilt_rad = std::nan("");
   double voltage_V = std::nan(""), current_A = std::nan(""), load = std::nan("");
+  double logging = std::nan("");  // 1: SYS_STATUS calls it healthy
   std::uint64_t frames = 0;
 };
 
@@ -62,9 +60,11 @@ class Station {
   void move_target(const Target& goal, double speed_mps);  // from the present target on
   void follow(const Path& path, double yaw_rad);           // from now on
   void cruise(const Eigen::Vector3d& v_W_mps, const Target& at_height);
-  void hold(const HeldAttitude& attitude,
-            const Target& after);  // after: what target() says meanwhile
+  // after: what target() says meanwhile
+  void hold(const HeldAttitude& attitude, const Target& after);
+  void guide(const Guide& guide);  // asked at each step for what is commanded then
   const std::optional<Target>& target() const { return target_; }
+  const std::optional<CapturedPose>& last_pose() const { return last_pose_; }  // that was sent
   // COMMAND_LONG; waits its turn behind an earlier one that is not yet acknowledged.
   void command(std::uint16_t command, const std::array<float, 7>& param);
   void request_parameter(const std::string& name, std::optional<float> value);  // none: read it
@@ -80,8 +80,8 @@ class Station {
   bool command_pending() const { return !commands_.empty(); }
   // Of the last COMMAND_ACK since a command was given; or one of the two below.
   int last_result() const { return last_result_; }
-  static constexpr int kWaiting = -1, kUnanswered = -2;        // given up after 20 tries
-  const std::string& last_text() const { return last_text_; }  // of STATUSTEXT
+  static constexpr int kWaiting = -1, kUnanswered = -2;             // given up after 20 tries
+  const std::vector<std::string>& texts() const { return texts_; }  // of STATUSTEXT, all
 
  private:
   struct Pending {
@@ -108,6 +108,8 @@ class Station {
   std::int64_t path_start_ns_ = 0;
   std::optional<Eigen::Vector3d> cruise_W_mps_;
   std::optional<HeldAttitude> attitude_;
+  Guide guide_;
+  std::optional<CapturedPose> last_pose_;
   std::int64_t next_target_ns_ = 0, last_step_ns_ = 0;
   Awaited awaited_ = Awaited::nothing;
   std::vector<std::vector<std::uint8_t>> carriers_;  // frames that carry what is awaited
@@ -116,7 +118,7 @@ class Station {
   ParameterRequests parameters_;
   int last_result_ = kWaiting;
   Telemetry telemetry_;
-  std::string last_text_;
+  std::vector<std::string> texts_;
   OnFrame on_frame_;
   std::int64_t heard_ns_ = 0, heartbeat_ns_ = -1;
 };

@@ -36,8 +36,9 @@ struct Sandbox::Inner {
   std::size_t longest_text_B = 0;
   void* owner = nullptr;
   Error thrown{ErrorKind::internal, "", "an exception passed through a plan", ""};
-  fs::path root;       // include stays below it
-  std::string source;  // of the file
+  fs::path root;                   // include stays below it
+  std::string source;              // of the file
+  std::vector<std::string> below;  // files that were read, relative to the root
 
   static void* allocate(void* ud, void* block, std::size_t old_size, std::size_t size) {
     auto* self = static_cast<Inner*>(ud);
@@ -107,31 +108,50 @@ struct Sandbox::Inner {
     return lua_pushliteral(L, "");
   }
 
+  static Error not_read(const std::string& name, const char* why) {
+    return {ErrorKind::bad_input, "", "\"" + name + "\": " + why, ""};
+  }
+
+  Result<std::string> read_below(const std::string& name) {
+    std::error_code status;
+    const fs::path top = fs::weakly_canonical(root, status);
+    const fs::path path = status ? fs::path() : fs::weakly_canonical(root / name, status);
+    const fs::path inside = status ? fs::path() : path.lexically_relative(top);
+    if (fs::path(name).is_absolute() || inside.empty() || *inside.begin() == ".." ||
+        name.find('\0') != std::string::npos) {
+      return not_read(name, "only files below the plan's folder");
+    }
+    auto text = read_whole_file(path.string());
+    if (!text) return not_read(name, "cannot be read");
+    if (text.value().size() > kLongest_source_B) return not_read(name, "longer than 1 MiB");
+    if (std::find(below.begin(), below.end(), inside.string()) == below.end()) {
+      below.push_back(inside.string());
+    }
+    return text;
+  }
+
   static int include(lua_State* L) {
     std::size_t size = 0;
     const char* name = luaL_checklstring(L, 1, &size);
-    const fs::path wanted = std::string(name, size);
-    Inner& self = of(L);
-    std::error_code status;
-    const fs::path root = fs::weakly_canonical(self.root, status);
-    const fs::path path = status ? fs::path() : fs::weakly_canonical(self.root / wanted, status);
-    const fs::path inside = status ? fs::path() : path.lexically_relative(root);
-    if (wanted.is_absolute() || inside.empty() || *inside.begin() == ".." ||
-        std::strlen(name) != size) {
-      return luaL_error(L, "include \"%s\": only files below the plan's folder", name);
-    }
-    const auto text = read_whole_file(path.string());
-    if (!text) return luaL_error(L, "include \"%s\": cannot be read", name);
-    spend(L, static_cast<double>(text.value().size()));
-    if (text.value().size() > kLongest_source_B) {
-      return luaL_error(L, "include \"%s\": longer than 1 MiB", name);
-    }
-    if (luaL_loadbufferx(L, text.value().data(), text.value().size(),
-                         chunk_name(path.string()).c_str(), "t") != LUA_OK) {
-      return lua_error(L);
-    }
+    if (!load_below(L, {name, size})) return lua_error(L);
     lua_call(L, 0, 1);
     return 1;
+  }
+
+  // False: what is wrong lies on the stack.
+  static bool load_below(lua_State* L, const std::string& name) {
+    Inner& self = of(L);
+    const auto text = self.read_below(name);
+    if (!text) {
+      luaL_where(L, 1);
+      lua_pushfstring(L, "include %s", text.error().what.c_str());
+      lua_concat(L, 2);
+      return false;
+    }
+    spend(L, static_cast<double>(text.value().size()));
+    const std::string path = fs::weakly_canonical(self.root / name).string();
+    return luaL_loadbufferx(L, text.value().data(), text.value().size(), chunk_name(path).c_str(),
+                            "t") == LUA_OK;
   }
 
   static void open(lua_State* L) {
@@ -205,6 +225,14 @@ Result<Done> Sandbox::run_file(const std::string& path) {
   if (!text) return text.error();
   inner_->source = std::move(text.value());
   return run_text(inner_->source, path);
+}
+
+Result<std::string> Sandbox::read_below(const std::string& name) {
+  return inner_->read_below(name);
+}
+
+const std::vector<std::string>& Sandbox::files_below() const {
+  return inner_->below;
 }
 
 const std::string& Sandbox::source() const {

@@ -16,6 +16,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "base/result.hpp"
 
@@ -47,6 +48,11 @@ class Sandbox {
 
   // Loads and runs a chunk; what it returns (one value) is left on the stack.
   Result<Done> run_file(const std::string& path);
+  // A file below the folder of the file that runs, at most 1 MiB, as include takes it.
+  // Errors   bad_input without a place: not there, or not below
+  Result<std::string> read_below(const std::string& name);
+  // Those that were read so (include, read_below), as they were named, once each.
+  const std::vector<std::string>& files_below() const;
   const std::string& source() const;  // of that file; its own while it runs, too
   Result<Done> run_text(const std::string& text, const std::string& name);
 

@@ -1,5 +1,6 @@
 // t:command, t:gust, t:fault: what a plan does to the world and to the board.
 #include <algorithm>
+#include <cmath>
 
 #include "harness/plan/needs.hpp"
 #include "harness/plan/raise.hpp"
@@ -13,20 +14,30 @@ namespace {
 constexpr int kMost_motors =
     12;  // of a vehicle (plant/base/motor_count.hpp); it refuses what it lacks
 
-// What t:command and t:gust share: the table goes to the world, or the plan's line to the complaint.
-int pass_on(lua_State* L, Result<Done> (*to_world)(World&, const lua::Table&, std::int64_t)) {
-  const Stage& stage = Script::of(L).stage();
+int command(lua_State* L) {
+  Script& script = Script::of(L);
   const lua::Table table = check_table(L, 2);
-  if (auto done = to_world(stage.world, table, stage.now_ns); !done) raise(L, done.error());
+  if (auto done = script.give_command(table); !done) raise(L, done.error());
   return 0;
 }
 
-int command(lua_State* L) {
-  return pass_on(L, plan::command);
+// t:at("12.345 s", { radio = "fd09..." }): t:command, when the run's time has come; the plan does not wait.
+int at(lua_State* L) {
+  Script& script = Script::of(L);
+  const auto when = parse_quantity_as(check_text(L, 2, "a time"), Dimension::time, "");
+  if (!when) raise(L, when.error());
+  const std::int64_t t_ns = std::llround(when.value() * 1e9);
+  if (t_ns < script.stage().now_ns) raise(L, "t:at: that time has passed");
+  const lua::Table table = check_table(L, 3);
+  if (auto good = script.add_timed_command(t_ns, table); !good) raise(L, good.error());
+  return 0;
 }
 
 int gust(lua_State* L) {
-  return pass_on(L, disturb);
+  const Stage& stage = Script::of(L).stage();
+  const lua::Table table = check_table(L, 2);
+  if (auto done = disturb(stage.world, table, stage.now_ns); !done) raise(L, done.error());
+  return 0;
 }
 
 int named_bus(lua_State* L, const std::string& bus) {
@@ -142,7 +153,7 @@ int fault(lua_State* L) {
 
 void add_action_calls(lua_State* L) {
   const luaL_Reg calls[] = {
-      {"command", command}, {"gust", gust}, {"fault", fault}, {nullptr, nullptr}};
+      {"command", command}, {"at", at}, {"gust", gust}, {"fault", fault}, {nullptr, nullptr}};
   luaL_setfuncs(L, calls, 0);
 }
 

@@ -1,4 +1,5 @@
-// t:ask: a line to the firmware's terminal, and its answer.
+// t:ask: a line to the firmware's terminal, and its answer. t:told: words that the firmware says by itself.
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 
@@ -86,10 +87,67 @@ int ask(lua_State* L) {
   return lua_yieldk(L, 0, ref, answered);
 }
 
+// Arguments of t:told.
+constexpr int kTold_limit = 2, kTold_words = 3, kTold_place = 4, kTold_before = 5;
+
+// Whether one of the texts from the n-th on has these words.
+bool told_since(const std::vector<std::string>& texts, std::size_t n, const std::string& words) {
+  return std::any_of(
+      texts.begin() + static_cast<std::ptrdiff_t>(std::min(n, texts.size())), texts.end(),
+      [&](const std::string& text) { return text.find(words) != std::string::npos; });
+}
+
+int told_in_time(lua_State* L) {
+  const auto before = static_cast<std::size_t>(lua_tointeger(L, lua_upvalueindex(1)));
+  const char* words = lua_tostring(L, lua_upvalueindex(2));
+  lua_pushboolean(
+      L, static_cast<int>(told_since(Script::of(L).stage().world.told_texts(), before, words)));
+  return 1;
+}
+
+int after_telling(lua_State* L, int, lua_KContext ref) {
+  luaL_unref(L, LUA_REGISTRYINDEX, static_cast<int>(ref));
+  Script& self = Script::of(L);
+  self.look();
+  const auto& texts = self.stage().world.told_texts();
+  const std::string words = check_text(L, kTold_words, "words");
+  const auto before = static_cast<std::size_t>(lua_tointeger(L, kTold_before));
+  const bool came = told_since(texts, before, words);
+  const std::int64_t now_ns = self.stage().now_ns;
+  const double took_s =
+      came ? static_cast<double>(now_ns - lua_tointeger(L, kTold_before + 1)) * 1e-9 : std::nan("");
+  const std::string last = texts.size() > before ? "it said: " + texts.back() : "it said nothing";
+  self.judge({took_s, Dimension::time, "told '" + words + "'"}, How::at_most, std::nullopt,
+             check_limit(L, kTold_limit, Dimension::time), lua_tostring(L, kTold_place),
+             static_cast<double>(now_ns) * 1e-9, came ? "" : last);
+  lua_pushboolean(L, static_cast<int>(came));
+  return 1;
+}
+
+// t:told(limit, words) -> whether the firmware told a text with these words within the limit.
+int told(lua_State* L) {
+  Script& self = Script::of(L);
+  Stage& stage = self.stage();
+  const std::int64_t limit_ns = check_duration_ns(L, kTold_limit);
+  const std::string words = check_text(L, kTold_words, "words");
+  if (words.empty()) raise(L, "t:told: no words");
+  lua_settop(L, kTold_words);
+  const auto before = static_cast<lua_Integer>(stage.world.told_texts().size());
+  lua_pushstring(L, place_of(L).c_str());
+  lua_pushinteger(L, before);
+  lua_pushinteger(L, stage.now_ns);
+  lua_pushinteger(L, before);
+  lua_pushstring(L, words.c_str());
+  lua_pushcclosure(L, told_in_time, 2);
+  const int ref = luaL_ref(L, LUA_REGISTRYINDEX);
+  self.wait_until(stage.now_ns + limit_ns, ref);
+  return lua_yieldk(L, 0, ref, after_telling);
+}
+
 }  // namespace
 
 void add_text_calls(lua_State* L) {
-  const luaL_Reg calls[] = {{"ask", ask}, {nullptr, nullptr}};
+  const luaL_Reg calls[] = {{"ask", ask}, {"told", told}, {nullptr, nullptr}};
   luaL_setfuncs(L, calls, 0);
 }
 

@@ -116,13 +116,31 @@ int quantity(lua_State* L) {
   return 1;
 }
 
+// t:drawn("2 s", "5 s") -> "3.4715 s": even between the two, the next draw of the run's seed.
+int drawn(lua_State* L) {
+  Script& self = Script::of(L);
+  const std::string low_text = check_text(L, 2, "a quantity");
+  const auto low = parse_quantity(low_text, "");
+  if (!low) raise(L, low.error());
+  const auto high = parse_quantity_as(check_text(L, 3, "a quantity"), low.value().dimension, "");
+  if (!high) raise(L, high.error());
+  const double from = low.value().value_SI, to = high.value();
+  if (!(from <= to)) raise(L, "the lower end comes first");
+  const std::string unit = unit_symbol(low_text);
+  char text[64];
+  const double value = in_unit(from + self.chance().uniform() * (to - from), unit);
+  std::snprintf(text, sizeof text, "%.9g %s", value, unit.c_str());
+  lua_pushstring(L, text);
+  return 1;
+}
+
 }  // namespace
 
 void add_time_calls(lua_State* L) {
   const luaL_Reg calls[] = {
-      {"wait", wait},    {"wait_until", wait_until}, {"within", within}, {"step", step},
-      {"log", log},      {"value", value},           {"now", now},       {"quantity", quantity},
-      {nullptr, nullptr}};
+      {"wait", wait},   {"wait_until", wait_until}, {"within", within}, {"step", step},
+      {"log", log},     {"value", value},           {"now", now},       {"quantity", quantity},
+      {"drawn", drawn}, {nullptr, nullptr}};
   luaL_setfuncs(L, calls, 0);
 }
 

@@ -6,6 +6,8 @@
 #include <limits>
 #include <sstream>
 
+#include "harness/plan/waypoint_file.hpp"
+
 namespace whirl::plan {
 namespace {
 
@@ -131,7 +133,76 @@ SetParameter read_parameter(const Table& t) {
   return parameter;
 }
 
-void read_flying(const Table& t, std::vector<Command>& all) {
+// radio = "fd090000...": hexadecimal digits, two a byte.
+Radio read_radio(const Table& t) {
+  constexpr std::size_t kLongest_frame_B = 280;
+  const std::string digits = t.text("radio");
+  Radio radio;
+  for (std::size_t i = 0; i < digits.size(); i += 2) {
+    unsigned byte = 0;
+    const char* end = digits.data() + std::min(i + 2, digits.size());
+    const auto [read, error] = std::from_chars(digits.data() + i, end, byte, 16);
+    if (error != std::errc{} || read != digits.data() + i + 2) {
+      t.refuse("radio", "is not made of bytes of two hexadecimal digits");
+      return radio;
+    }
+    radio.bytes.push_back(static_cast<std::uint8_t>(byte));
+  }
+  if (radio.bytes.empty() || radio.bytes.size() > kLongest_frame_B) {
+    t.refuse("radio", "is not 1 to 280 bytes, the longest frame");
+  }
+  return radio;
+}
+
+// "square.txt" or { file = "square.txt", speed = "0.5 m/s", within = "10 cm" }
+Waypoints read_waypoints(const Table& t, const ReadFile& read_file) {
+  Waypoints all;
+  std::string name;
+  if (t.kind("waypoints") == lua::Kind::table) {
+    const Table w = t.table("waypoints");
+    name = w.text("file");
+    all.speed_mps = w.quantity_or("speed", Dimension::speed, all.speed_mps, above(0.0));
+    all.within_m = w.quantity_or("within", Dimension::length, all.within_m, above(0.0));
+  } else {
+    name = t.text("waypoints");
+  }
+  const auto text = read_file
+                        ? read_file(name)
+                        : Error{ErrorKind::bad_input, "", "'" + name + "' cannot be read", ""};
+  if (!text) {
+    t.refuse("waypoints", text.error().what);
+    return all;
+  }
+  auto points = waypoints_of(name, text.value());
+  if (!points) {
+    t.refuse("waypoints", points.error().place + ": " + points.error().what, points.error().cure);
+    return all;
+  }
+  all.points = std::move(points.value());
+  return all;
+}
+
+// { reaction = "250 ms", script = { { at = "0 s", north = "0.5 m/s" }, { at = "3 s", yaw_rate = "30 deg/s" } } }
+Teleoperation read_teleoperation(const Table& t) {
+  const lua::Range speed = between(-20.0, 20.0);
+  Teleoperation all;
+  all.reaction_s = t.quantity_or("reaction", Dimension::time, all.reaction_s, between(0.0, 2.0));
+  for (const Table& s : t.tables("script")) {
+    const double at_s = s.quantity("at", Dimension::time, at_least(0.0));
+    if (!all.script.empty() && !(at_s > all.script.back().at_s)) {
+      s.refuse("at", "is not later than the one before");
+    }
+    all.script.push_back({at_s, maybe(s, "north", Dimension::speed, speed),
+                          maybe(s, "east", Dimension::speed, speed),
+                          maybe(s, "height", Dimension::length, above(0.0)),
+                          maybe(s, "yaw_rate", Dimension::angular_rate, between(-10.0, 10.0))});
+  }
+  if (all.script.empty())
+    t.refuse("script", "is empty", "{ { at = \"0 s\", north = \"0.5 m/s\" } }");
+  return all;
+}
+
+void read_flying(const Table& t, const ReadFile& read_file, std::vector<Command>& all) {
   if (t.has("arm")) all.emplace_back(Arm{t.flag_or("arm", true)});
   if (t.has("takeoff")) {
     all.emplace_back(TakeOff{t.quantity("takeoff", Dimension::length, above(0.0))});
@@ -140,6 +211,9 @@ void read_flying(const Table& t, std::vector<Command>& all) {
   if (t.has("figure_8")) all.emplace_back(read_figure_8(t.table("figure_8")));
   if (t.has("velocity")) all.emplace_back(read_cruise(t.table("velocity")));
   if (t.has("attitude")) all.emplace_back(read_attitude(t));
+  if (t.has("waypoints")) all.emplace_back(read_waypoints(t, read_file));
+  if (t.has("teleoperation")) all.emplace_back(read_teleoperation(t.table("teleoperation")));
+  if (t.has("radio")) all.emplace_back(read_radio(t));
   if (t.has("land") && t.flag_or("land", true)) all.emplace_back(Land{});
   if (t.has("parameter")) all.emplace_back(read_parameter(t.table("parameter")));
   if (t.has("rc")) all.emplace_back(read_sticks(t.table("rc")));
@@ -234,9 +308,9 @@ bool is_one_line(const std::string& text) {
   return std::all_of(text.begin(), text.end(), [](char c) { return c >= ' ' && c <= '~'; });
 }
 
-Result<std::vector<Command>> read_commands(const Table& t) {
+Result<std::vector<Command>> read_commands(const Table& t, const ReadFile& read_file) {
   std::vector<Command> all;
-  read_flying(t, all);
+  read_flying(t, read_file, all);
   read_turning(t, all);
   if (auto good = t.finish(); !good) return good.error();
   return all;
@@ -248,8 +322,8 @@ Result<Disturbance> read_disturbance(const Table& t) {
   return all;
 }
 
-Result<Done> command(World& world, const Table& t, std::int64_t now_ns) {
-  const auto commands = read_commands(t);
+Result<Done> command(World& world, const Table& t, std::int64_t now_ns, const ReadFile& read_file) {
+  const auto commands = read_commands(t, read_file);
   if (!commands) return commands.error();
   for (const Command& one : commands.value()) {
     if (auto done = placed(t, world.command(one, now_ns)); !done) return done;

@@ -5,6 +5,7 @@
 #include <lua.hpp>
 
 #include "harness/plan/raise.hpp"
+#include "harness/plan/requests.hpp"
 #include "harness/plan/values.hpp"
 
 namespace whirl::plan {
@@ -48,6 +49,7 @@ void push_t(lua_State* L) {
   add_timing_calls(L);
   add_action_calls(L);
   add_text_calls(L);
+  add_log_calls(L);
   lua_setfield(L, -2, "__index");
   lua_pop(L, 1);
   push_handle(L, "t", 0);
@@ -135,6 +137,11 @@ Script::Script(PlanFile& file, const Plan& plan, Stage& stage) : file_(file), st
   if (!started) broken_ = started.error();
 }
 
+RandomStream& Script::chance() {
+  if (!chance_) chance_.emplace(stage_.report.seed, "plan.drawn");
+  return *chance_;
+}
+
 void Script::start(lua_State* L, const Plan& plan) {
   lua_pushlightuserdata(L, this);
   lua_setfield(L, LUA_REGISTRYINDEX, kOwnerKey);
@@ -178,7 +185,15 @@ void Script::look_at_guarded() {
 }
 
 Result<Script::State> Script::advance() {
+  auto state = resume();
+  if (!state) return state;
+  if (auto given = give_due_commands(); !given) return given.error();
+  return state;
+}
+
+Result<Script::State> Script::resume() {
   if (broken_) return *broken_;
+  if (done_) return State::done;
   look_at_guarded();
   lua_State* L = file_.sandbox().state();
   // Conditions run outside the coroutine, under one protected call per step.
@@ -195,7 +210,29 @@ Result<Script::State> Script::advance() {
       file_.sandbox().protect(0, [this](lua_State* l) { check_guarding_conditions(l); });
   if (status != LUA_YIELD && status != LUA_OK) return lua::Sandbox::raised(thread_, status);
   if (!begun) return begun.error();
-  return status == LUA_YIELD ? State::waiting : State::done;  // no call of ours yields a value
+  done_ = status == LUA_OK;
+  return done_ ? State::done : State::waiting;  // no call of ours yields a value
+}
+
+Result<Done> Script::give_command(const lua::Table& table) {
+  return command(stage_.world, table, stage_.now_ns,
+                 [this](const std::string& name) { return file_.sandbox().read_below(name); });
+}
+
+Result<Done> Script::add_timed_command(std::int64_t t_ns, const lua::Table& table) {
+  const auto commands = read_commands(
+      table, [this](const std::string& name) { return file_.sandbox().read_below(name); });
+  if (!commands) return commands.error();
+  for (const Command& one : commands.value()) timed_.emplace(t_ns, one);
+  return Done{};
+}
+
+Result<Done> Script::give_due_commands() {
+  while (!timed_.empty() && timed_.begin()->first <= stage_.now_ns) {
+    if (auto done = stage_.world.command(timed_.begin()->second, stage_.now_ns); !done) return done;
+    timed_.erase(timed_.begin());
+  }
+  return Done{};
 }
 
 void Script::check_conditions(lua_State* L) {

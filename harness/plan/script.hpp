@@ -15,12 +15,14 @@
 #include <string>
 #include <vector>
 
+#include "base/random.hpp"
 #include "harness/board/node.hpp"
 #include "harness/plan/plan_file.hpp"
 #include "harness/plan/signal_rows.hpp"
 #include "harness/target/offers.hpp"
 #include "harness/world/world.hpp"
 #include "results/event_log.hpp"
+#include "results/flight_log/ulog.hpp"
 #include "results/report.hpp"
 
 namespace whirl::plan {
@@ -38,6 +40,14 @@ struct Stage {
   results::Report& report;
   std::function<Result<Done>(const FaultSpec&)> inject;  // into the board
   std::int64_t now_ns = 0;
+  std::string folder = {};  // of the run, where its parts leave files; empty: none
+};
+
+// Of a card, as it was when the plan looked.
+struct NamedLog {
+  std::string name;
+  bool there = false;
+  results::ULog log = {};
 };
 
 struct Measurement {
@@ -134,16 +144,23 @@ class Script {
   void wait_until(std::int64_t t_ns, int condition_ref = -1);
   bool condition_met() const { return condition_met_; }
   void set_step(const std::string& name);
+  // Of t:command: reads the table, files that it names too, and gives it to the world.
+  Result<Done> give_command(const lua::Table& table);
+  // Of t:at: at the first step from t_ns on, after the plan's own turn.
+  Result<Done> add_timed_command(std::int64_t t_ns, const lua::Table& table);
   // Judged in finish() over [from, min(to, end)].
   using Window = std::function<void(Script&, std::int64_t from_ns, std::int64_t to_ns)>;
   void add_window(std::int64_t to_ns, Window window);
   std::size_t windows() const { return windows_.size(); }
+
+  RandomStream& chance();  // the plan's, by the run's seed
 
   std::vector<Measurement> measurements;  // all that Lua holds a table of
   std::vector<RecordInfo> records;
   std::vector<Guard> guards;
   std::vector<PendingExpectation> pending;
   std::vector<FaultSpec> faults;
+  std::vector<NamedLog> logs;
 
  private:
   struct OpenWindow {
@@ -151,6 +168,8 @@ class Script {
     Window judge;
   };
   void start(lua_State* L, const Plan& plan);
+  Result<State> resume();
+  Result<Done> give_due_commands();
   void check_conditions(lua_State* L);
   void check_guarding_conditions(lua_State* L);
   void look_at_guarded();
@@ -165,10 +184,12 @@ class Script {
   std::int64_t wake_ns_ = 0;
   int wake_condition_ = -1;
   bool condition_met_ = false;
-  bool started_ = false;
+  bool started_ = false, done_ = false;
   bool looked_ = false;
+  std::optional<RandomStream> chance_;
   std::string step_name_;
   std::vector<OpenWindow> windows_;
+  std::multimap<std::int64_t, Command> timed_;  // of one time in the order of their calls
   std::string unfilled_;  // of the window that is being judged: how; empty: it was watched whole
   std::set<std::string> names_;             // of the expectations
   std::map<std::string, int> last_number_;  // that made such a name unique
@@ -181,5 +202,6 @@ void add_expect_calls(lua_State* L);
 void add_timing_calls(lua_State* L);
 void add_action_calls(lua_State* L);
 void add_text_calls(lua_State* L);
+void add_log_calls(lua_State* L);
 
 }  // namespace whirl::plan

@@ -150,6 +150,32 @@ TEST(Verdict, ATimeThatLiesOnItsLimitMeetsIt) {
         "flight", 0, "PASS"}});
 }
 
+TEST(Plan, WhatIsDrawnLiesBetweenItsEndsAndComesFromTheSeed) {
+  const std::string text = plan_text(R"(t:wait(t:drawn("1 s", "2 s"))
+    t:expect(t:now(), "one"):within("1 s", "2 s")
+    t:wait(t:drawn("500 ms", "600 ms"))
+    t:expect(t:now(), "two"):at_least "1.5 s")");
+  const auto times = [&](const char* seed) {
+    const Ran ran = run_plan(text, {"--seed", seed});
+    EXPECT_EQ(ran.outcome.code, 0) << ran.outcome.err;
+    return std::pair{expectation(ran.run, "one")["measured"].get<double>(),
+                     expectation(ran.run, "two")["measured"].get<double>()};
+  };
+  const auto first = times("1");
+  EXPECT_EQ(times("1"), first);
+  EXPECT_NE(times("2").first, first.first);
+  EXPECT_NE(first.second - first.first - 0.5, first.first - 1.0);
+  const Ran turned = run_plan(plan_text(R"(t:drawn("2 s", "1 s"))"));
+  EXPECT_EQ(turned.outcome.code, 2);
+  EXPECT_NE(turned.outcome.err.find("the lower end comes first"), std::string::npos);
+}
+
+TEST(Plan, WordsThatNobodyTellsFailAndNoneAreRefused) {
+  check({{R"(t:told("200 ms", "battery low"))", "flight", 1, "told 'battery low'"},
+         {R"(t:told("200 ms", ""))", "flight", 2, "t:told: no words"},
+         {R"(t:told("200 ms"))", "flight", 2, "words"}});
+}
+
 TEST(Verdict, AThrownErrorEndsOnePlanAndTheNextStillRuns) {
   FakeRoot root;
   const std::string good = "t:wait \"1 s\" t:expect(t:value \"tilt\"):at_most \"1 rad\"";

@@ -10,6 +10,9 @@ const char* word(const Command& command) {
                           [](const request::Figure8&) { return "figure_8"; },
                           [](const request::Cruise&) { return "velocity"; },
                           [](const request::HoldAttitude&) { return "attitude"; },
+                          [](const request::Waypoints&) { return "waypoints"; },
+                          [](const request::Teleoperation&) { return "teleoperation"; },
+                          [](const request::Radio&) { return "radio"; },
                           [](const request::SetParameter&) { return "parameter"; },
                           [](const request::Sticks&) { return "rc"; },
                           [](const request::SetPoint& s) {

@@ -53,6 +53,27 @@ struct Sticks {  // of a radio-control transmitter; what is left out stays as it
   bool transmitter_on = true;
 };
 
+struct Radio {  // bytes as they stand, into the radio: what another ground station sends
+  std::vector<std::uint8_t> bytes;  // 1 to 280, the longest frame
+};
+struct Waypoint {
+  double north_m = 0.0, east_m = 0.0, down_m = 0.0, yaw_rad = 0.0;
+  double hold_s = 0.0;  // how long it stays there before the next one
+};
+struct Waypoints {               // one after the other: straight there, there, held, then the next
+  std::vector<Waypoint> points;  // one at least
+  double speed_mps = 0.5;        // of the commanded place
+  double within_m = 0.1;         // so near is there
+};
+struct Stick {  // of a teleoperation: where a person has been told to move it, from now on
+  double at_s = 0.0;
+  std::optional<double> north_mps, east_mps, height_m, yaw_rate_radps;  // left out: as before
+};
+struct Teleoperation {        // velocity over ground, height and heading, by a person's hand
+  std::vector<Stick> script;  // in order of time, one at least
+  double reaction_s = 0.25;   // from what is seen to the hand's first movement
+};
+
 enum class SetPointKind { duty, speed, thrust, power };
 struct SetPoint {
   SetPointKind kind = SetPointKind::duty;
@@ -105,9 +126,10 @@ struct Magnet {
 
 using Command =
     std::variant<request::Arm, request::TakeOff, request::GoTo, request::Land, request::Figure8,
-                 request::Cruise, request::HoldAttitude, request::SetParameter, request::Sticks,
-                 request::SetPoint, request::Stop, request::Silence, request::SetPointRate,
-                 request::RawTransfer, request::Pulses, request::Line, request::Brake>;
+                 request::Cruise, request::HoldAttitude, request::Waypoints, request::Teleoperation,
+                 request::Radio, request::SetParameter, request::Sticks, request::SetPoint,
+                 request::Stop, request::Silence, request::SetPointRate, request::RawTransfer,
+                 request::Pulses, request::Line, request::Brake>;
 using Disturbance = std::variant<request::Wind, request::Jet, request::Magnet>;
 
 const char* word(const Command& command);          // "takeoff"

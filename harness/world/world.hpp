@@ -44,6 +44,12 @@ class World {
     return nothing;
   }
 
+  // What the firmware told of itself in words, all so far: STATUSTEXT of a flight.
+  virtual const std::vector<std::string>& told_texts() const {
+    static const std::vector<std::string> nothing;
+    return nothing;
+  }
+
   // When the last bit of the latest command had passed the wire; negative: not known (yet).
   virtual std::int64_t command_on_wire_ns() const { return -1; }
 

@@ -41,6 +41,8 @@ constexpr KindName kNames[] = {
     {FaultKind::memory_write_error, "memory_write_error"},
     {FaultKind::memory_crc_error, "memory_crc_error"},
     {FaultKind::memory_busy, "memory_busy"},
+    {FaultKind::sensor_brown_out, "sensor_brown_out"},
+    {FaultKind::gnss_brown_out, "gnss_brown_out"},
 };
 
 bool matches(int wanted, int here) {

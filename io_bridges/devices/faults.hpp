@@ -51,6 +51,8 @@ enum class FaultKind : std::uint32_t {
   memory_write_error,  // writes fail and leave the old bytes
   memory_crc_error,    // a card's blocks have a wrong bit on the wire, both ways
   memory_busy,         // a write does not end before the fault does
+  sensor_brown_out,    // without supply while it lasts, then as after power-up
+  gnss_brown_out,      // at its start the receiver begins anew: its saved settings, a hot start
 };
 
 std::optional<FaultKind> fault_kind(std::string_view name);  // "i2c_nack"

@@ -64,11 +64,26 @@ Hmc5883l::Hmc5883l(EventQueue& queue, const Params& params, Sense sense, Wire* d
       write_begins_(queue, [this] { begin_write(); }),
       data_placed_(queue, [this] { place(); }),
       pulse_end_(queue, [this] { drive_drdy(true, queue_.now()); }),
+      supply_(
+          queue, faults, params.bus, params.device, [this](Nanoseconds now) { supply(false, now); },
+          [this](Nanoseconds now) { supply(true, now); }),
       analog_ready_ns_(queue.now() + kAnalog_start_ns),
       gain_(registers_.peek(CONF_B) >> 5) {
   if (drdy_ != nullptr) driver_ = drdy_->add_driver(params_.name);
   drive_drdy(true, queue_.now());
   set_mode(queue_.now());
+}
+
+void Hmc5883l::supply(bool on, Nanoseconds now) {
+  powered_ = on;
+  registers_.reset();
+  for (Event* event : {&write_begins_, &data_placed_, &pulse_end_}) event->cancel();
+  drive_drdy(true, now);  // pulled up
+  gain_ = registers_.peek(CONF_B) >> 5;
+  data_read_ = pointer_ = 0;
+  if (!on) return;
+  analog_ready_ns_ = now + kAnalog_start_ns;
+  set_mode(now);
 }
 
 // ---- Measuring
@@ -231,6 +246,7 @@ void Hmc5883l::advance_pointer() {
 // ---- I2C
 
 bool Hmc5883l::start(std::uint8_t /*address_7bit*/, bool read, Nanoseconds /*now*/) {
+  if (!powered_) return false;
   if (!read) written_ = 0;
   return true;
 }

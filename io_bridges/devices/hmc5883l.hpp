@@ -37,7 +37,7 @@
 //            the two together overflow, the axis reads -4096
 //   Faults   sensor_frozen (data stay, RDY and DRDY go on), sensor_offset (T), sensor_saturated (-4096
 //            of that axis), sensor_wrong_identity (0x0A reads value), sensor_late (each measurement
-//            comes value seconds later)
+//            comes value seconds later), sensor_brown_out
 #pragma once
 #include <array>
 #include <cstdint>
@@ -48,6 +48,7 @@
 #include "io_bridges/devices/bus.hpp"
 #include "io_bridges/devices/faults.hpp"
 #include "io_bridges/devices/register_file.hpp"
+#include "io_bridges/devices/supply_faults.hpp"
 #include "io_bridges/devices/wire.hpp"
 
 namespace whirl::io {
@@ -84,6 +85,7 @@ class Hmc5883l : public I2cTarget {
   void advance_pointer();
   void data_read(std::uint8_t address);
 
+  void supply(bool on, Nanoseconds now);
   void set_mode(Nanoseconds now);
   void measure_at(Nanoseconds due);
   void begin_write();
@@ -108,6 +110,8 @@ class Hmc5883l : public I2cTarget {
   RegisterFile registers_;
   RandomStream noise_;
   Event write_begins_, data_placed_, pulse_end_;
+  SupplyFaults supply_;
+  bool powered_ = true;
 
   Nanoseconds analog_ready_ns_;
   std::uint8_t gain_;           // of the next measurement; CONF_B may be one ahead

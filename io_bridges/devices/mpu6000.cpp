@@ -29,7 +29,10 @@ Mpu6000::Mpu6000(EventQueue& queue, const Params& params, Sense sense, Wire* int
       faults_(faults),
       registers_(register_map(), params.name, std::move(findings)),
       sample_due_(queue, [this] { take_sample(); }),
-      pulse_end_(queue, [this] { drive_interrupt(false, queue_.now()); }) {
+      pulse_end_(queue, [this] { drive_interrupt(false, queue_.now()); }),
+      supply_(
+          queue, faults, params.bus, params.device, [this](Nanoseconds now) { supply(false, now); },
+          [this](Nanoseconds now) { supply(true, now); }) {
   if (interrupt_ != nullptr) driver_ = interrupt_->add_driver(params_.name);
   reset(queue_.now());
 }
@@ -47,6 +50,11 @@ void Mpu6000::reset(Nanoseconds now) {
   pending_ = settled_ = false;
   fifo_.clear();
   drive_interrupt(false, now);
+}
+
+void Mpu6000::supply(bool on, Nanoseconds now) {
+  powered_ = on;
+  reset(now);
 }
 
 double Mpu6000::tick_ns() const {

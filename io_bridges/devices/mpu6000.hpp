@@ -12,6 +12,8 @@
 //            finding. SPI mode 0 or 3.
 //   Source   PS-MPU-6000A-00 rev 3.4, RM-MPU-6000A-00 rev 4.2; PRODUCT_ID from Betaflight's driver
 //   Unknown  how long the registers are dead in reset: no figure is published; a parameter
+//   Faults   sensor_frozen, sensor_offset and sensor_saturated (by axis), sensor_wrong_identity
+//            (WHO_AM_I reads value), sensor_brown_out
 //   Left out auxiliary I2C master, DMP, self test, motion interrupts, cycle mode, standby per axis,
 //            FSYNC, external clocks: stored, and a finding when asked for
 #pragma once
@@ -26,6 +28,7 @@
 #include "io_bridges/devices/dlpf.hpp"
 #include "io_bridges/devices/faults.hpp"
 #include "io_bridges/devices/register_file.hpp"
+#include "io_bridges/devices/supply_faults.hpp"
 #include "io_bridges/devices/wire.hpp"
 
 namespace whirl::io {
@@ -85,6 +88,7 @@ class Mpu6000 : public SpiTarget, public I2cTarget {
 
   // Power and clock.
   void reset(Nanoseconds now);
+  void supply(bool on, Nanoseconds now);
   void restart_clock(Nanoseconds now);
   double tick_ns() const;
   std::int64_t ticks_per_sample() const;
@@ -120,6 +124,8 @@ class Mpu6000 : public SpiTarget, public I2cTarget {
   FaultBook* faults_;
   RegisterFile registers_;
   Event sample_due_, pulse_end_;
+  SupplyFaults supply_;
+  bool powered_ = true;
 
   Nanoseconds ready_ns_ = 0;       // registers answer from here on
   Nanoseconds clock_ns_ = kNever;  // of tick 0; kNever: asleep

@@ -153,7 +153,7 @@ void Mpu6000::check_clock(std::uint32_t sck_Hz, Nanoseconds now) {
 }
 
 std::uint8_t Mpu6000::transfer(std::uint8_t mosi, std::uint32_t sck_Hz, int mode, Nanoseconds now) {
-  if (!selected_) return 0xFF;
+  if (!selected_ || !powered_) return 0xFF;
   if (mode != 0 && mode != 3) {
     registers_.report(now, "SPI mode " + std::to_string(mode) + ": the part needs 0 or 3");
     return 0xFF;
@@ -178,7 +178,7 @@ bool Mpu6000::answers(std::uint8_t address_7bit) const {
 }
 
 bool Mpu6000::start(std::uint8_t /*address_7bit*/, bool read, Nanoseconds now) {
-  if (now < ready_ns_) return false;
+  if (now < ready_ns_ || !powered_) return false;
   begin_access();
   if (!read) pointer_set_ = false;
   return true;

@@ -40,7 +40,10 @@ Ms5611::Ms5611(EventQueue& queue, const Params& params, Sense sense, FaultBook* 
       findings_(std::move(findings)),
       noise_(params.seed, params.name + ".noise"),
       garbage_(params.seed, params.name + ".garbage"),
-      conversion_(queue, [this] { converted(); }) {
+      conversion_(queue, [this] { converted(); }),
+      supply_(
+          queue, faults, params.bus, params.device, [this](Nanoseconds) { supply(false); },
+          [this](Nanoseconds) { supply(true); }) {
   WHIRL_CHECK(params.conversion_share >= 0.0 && params.conversion_share <= 1.0,
               params.conversion_share);
 }
@@ -66,6 +69,14 @@ void Ms5611::command(std::uint8_t byte, Nanoseconds now) {
     return convert(Quantity::temperature, byte >> 1 & 7, now);
   }
   report(now, "unknown command " + hex(byte));
+}
+
+void Ms5611::supply(bool on) {
+  powered_ = on;
+  conversion_.cancel();
+  answer_.clear();
+  waiting_ = false;
+  ready_ns_ = 0;
 }
 
 void Ms5611::reset(Nanoseconds now) {
@@ -160,6 +171,7 @@ std::uint8_t Ms5611::transfer(std::uint8_t mosi, std::uint32_t sck_Hz, int mode,
   if (sck_Hz > kFastest_sck_Hz) {
     report(now, "SCK of " + std::to_string(sck_Hz / 1000) + " kHz where 20 MHz is the limit");
   }
+  if (!powered_) return 0xFF;
   const std::uint8_t idle = busy(now) ? 0x00 : 0xFF;  // SDO is held low until it is done
   if (command_passed_) return answer_.empty() ? idle : next_byte();
   command_passed_ = true;
@@ -174,6 +186,7 @@ bool Ms5611::answers(std::uint8_t address_7bit) const {
 }
 
 bool Ms5611::start(std::uint8_t /*address_7bit*/, bool read, Nanoseconds /*now*/) {
+  if (!powered_) return false;
   if (!read) command_passed_ = false;
   return true;
 }

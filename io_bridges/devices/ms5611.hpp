@@ -33,7 +33,8 @@
 //
 //   Faults   sensor_frozen (each result repeats the last of its kind), sensor_offset (axis 0 Pa,
 //            1 K), sensor_saturated (that axis reads 0xFFFFFF), sensor_wrong_identity (PROM word 7,
-//            serial and CRC, reads value), sensor_late (conversions take value seconds longer)
+//            serial and CRC, reads value), sensor_late (conversions take value seconds longer),
+//            sensor_brown_out
 #pragma once
 #include <array>
 #include <cstdint>
@@ -46,6 +47,7 @@
 #include "io_bridges/devices/bus.hpp"
 #include "io_bridges/devices/faults.hpp"
 #include "io_bridges/devices/ms5611_calibration.hpp"
+#include "io_bridges/devices/supply_faults.hpp"
 
 namespace whirl::io {
 
@@ -85,6 +87,7 @@ class Ms5611 : public SpiTarget, public I2cTarget {
   enum class Quantity : std::uint8_t { pressure, temperature };
 
   void command(std::uint8_t byte, Nanoseconds now);
+  void supply(bool on);
   void reset(Nanoseconds now);
   void convert(Quantity quantity, std::size_t osr, Nanoseconds now);
   void converted();
@@ -105,6 +108,8 @@ class Ms5611 : public SpiTarget, public I2cTarget {
   OnceFindings findings_;
   RandomStream noise_, garbage_;
   Event conversion_;  // its end
+  SupplyFaults supply_;
+  bool powered_ = true;
 
   Nanoseconds ready_ns_ = 0;  // the PROM is reloaded
   Quantity quantity_{};

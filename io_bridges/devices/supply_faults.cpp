@@ -4,6 +4,12 @@
 #include <cmath>
 
 namespace whirl::io {
+namespace {
+
+constexpr FaultKind kKinds[] = {FaultKind::memory_removed, FaultKind::sensor_brown_out,
+                                FaultKind::memory_cut};
+
+}  // namespace
 
 SupplyFaults::SupplyFaults(EventQueue& queue, FaultBook* book, int bus, int device, Action off,
                            Action on)
@@ -13,7 +19,7 @@ SupplyFaults::SupplyFaults(EventQueue& queue, FaultBook* book, int bus, int devi
       device_(device),
       off_(std::move(off)),
       on_(std::move(on)),
-      cut_(queue, [this] { off_(queue_.now()); }) {
+      cut_(queue, [this] { lose(queue_.now()); }) {
   if (book_ != nullptr) book_->on_added([this](const Fault& added) { watch(added); });
 }
 
@@ -23,12 +29,12 @@ void SupplyFaults::at(Nanoseconds when, std::function<void()> action) {
 }
 
 void SupplyFaults::watch(const Fault& added) {
-  const bool removed = added.kind == FaultKind::memory_removed;
-  if (!removed && added.kind != FaultKind::memory_cut) return;
-  if (removed) {
-    at(added.start_ns, [this] {
+  const FaultKind kind = added.kind;
+  if (std::find(std::begin(kKinds), std::end(kKinds), kind) == std::end(kKinds)) return;
+  if (kind != FaultKind::memory_cut) {
+    at(added.start_ns, [this, kind] {
       const Nanoseconds now = queue_.now();
-      if (apply(book_, FaultKind::memory_removed, bus_, device_, now) != nullptr) off_(now);
+      if (apply(book_, kind, bus_, device_, now) != nullptr) lose(now);
     });
   }
   if (added.end_ns != kNever) at(added.end_ns, [this] { supply_may_return(); });
@@ -37,10 +43,17 @@ void SupplyFaults::watch(const Fault& added) {
 void SupplyFaults::supply_may_return() {
   const Nanoseconds now = queue_.now();
   cut_.cancel();
-  for (const FaultKind kind : {FaultKind::memory_removed, FaultKind::memory_cut}) {
+  for (const FaultKind kind : kKinds) {
     if (book_->find(kind, bus_, device_, now) != nullptr) return;
   }
+  if (!lost_) return;
+  lost_ = false;
   on_(now);
+}
+
+void SupplyFaults::lose(Nanoseconds now) {
+  lost_ = true;
+  off_(now);
 }
 
 void SupplyFaults::write_begins(Nanoseconds now, Nanoseconds write_ns) {

@@ -38,10 +38,21 @@ Ublox::Ublox(EventQueue& queue, const Params& params, Sense sense, FaultBook* fa
       started_ns_(queue.now()),
       fix_due_ns_(queue.now() + params.first_fix_ns),
       measure_(queue, [this] { measure(); }),
-      out_(queue, [this] { put_out(); }) {
+      out_(queue, [this] { put_out(); }),
+      brown_out_(queue, [this] { brown_out(); }) {
   WHIRL_CHECK(params.satellites >= kFewest_satellites && params.satellites <= 12,
               params.satellites);
   schedule();
+  if (faults_ == nullptr) return;
+  faults_->on_added([this](const Fault& added) {
+    if (added.kind == FaultKind::gnss_brown_out) brown_out_.at(added.start_ns);
+  });
+}
+
+void Ublox::brown_out() {
+  if (fault(FaultKind::gnss_brown_out, queue_.now()) == nullptr) return;
+  restart({.start = ublox::Start::hot, .reload = true});
+  settings_changed();
 }
 
 // ---- What comes in

@@ -139,6 +139,11 @@ constexpr Field kI2cReplyHead[] = {
     WHIRL_FIELD(I2cReplyHead, timed_out),
     WHIRL_FIELD(I2cReplyHead, stretched_ns),
 };
+constexpr Field kGnssSolution[] = {
+    WHIRL_FIELD(GnssSolution, latitude_rad), WHIRL_FIELD(GnssSolution, longitude_rad),
+    WHIRL_FIELD(GnssSolution, height_m),     WHIRL_FIELD(GnssSolution, p_WB_W_m),
+    WHIRL_FIELD(GnssSolution, p_error_W_m),  WHIRL_FIELD(GnssSolution, v_error_W_mps),
+};
 constexpr Field kShootThrough[] = {
     WHIRL_FIELD(ShootThrough, start_ns),
 };
@@ -179,6 +184,7 @@ constexpr KindInfo kKinds[] = {
     {Kind::i2c_reply, "i2c_reply", false, kI2cReplyHead, sizeof(I2cReplyHead), Tail::bytes},
     {Kind::shoot_through, "shoot_through", false, kShootThrough, sizeof(ShootThrough), Tail::none},
     {Kind::uart_delivered, "uart_delivered", false, {}, 0, Tail::bytes},
+    {Kind::gnss_solution, "gnss_solution", false, kGnssSolution, sizeof(GnssSolution), Tail::none},
     {Kind::pin_edge, "pin_edge", false, kPinEdge, sizeof(PinEdge), Tail::none},
     {Kind::signals, "signals", false, {}, 0, Tail::none},
 };

@@ -51,7 +51,8 @@ enum class Kind : std::uint8_t {
   i2c_reply = 47,      // I2cReplyHead + bytes read, port = bus number; t_ns: the STOP
   shoot_through = 48,  // ShootThrough, port = leg 0..2: both switches were on until t_ns
   uart_delivered = 49,  // a uart_frame has passed the line to the board; t_ns: the last stop bit
-  pin_edge = 50,        // PinEdge, port = number of the pin among those that the board file names
+  gnss_solution = 55,  // GnssSolution, port = device number: a GNSS receiver has computed its place
+  pin_edge = 50,       // PinEdge, port = number of the pin among those that the board file names
   // Only in a run's file of messages (results/messages).
   signals = 64,  // a row of the world's signals
 };
@@ -85,6 +86,13 @@ struct BodyMotion {  // of the body's reference point (centre of mass), at t_ns
   double rotor_bus_current_A[kMostMotors] = {};  // into each motor's bridge, mean of the last step
   double battery_current_A = 0.0;                // out of the pack, mean of the last step
   double rotor_unbalance_m[kMostMotors] = {};    // mass x arm over the vehicle's mass
+};
+
+struct GnssSolution {  // of the moment t_ns; what is sent of it comes later, rounded
+  double latitude_rad = 0.0, longitude_rad = 0.0, height_m = 0.0;  // over the ellipsoid
+  double p_WB_W_m[3] = {0, 0, 0};     // the same place in W, its error included
+  double p_error_W_m[3] = {0, 0, 0};  // of that, faults' offsets included
+  double v_error_W_mps[3] = {0, 0, 0};
 };
 
 struct EscState {

@@ -121,6 +121,16 @@ struct LocalPositionNed {
   }
 };
 
+struct GpsGlobalOrigin {  // degrees x 1e7; the flight image tells mm over the ellipsoid
+  static constexpr std::uint32_t kId = 49;
+  std::int32_t latitude = 0, longitude = 0, altitude = 0;
+  std::uint64_t time_usec = 0;
+  template <typename V>
+  void fields(V& v) {
+    v(latitude, longitude, altitude, time_usec);
+  }
+};
+
 struct CommandLong {
   static constexpr std::uint32_t kId = 76;
   std::array<float, 7> param{};  // param[0] is the definition's param1

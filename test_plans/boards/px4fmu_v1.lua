@@ -1,7 +1,7 @@
 -- PX4FMU v1, wired as its schematics say: STM32F405RG, 24 MHz crystal. The IMU's interrupt reaches PC3
 -- through the jumper JP6. The ESCs hang on the expansion header's I2C3, as in the thesis (PX4 used I2C1).
--- What the flight image has no driver for yet is left out: EEPROM (i2c2, 0x50), micro-SD (spi3, CS PA4), GPS
--- (usart6), battery voltage (PC0); L3GD20, BMA180 and buzzer are not modelled.
+-- What the flight image has no driver for yet is left out: EEPROM (i2c2, 0x50); L3GD20, BMA180 and buzzer are
+-- not modelled.
 return {
   board = "px4fmu_v1",
   mcu = "stm32f405rg",
@@ -10,15 +10,19 @@ return {
     { name = "imu", type = "mpu6000", bus = "spi1", cs = "PB0", int = "PC3" },
     { name = "baro", type = "ms5611", bus = "i2c2", address = 0x76 },
     { name = "mag", type = "hmc5883l", bus = "i2c2", address = 0x1E, drdy = "PB1", axes = { "+y", "-x", "+z" } },
+    { name = "battery", type = "battery_sense", bus = "PC0" },
+    { name = "card", type = "sd_card", bus = "spi3", cs = "PA4" },
     { name = "esc1", type = "esc_i2c", bus = "i2c3", address = 0x29, motor = 1 },
     { name = "esc2", type = "esc_i2c", bus = "i2c3", address = 0x2A, motor = 2 },
     { name = "esc3", type = "esc_i2c", bus = "i2c3", address = 0x2B, motor = 3 },
     { name = "esc4", type = "esc_i2c", bus = "i2c3", address = 0x2C, motor = 4 },
     { name = "radio", type = "mavlink_link", bus = "usart2", baud = "57600 baud",
       params = { uplink_loss = "5 %" } },
+    { name = "gps", type = "ublox_6", bus = "usart6" },
     { name = "rc", type = "cppm", bus = "PA10", params = { failsafe = "stop" } },
   },
   pins = { { name = "led_amber", pin = "PB14" }, { name = "led_blue", pin = "PB15" } },
-  watch = { "fw::imu_task", "fw::attitude_task", "fw::position_task", "fw::esc_task", "fw::sensor_task", "fw::telemetry_task",
+  watch = { "fw::imu_task", "fw::attitude_task", "fw::position_task", "fw::esc_task", "fw::sensor_task", "fw::gps_task", "fw::telemetry_task",
+            "fw::log_task",
             "fw::Estimator::step_explicit", "fw::Estimator::step_aided" },
 }

@@ -15,6 +15,7 @@ plan "estimation" {
     local r = t:record({ "attitude_error", "attitude_error_1", "attitude_error_2", "told_scale_1", "told_scale_2",
                          "air_velocity_error_x", "air_velocity_error_y", "baro_height_error", "baro_climb_error" }, "21 s")
     t:expect(r:rms "attitude_error", "attitude, flown by"):at_most "1 deg"
+    t:expect(r:rms "attitude_error_1", "attitude, filter 1"):at_most "1 deg"
     t:expect(r:rms "attitude_error_2", "attitude, filter 2"):at_most "1 deg"
     t:expect(r:min "told_scale_1", "least scale, filter 1"):at_least "0.97"
     t:expect(r:max "told_scale_1", "largest scale, filter 1"):at_most "1.03"

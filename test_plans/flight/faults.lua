@@ -90,6 +90,17 @@ flight_plan("an IMU that leaves the bus stops the motors", function(t)
   t:within("2 s", function(s) return s.told_armed == 0 end, "motors off")
 end)
 
+-- It sleeps until the image has set it up anew: longer than attitude can be held without it.
+flight_plan("an IMU whose supply fails for 5 ms stops the motors, and is set up anew", function(t)
+  hover(t)
+  t:fault { kind = "sensor_brown_out", device = "imu", duration = "5 ms" }
+  t:within("2 s", function(s) return s.told_armed == 0 end, "motors off")
+  t:within("3 s", function(s) return s.on_ground == 1 end, "down")
+  t:wait "4 s"
+  t:command { arm = true }
+  t:within("2 s", function(s) return s.told_armed == 1 end, "armed again")
+end)
+
 flight_plan("an IMU of another make is never armed", function(t)
   t:fault { kind = "sensor_wrong_identity", device = "imu", value = 0x70 }
   t:within("8 s", function(s) return s.heartbeat_age_s < 1.5 end, "the first heartbeat")

@@ -8,6 +8,8 @@ local faults = {
   { name = "the barometer reads 50 Pa more", kind = "sensor_offset", device = "baro", axis = "pressure", value = "50 Pa" },
   { name = "the barometer's conversions take 5 ms more", kind = "sensor_late", device = "baro", value = "5 ms" },
   { name = "the barometer is seen by nobody", kind = "i2c_silence", device = "baro" },
+  { name = "the barometer's supply fails", kind = "sensor_brown_out", device = "baro" },
+  { name = "the magnetometer's supply fails", kind = "sensor_brown_out", device = "mag" },
   { name = "the magnetometer answers nothing", kind = "i2c_nack", device = "mag" },
   { name = "the magnetometer's data stay", kind = "sensor_frozen", device = "mag" },
   { name = "the magnetometer reads 30 uT more", kind = "sensor_offset", device = "mag", axis = "field_x", value = "30 uT" },

@@ -304,5 +304,28 @@ TEST(Hmc5883lFault, TheBusHasItsOwn) {
   EXPECT_EQ(bench.get(0x02), 0x01);
 }
 
+TEST(Hmc5883l, ABrownOutLosesItsSettingsAndBeginsAsAtPowerUp) {
+  HmcBench bench;
+  bench.power_up();
+  bench.set(0x01, 0xE0);
+  bench.set(0x02, 0x00);
+  const Nanoseconds from = bench.now();
+  bench.faults.add({.number = 1,
+                    .kind = FaultKind::sensor_brown_out,
+                    .start_ns = from + 1'000'000,
+                    .end_ns = from + 2'000'000,
+                    .bus = 2,
+                    .address = 0x1E});
+  bench.run_us(1500);
+  EXPECT_FALSE(bench.write({0x02}));
+  bench.run_us(600);
+  EXPECT_EQ(bench.get(0x01), 0x20);
+  const std::uint64_t before = bench.part.samples();
+  bench.run_us(57'000);
+  EXPECT_EQ(bench.part.samples(), before + 1);  // the single one of power-up
+  EXPECT_EQ(bench.get(0x02), 0x03);
+  EXPECT_TRUE(bench.faults.pending().empty());
+}
+
 }  // namespace
 }  // namespace whirl::io

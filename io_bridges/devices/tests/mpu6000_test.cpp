@@ -368,5 +368,24 @@ TEST(Mpu6000, Px4sStartUpPassesAndItsFifoHoldsEachAccelerationEightTimes) {
   EXPECT_TRUE(bench.findings.empty()) << bench.findings.front();
 }
 
+TEST(Mpu6000, ABrownOutPutsItToSleepWithItsFirstSettings) {
+  MpuBench bench;
+  bench.wake();
+  EXPECT_EQ(bench.read(0x6B), 0x01);
+  const Nanoseconds from = bench.queue.now();
+  bench.faults.add({.number = 1,
+                    .kind = FaultKind::sensor_brown_out,
+                    .start_ns = from + 1'000'000,
+                    .end_ns = from + 5'000'000});
+  bench.run(2);
+  EXPECT_EQ(bench.read(0x75), 0xFF);  // nobody drives the line
+  bench.run(20);
+  bench.rises.clear();
+  EXPECT_EQ(bench.read(0x6B), 0x40);
+  EXPECT_EQ(bench.read(0x1A), 0x00);
+  bench.run(100);
+  EXPECT_TRUE(bench.rises.empty());
+}
+
 }  // namespace
 }  // namespace whirl::io

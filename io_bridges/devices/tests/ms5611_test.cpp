@@ -192,5 +192,24 @@ TEST(Ms5611, TheSameSeedGivesTheSameCounts) {
   EXPECT_NE(first, c.convert(0x40));
 }
 
+TEST(Ms5611, ABrownOutDropsTheConversionAndIsNotAcknowledgedMeanwhile) {
+  Ms5611Bench bench;
+  EXPECT_TRUE(bench.command(0x1E));
+  bench.run_us(3000);
+  EXPECT_TRUE(bench.command(0x48));
+  const Nanoseconds from = bench.now();
+  bench.faults.add({.number = 1,
+                    .kind = FaultKind::sensor_brown_out,
+                    .start_ns = from + 1'000'000,
+                    .end_ns = from + 3'000'000,
+                    .bus = 2,
+                    .address = 0x77});
+  bench.run_us(2000);
+  EXPECT_FALSE(bench.command(0x00));
+  bench.run_us(20'000);
+  EXPECT_EQ(bench.read(0x00, 3), (Ms5611Bench::Bytes{0, 0, 0}));  // nothing was converted
+  EXPECT_EQ(bench.sensed, 0);
+}
+
 }  // namespace
 }  // namespace whirl::io

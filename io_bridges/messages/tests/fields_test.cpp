@@ -37,6 +37,7 @@ bool has_to_be_listed(Kind kind) {
     case Kind::i2c_reply:
     case Kind::shoot_through:
     case Kind::uart_delivered:
+    case Kind::gnss_solution:
     case Kind::pin_edge:
     case Kind::signals:
       return true;

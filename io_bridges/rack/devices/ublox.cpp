@@ -47,6 +47,8 @@ class UbloxDevice final : public RackDevice {
         origin_{slot.quantity("params.latitude"), slot.quantity("params.longitude"),
                 slot.quantity("params.height")},
         geoid_m_(slot.quantity("params.geoid")),
+        happened_(slot.rack().happened()),
+        number_(slot.number()),
         part_(
             slot.rack().events(), part_of(slot, kModel),
             [this](const io::Ublox::Query& query) { return fix(query); }, &slot.rack().faults(),
@@ -78,13 +80,28 @@ class UbloxDevice final : public RackDevice {
     out.level_accuracy_m = std::sqrt(2.0) * seen.level_accuracy_m;  // of two axes
     out.down_accuracy_m = seen.down_accuracy_m;
     out.velocity_accuracy_mps = std::sqrt(2.0) * seen.velocity_accuracy_mps;
+    tell(query.now, out, p_m);
     return out;
+  }
+
+  void tell(Nanoseconds now, const io::GnssFix& fix, const std::array<double, 3>& p_m) {
+    io::GnssSolution told{.latitude_rad = fix.place.latitude_rad,
+                          .longitude_rad = fix.place.longitude_rad,
+                          .height_m = fix.place.height_m};
+    for (unsigned i = 0; i < 3; ++i) {
+      told.p_WB_W_m[i] = p_m[i];
+      told.p_error_W_m[i] = p_m[i] - truth_.p_WB_W_m[i];
+      told.v_error_W_mps[i] = fix.v_NED_mps[i] - truth_.v_WB_W_mps[i];
+    }
+    happened_.add(io::Kind::gnss_solution, number_, now, told);
   }
 
   plant::Gps gps_;
   plant::Truth truth_;
   Geodetic origin_;
   double geoid_m_;
+  io::Batch& happened_;
+  std::uint16_t number_;
   io::Ublox part_;
 };
 

@@ -1,0 +1,136 @@
+#include "firmware/config/vehicle.hpp"
+#include "firmware/flight/flight.hpp"
+
+namespace fw {
+namespace {
+
+constexpr float kAttitudeStep_s = 0.005f, kPositionStep_s = 0.025f;
+constexpr float kLiftTime_s = 0.8f, kAirborne_m = 0.06f;
+constexpr float kTargetDelay_s = 0.014f;  // 65 bytes at 57600 baud, and half a poll
+constexpr std::uint16_t kIdle = 1;        // the lowest set-point that turns a rotor
+
+}  // namespace
+
+void Flight::position_step() {
+  if (!in_air()) return;
+  if (state_ != FlightState::flying) detect_touchdown();
+  if (!in_air()) return;
+  if (estimator_.position_known()) return follow_reference();
+  if (aim_ == Aim::attitude && state_ == FlightState::flying) return;
+  wanted_ = position_control_.sink(descent_mps(), sinking_mps(), estimator_.q_WB(),
+                                   reference_.yaw_rad(), lift_);
+  // If the capture comes back, go on from where it finds us.
+  reference_.start(estimator_.p_WB_W_m(), reference_.yaw_rad());
+}
+
+void Flight::follow_reference() {
+  const Vector3& p_W = estimator_.p_WB_W_m();
+  if (state_ == FlightState::flying) {
+    lift_ = std::min(1.0f, lift_ + kPositionStep_s / kLiftTime_s);
+    airborne_ = airborne_ || p_W.z() < ground_W_m_.z() - kAirborne_m;
+    if (lift_ >= 1.0f) advance_reference();
+    if (aim_ == Aim::attitude) return;
+  } else {
+    descend();
+  }
+  const bool integrate = lift_ >= 1.0f && contact_s_ < 0.1f;
+  const Vector3& v_W = estimator_.v_WB_W_mps();
+  if (aim_ == Aim::velocity && state_ == FlightState::flying && lift_ >= 1.0f) {
+    const float f =
+        position_control_.height_force(p_W, v_W, reference_, lift_, kPositionStep_s, integrate);
+    wanted_ = velocity_control_.step(v_W, estimator_.q_WB(), reference_, f, kPositionStep_s);
+    return;
+  }
+  wanted_ = position_control_.step(p_W, estimator_.v_WB_W_mps(), estimator_.q_WB(), reference_,
+                                   lift_, kPositionStep_s, integrate);
+}
+
+// Where it stands over; beyond the fence, back inside on the way.
+void Flight::descend() {
+  const Fence limits = fence();
+  const Vector3& from = reference_.p_W_m();
+  reference_.descend(limits.contains(from) ? from : limits.inside(from), descent_mps(),
+                     kPositionStep_s);
+}
+
+void Flight::stay() {
+  aim_ = Aim::place;
+  target_W_m_ = reference_.p_W_m();
+  target_yaw_rad_ = reference_.yaw_rad();
+}
+
+void Flight::advance_reference() {
+  switch (aim_) {
+    case Aim::place:
+      return reference_.step(fence().inside(target_W_m_), target_yaw_rad_, kPositionStep_s);
+    case Aim::trajectory:
+      if (target_age_ms_ > kTargetFresh_ms) {  // nobody leads any more
+        stay();
+        return reference_.step(target_W_m_, target_yaw_rad_, kPositionStep_s);
+      }
+      return reference_.follow(point_, jerk_W_mps3_,
+                               kTargetDelay_s + 1e-3f * static_cast<float>(target_age_ms_),
+                               kPositionStep_s);
+    case Aim::attitude:
+      reference_.start(estimator_.p_WB_W_m(), attitude_reference_.yaw_rad());
+      if (target_age_ms_ > kTargetFresh_ms) stay();
+      return;
+    case Aim::velocity:
+      return reference_.cruise(
+          estimator_.p_WB_W_m(),
+          fence().stoppable(target_v_W_mps_, estimator_.p_WB_W_m(), config::kReferenceGain_ps),
+          fence().inside(target_W_m_).z(), target_yaw_rad_, kPositionStep_s);
+  }
+}
+
+// Asked to sink and not sinking: that is the ground. The rotors let go by and by; if it was not the
+// ground, the vehicle sinks, and they take up again.
+void Flight::detect_touchdown() {
+  constexpr float kEstablished_s = 1.2f, kStanding_mps = 0.12f, kSure_s = 0.25f;
+  constexpr float kLetGo_s = 0.5f, kTakeUp_s = 0.3f;
+  const bool standing = std::abs(sinking_mps()) < kStanding_mps;
+  const bool counts = standing && state_s_ > kEstablished_s && descent_mps() > 0.0f;
+  contact_s_ = counts ? contact_s_ + kPositionStep_s : 0.0f;
+  if (contact_s_ > kSure_s) {
+    lift_ -= kPositionStep_s / kLetGo_s;
+  } else {
+    lift_ = std::min(1.0f, lift_ + kPositionStep_s / kTakeUp_s);
+  }
+  const bool blind_too_long = state_ == FlightState::failsafe && state_s_ > blind_longest_s_;
+  if (lift_ < 0.2f || blind_too_long) {
+    const bool failed = state_ == FlightState::failsafe;
+    // Who flies by hand stops the motors by hand.
+    const bool by_hand = steered_by_hand() && pilot_.link() == PilotLink::ok;
+    if (by_hand && !failed) return enter(FlightState::armed, Reason::landed);
+    stop_motors(failed ? reason_ : Reason::landed, failed);
+  }
+}
+
+std::array<std::uint16_t, 4> Flight::send_setpoints() {
+  rotors_.sent(setpoints_N_);
+  return setpoints_;
+}
+
+void Flight::follow_attitude() {
+  if (aim_ != Aim::attitude || state_ != FlightState::flying) return;
+  attitude_reference_.step(attitude_);
+  attitude_reference_.put(wanted_);
+  wanted_.thrust_N = collective_N(thrust_share_, position_control_.hover_thrust_N());
+  wanted_.v_B_mps = wanted_.q_WB.conjugate() * estimator_.v_WB_W_mps();
+}
+
+void Flight::control() {
+  follow_attitude();
+  motors_.ask(state_ != FlightState::disarmed);
+  if (!in_air()) return setpoints_.fill(state_ == FlightState::armed ? kIdle : 0);
+  const bool trim = airborne_ && contact_s_ < 0.1f;
+  const Vector3 tau_B = attitude_control_.torque(estimator_.q_WB(), estimator_.w_WB_B_radps(),
+                                                 wanted_, kAttitudeStep_s, trim);
+  // Until the next position step the wanted attitude goes on turning.
+  wanted_.q_WB = turned(wanted_.q_WB, wanted_.w_B_radps, kAttitudeStep_s);
+  rotors_.step(kAttitudeStep_s);
+  setpoints_N_ = rotors_.setpoints_for(mix(wanted_.thrust_N, tau_B, rotors_.reach()));
+  for (unsigned i = 0; i < 4; ++i) setpoints_[i] = setpoint_for(setpoints_N_[i]);
+}
+
+}  // namespace fw

@@ -1,0 +1,117 @@
+#include "firmware/config/vehicle.hpp"
+#include "firmware/flight/flight.hpp"
+
+namespace fw {
+namespace {
+
+constexpr float kTipped_cos = 0.5f;       // 60 degrees
+constexpr float kTiltToArm_cos = 0.985f;  // 10 degrees
+
+bool between(float low, float value, float high) {
+  return value >= low && value <= high;
+}
+
+}  // namespace
+
+Conditions Flight::conditions() const {
+  Conditions now;
+  now.set(Condition::imu_not_running, imu_missing_ms_ > kImuLost_ms);
+  now.set(Condition::imu_frozen, imu_frozen_);
+  now.set(Condition::tipped_over, tilt_cosine(estimator_.q_WB()) < kTipped_cos);
+  now.set(Condition::motor_out, motors_.out());
+  now.set(Condition::esc_silent, motors_.silent());
+  now.set(Condition::no_position, !estimator_.position_known());
+  now.set(Condition::outside_fence,
+          estimator_.position_known() && !fence().contains(estimator_.p_WB_W_m()));
+  now.set(Condition::battery_empty, battery_.rest_V() < parameters_.get(Parameter::bat_empty_V));
+  now.set(Condition::battery_low, battery_.rest_V() < parameters_.get(Parameter::bat_low_V));
+  now.set(Condition::no_link, link_age_ms_ > kLinkLost_ms && link_age_ms_ < kNever);
+  now.set(Condition::rc_lost, steered_by_hand() && pilot_.link() == PilotLink::lost);
+  now.set(Condition::rc_nonsense, steered_by_hand() && pilot_.link() == PilotLink::nonsense);
+  now.set(Condition::no_setpoints, target_age_ms_ > kTargetsLost_ms && target_age_ms_ < kNever);
+  now.set(Condition::no_pressure, !estimator_.pressure_fresh());
+  now.set(Condition::no_field, !estimator_.field_fresh());
+  return now;
+}
+
+// The capture system's room, or, by GPS alone, about where it began.
+Fence Flight::fence() const {
+  if (!estimator_.fix_fresh()) {
+    return {.top_m = parameters_.get(Parameter::fence_height_m),
+            .radius_m = parameters_.get(Parameter::fence_radius_m)};
+  }
+  return {parameters_.get(Parameter::fence_north_m), parameters_.get(Parameter::fence_east_m),
+          parameters_.get(Parameter::fence_top_m)};
+}
+
+Reason Flight::first_esc_problem() const {
+  for (unsigned i = 0; i < 4; ++i) {
+    const std::uint8_t flags = motors_.status(i).flags;
+    if (motors_.silent(i)) return Reason::esc_silent;
+    if ((flags & (esc::flag_over_current | esc::flag_under_voltage | esc::flag_desync)) != 0) {
+      return Reason::esc_fault;
+    }
+    if ((flags & esc::flag_armed) == 0) return Reason::esc_not_armed;
+  }
+  return Reason::none;
+}
+
+// There, and telling what can be on the ground somewhere on earth.
+Reason Flight::first_sensor_problem() const {
+  constexpr float kLowest_Pa = 50e3f, kHighest_Pa = 110e3f;     // 5500 m; the Dead Sea
+  constexpr float kWeakest_uT = 15.0f, kStrongest_uT = 100.0f;  // the earth's 22 to 67, and iron
+  constexpr float kRest_mps2 = 1.5f;
+  if (!estimator_.pressure_fresh() || !between(kLowest_Pa, estimator_.pressure_Pa(), kHighest_Pa)) {
+    return Reason::no_pressure;
+  }
+  if (!estimator_.field_fresh() ||
+      !between(kWeakest_uT, estimator_.field_B_uT().norm(), kStrongest_uT)) {
+    return Reason::no_field;
+  }
+  const float a_mps2 = estimator_.imu().a_B_mps2.norm();
+  if (!between(config::kGravity_mps2 - kRest_mps2, a_mps2, config::kGravity_mps2 + kRest_mps2)) {
+    return Reason::imu_implausible;
+  }
+  return Reason::none;
+}
+
+Reason Flight::ready_to_arm() const {
+  if (imu_missing_ms_ > kImuLost_ms) return Reason::imu_not_running;
+  if (imu_frozen_) return Reason::imu_frozen;
+  if (!estimator_.position_good()) return Reason::no_position;
+  if (!estimator_.calibrated()) return Reason::imu_not_calibrated;
+  if (!estimator_.position_settled()) return Reason::estimate_not_converged;
+  if (const Reason problem = first_sensor_problem(); problem != Reason::none) return problem;
+  if (!estimator_.converged()) return Reason::estimate_not_converged;
+  if (tilt_cosine(estimator_.q_WB()) < kTiltToArm_cos) return Reason::tilted;
+  if (!fence().contains(estimator_.p_WB_W_m())) return Reason::outside_fence;
+  if (!battery_.connected()) return Reason::no_battery;
+  if (battery_.rest_V() < parameters_.get(Parameter::bat_low_V)) return Reason::battery_low;
+  return first_esc_problem();
+}
+
+float Flight::sinking_mps() const {
+  if (!estimator_.position_known() && estimator_.pressure_fresh()) return estimator_.baro_vz_mps();
+  return estimator_.v_WB_W_mps().z();
+}
+
+float Flight::height_m() const {
+  if (estimator_.position_known()) return ground_W_m_.z() - estimator_.p_WB_W_m().z();
+  return estimator_.pressure_fresh() ? ground_W_m_.z() - estimator_.baro_z_m() : 0.0f;
+}
+
+// Faster far up, so that what is left of the battery lasts.
+float Flight::descent_mps() const {
+  constexpr float kHigh_m = 2.5f, kFaster_ps = 0.25f, kFastest_mps = 1.2f;
+  constexpr float kLongestReturn_s = 15.0f;
+  const bool outside = estimator_.position_known() && !fence().contains(estimator_.p_WB_W_m());
+  if (outside && state_s_ < kLongestReturn_s) return 0.0f;
+  const float height = height_m();
+  if (height < config::kTouchdownHeight_m && estimator_.position_known()) {
+    return config::kTouchdown_mps;
+  }
+  return std::clamp(config::kDescent_mps + kFaster_ps * (height - kHigh_m), config::kDescent_mps,
+                    kFastest_mps);
+}
+
+}  // namespace fw

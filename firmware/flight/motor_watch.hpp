@@ -1,0 +1,57 @@
+// Whether a rotor that is asked to turn does: by its ESC's own word, 20 times a second. With one of four
+// gone neither attitude nor place can be held.
+#pragma once
+#include <array>
+#include <cstdint>
+
+#include "firmware/esc/core/protocol.hpp"
+
+namespace fw {
+
+class MotorWatch {
+ public:
+  void tick() {
+    for (std::uint32_t& silent_ms : silent_ms_) ++silent_ms;
+    ++asked_ms_;
+  }
+  void on_answered(unsigned motor) { silent_ms_[motor] = 0; }
+  void on_status(unsigned motor, const esc::protocol::Status& status) { status_[motor] = status; }
+  // Whether rotors are asked to turn, from the flight logic at each of its steps.
+  void ask(bool turning) {
+    if (!turning) asked_ms_ = 0;
+  }
+
+  const esc::protocol::Status& status(unsigned motor) const { return status_[motor]; }
+  bool silent() const {  // one of them, for longer than it goes on by itself
+    for (const std::uint32_t silent_ms : silent_ms_) {
+      if (silent_ms > kSilent_ms) return true;
+    }
+    return false;
+  }
+  bool silent(unsigned motor) const { return silent_ms_[motor] > kSilent_ms; }
+  // One stands or has disarmed though it was asked for long enough to start.
+  bool out() const {
+    constexpr std::uint8_t both = esc::flag_armed | esc::flag_turning;
+    if (asked_ms_ < kStart_ms) return false;
+    for (const esc::protocol::Status& status : status_) {
+      if ((status.flags & both) != both) return true;
+    }
+    return false;
+  }
+  bool any_turning() const {
+    for (const esc::protocol::Status& status : status_) {
+      if ((status.flags & esc::flag_turning) != 0) return true;
+    }
+    return false;
+  }
+
+ private:
+  static constexpr std::uint32_t kNever = 1'000'000;
+  static constexpr std::uint32_t kSilent_ms = 500, kStart_ms = 1500;
+
+  std::array<esc::protocol::Status, 4> status_{};
+  std::array<std::uint32_t, 4> silent_ms_{kNever, kNever, kNever, kNever};
+  std::uint32_t asked_ms_ = 0;
+};
+
+}  // namespace fw

@@ -1,0 +1,155 @@
+-- What the flight image does about each thing that can go wrong, at a moment that the seed draws: the table
+-- kRules of firmware/flight/supervisor.hpp, flown. Each ends on the ground, within the fence, motors off.
+-- told_state: 0 disarmed, 2 flying, 3 landing, 4 failsafe landing.
+include "include/hover.lua"
+
+local function fail_safe(name, more, run)
+  plan(name) {
+    image = "flight", board = "px4fmu_v1", vehicle = "hp_quad",
+    tags = { "flight", "fail_safe" }, timeout = "90 s",
+    room = more.room, fence = more.room and { size = { "5 m", "4 m", "3 m" } },
+    run = function(t)
+      hover(t)
+      t:wait(t:drawn("0 s", "4 s"))
+      run(t)
+      t:within("30 s", function(s) return s.told_armed == 0 and s.on_ground == 1 end, "on the ground, disarmed")
+      t:wait "1 s"
+      for motor = 1, 4 do t:expect(t:value("speed_" .. motor), "speed of rotor " .. motor):at_most "5 rad/s" end
+      t:expect(t:value "inside_fence", "within the fence"):equal(1)
+      if more.upright ~= false then t:expect(t:value "tilt", "tilt on the ground"):at_most "5 deg" end
+    end,
+  }
+end
+
+-- It comes down under control.
+local function lands(t, words, state, tilted)
+  local sinking = t:always("climb")
+  sinking:at_least "-2 m/s"
+  local tilt = t:always("tilt")
+  tilt:at_most(tilted or "20 deg")
+  t:told("6 s", words)
+  t:within("1.1 s", function(s) return s.told_state == state end, "told_state " .. state)
+  t:within("30 s", function(s) return s.on_ground == 1 end, "touches the ground")
+  sinking:stop()
+  tilt:stop()
+end
+
+-- Nothing can be controlled: no rotor is driven any more 100 ms after the fault.
+local function cuts(t, words, driven)
+  t:within("100 ms", function(s)
+    for motor = 1, 4 do
+      if motor ~= driven and s["winding_current_" .. motor .. "_A"] > 0.5 then return false end
+    end
+    return true
+  end, "no rotor is driven")
+  t:told("3 s", words)
+end
+
+fail_safe("the capture is lost", {}, function(t)
+  t:fault { kind = "capture_lost" }
+  lands(t, "no position", 4)
+end)
+
+fail_safe("the capture and the barometer are lost", {}, function(t)
+  t:fault { kind = "capture_lost" }
+  t:fault { kind = "i2c_nack", device = "baro" }
+  lands(t, "no position", 4)
+end)
+
+fail_safe("the capture comes back on the way down", {}, function(t)
+  t:fault { kind = "capture_lost", duration = "1.5 s" }
+  lands(t, "no position", 4)
+end)
+
+fail_safe("the radio falls silent", {}, function(t)
+  t:fault { kind = "uart_silence", device = "radio" }
+  lands(t, "no position", 4)
+end)
+
+fail_safe("the battery is low", {}, function(t)
+  t:fault { kind = "supply_dip", value = "2.6 V" }
+  lands(t, "battery low", 3)
+end)
+
+fail_safe("the battery is empty", {}, function(t)
+  t:fault { kind = "supply_dip", value = "3.4 V" }
+  lands(t, "battery empty", 4)
+end)
+
+-- The cameras see beyond the fence.
+fail_safe("a gust blows it over the fence", { room = { size = { "10 m", "4 m", "3 m" } } }, function(t)
+  t:command { position = { north = "2.1 m", height = "1.1 m" } }
+  t:wait "5 s"
+  t:gust { north = "7 m/s", duration = "1.2 s" }
+  lands(t, "outside the fence", 4, "30 deg")
+end)
+
+fail_safe("the IMU freezes", { upright = false }, function(t)
+  t:fault { kind = "sensor_frozen", device = "imu" }
+  cuts(t, "IMU samples are frozen")
+end)
+
+fail_safe("the IMU leaves its bus", { upright = false }, function(t)
+  t:fault { kind = "spi_silent", device = "imu" }
+  cuts(t, "IMU gives no samples")
+end)
+
+for motor = 1, 4 do
+  fail_safe("motor " .. motor .. " stops", { upright = false }, function(t)
+    t:fault { kind = "esc_stopped", motor = motor }
+    cuts(t, "a motor has stopped", motor)
+  end)
+end
+
+-- It turns on for as long as its ESC does without set-points.
+fail_safe("an ESC falls silent", { upright = false }, function(t)
+  t:fault { kind = "i2c_nack", device = "esc3" }
+  t:wait "500 ms"
+  cuts(t, "an ESC is silent", 3)
+end)
+
+-- What takes nothing away is told, and flown on with.
+for _, f in ipairs { { "baro", "barometer silent" }, { "mag", "magnetometer silent" } } do
+  plan("the " .. f[1] .. " falls silent and is told of") {
+    image = "flight", board = "px4fmu_v1", vehicle = "hp_quad",
+    tags = { "flight", "fail_safe" }, timeout = "60 s",
+    run = function(t)
+      hover(t)
+      t:wait(t:drawn("0 s", "4 s"))
+      t:fault { kind = "i2c_nack", device = f[1] }
+      t:told("3 s", f[2])
+      local r = t:record({ "height", "offset" }, "4 s")
+      t:expect(r:rms_error("height", "1.1 m"), "height RMS error"):at_most "5 cm"
+      t:expect(r:rms "offset", "sideways RMS error"):at_most "10 cm"
+      t:expect(t:value "told_state", "still flying"):equal(2)
+    end,
+  }
+end
+
+-- What it does not arm with, and says why.
+local refusals = {
+  { "no capture", { kind = "capture_lost" }, "no position" },
+  { "no barometer", { kind = "i2c_nack", device = "baro" }, "barometer silent" },
+  { "no magnetometer", { kind = "i2c_nack", device = "mag" }, "magnetometer silent" },
+  { "an iron floor", nil, "magnetometer silent or out of range", magnet = true },
+  { "a tired battery", { kind = "supply_dip", value = "2.5 V" }, "battery low" },
+  { "an ESC that is off", { kind = "i2c_nack", device = "esc2" }, "an ESC is silent" },
+}
+for _, r in ipairs(refusals) do
+  plan("does not arm with " .. r[1]) {
+    image = "flight", board = "px4fmu_v1", vehicle = "hp_quad",
+    tags = { "flight", "fail_safe" }, timeout = "30 s",
+    run = function(t)
+      if r[2] then t:fault(r[2]) end
+      if r.magnet then t:gust { magnet = { field = { north = "150 uT" } } } end
+      t:within("8 s", function(s) return s.heartbeat_age_s < 1.5 end, "the first heartbeat")
+      t:wait "6 s"
+      local armed = t:always("told_armed")
+      armed:at_most(0)
+      t:command { arm = true }
+      t:told("2 s", r[3])
+      t:within("2 s", function(s) return s.command_result == 1 end, "refused for the time being")
+      armed:stop()
+    end,
+  }
+end
