@@ -9,8 +9,8 @@ constexpr float kStep_s = 0.005f;
 // What is left of the ESC's lag once the rates of the thrusts are known (rotor_response.hpp).
 constexpr float kEscLag_s = 0.004f;
 // The rotors change by 1 N upward and 0.3 N downward in 20 ms about hover, which is 1300 rad/s^3; more
-// while a fast one slows down. Means of 95, 50 and 45 ms make of a step four pieces of equal jerk, and
-// of 20 degrees 1600 rad/s^3, with its 10 to 90 % in 89 ms; what is larger runs at the limit of speed.
+// while a fast one slows down. Means of 95, 50 and 50 ms make of a step four pieces of equal jerk, and
+// of 20 degrees 1500 rad/s^3, with its 10 to 90 % in 91 ms; what is larger runs at the limit of speed.
 constexpr float kSpeedLimit_radps = 3.8f;
 // Torque of yaw is small: 0.09 N m about hover, 3.9 rad/s^2.
 constexpr float kYawAcceleration_radps2 = 2.5f;
