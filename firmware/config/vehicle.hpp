@@ -44,10 +44,11 @@ inline constexpr float kThrustMin_N = esc::range_of(esc::Mode::FW_ESC_MODE).min;
 inline constexpr float kThrustMax_N = esc::range_of(esc::Mode::FW_ESC_MODE).max;
 inline constexpr float kThrustUsable_N = 6.0f;  // per rotor, with the battery sagging
 
-// Attitude: torque = -Kw (rate + Kq angle). Crossover 14 rad/s: the ESC (25 ms), half a set-point
-// period (10 ms), the IMU's filter (2 ms) and the averaging (3 ms) leave some 33 degrees there.
-inline constexpr float kRateGain_Nms[3] = {0.170f, 0.170f, 0.080f};
-inline constexpr float kAngleOverRate_radps[3] = {7.0f, 7.0f, 1.5f};
+// Attitude: torque = -Kw (rate + Kq angle). Crossover 18 rad/s: half a set-point period (10 ms), the
+// rotors within their rates (4 ms, rotor_response.hpp), the IMU's filter (2 ms) and the averaging (3 ms)
+// leave some 43 degrees there; were they a lag of 25 ms, 24 degrees.
+inline constexpr float kRateGain_Nms[3] = {0.200f, 0.200f, 0.080f};
+inline constexpr float kAngleOverRate_radps[3] = {9.0f, 9.0f, 1.5f};
 // Angle trim: what the rotors' and the centre of mass's scatter needs in the mean.
 inline constexpr float kAngleIntegral_Nmps[3] = {0.6f, 0.6f, 0.03f};
 inline constexpr float kAngleIntegralLimit_Nm[3] = {0.15f, 0.15f, 0.03f};

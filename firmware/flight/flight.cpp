@@ -14,6 +14,7 @@ constexpr float kJoin_m = 0.3f;      // a trajectory is joined from so near
 
 void Flight::tick() {
   estimator_.tick();
+  pilot_.tick();
   ++target_age_ms_;
   ++link_age_ms_;
   motors_.tick();
@@ -44,6 +45,7 @@ void Flight::on_battery(float voltage_V) {
 
 // False: it asks to land, or for nothing that can be flown to now.
 bool Flight::accept_target(const Vector3& p_W_m, float yaw_rad) {
+  if (steered_by_hand()) return false;
   target_age_ms_ = 0;
   const bool on_ground = p_W_m.z() > ground_W_m_.z() - kAboveGround_m;
   if (state_ == FlightState::flying) {
@@ -93,14 +95,31 @@ void Flight::on_velocity(const Vector3& v_W_mps, float z_m, float yaw_rad) {
   aim_ = Aim::velocity;
 }
 
+void Flight::on_attitude(const Quaternion& q_WB, float yaw_rate_radps, float thrust_share) {
+  constexpr float kSteepest_cos = 0.5f;  // 60 degrees: what tips over is not asked for
+  if (steered_by_hand()) return;
+  target_age_ms_ = 0;
+  if (state_ != FlightState::flying || !airborne_ || lift_ < 1.0f) return;
+  if (tilt_cosine(q_WB) < kSteepest_cos) return;
+  if (aim_ != Aim::attitude) attitude_reference_.start(wanted_.q_WB);
+  aim_ = Aim::attitude;
+  attitude_ = demand_of(q_WB, yaw_rate_radps);
+  thrust_share_ = thrust_share;
+}
+
 Reason Flight::arm() {
   if (!allowed(Command::arm, state_)) return Reason::wrong_state;
   if (state_ == FlightState::armed) return Reason::none;
+  if (steered_by_hand()) return Reason::by_hand;
   if (const Reason why_not = ready_to_arm(); why_not != Reason::none) return why_not;
+  begin_armed();
+  return Reason::none;
+}
+
+void Flight::begin_armed() {
   emergency_ = false;
   ground_W_m_ = estimator_.p_WB_W_m();
   enter(FlightState::armed, Reason::commanded);
-  return Reason::none;
 }
 
 Reason Flight::disarm() {
@@ -111,6 +130,7 @@ Reason Flight::disarm() {
 
 Reason Flight::take_off(float height_m) {
   if (!allowed(Command::take_off, state_)) return Reason::wrong_state;
+  if (steered_by_hand()) return Reason::by_hand;
   if (!(height_m > kAboveGround_m && height_m < kHighest_m)) return Reason::height_out_of_range;
   if (state_ == FlightState::armed) {
     target_W_m_ = ground_W_m_;
@@ -128,9 +148,11 @@ Reason Flight::land() {
 }
 
 void Flight::enter(FlightState state, Reason reason) {
-  if (state == FlightState::flying) {
+  if (state == FlightState::flying && state_ != FlightState::landing) {
     reference_.start(estimator_.p_WB_W_m(), yaw_of(estimator_.q_WB()));
     attitude_control_.reset();
+    rotors_.start(config::kThrustMin_N);
+    setpoints_N_.fill(config::kThrustMin_N);
     position_control_.reset();
     velocity_control_.reset();
     aim_ = Aim::place;
@@ -156,6 +178,7 @@ void Flight::stop_motors(Reason reason, bool emergency) {
 
 void Flight::attitude_step() {
   estimate();
+  follow_pilot();
   supervise();
   control();
 }
@@ -195,8 +218,10 @@ void Flight::estimate() {
 
 void Flight::supervise() {
   state_s_ += kAttitudeStep_s;
-  react(supervisor_.step(conditions(), state_, static_cast<std::uint32_t>(1e3f * kAttitudeStep_s)));
-  if (state_ == FlightState::armed) follow_target_into_air();
+  const bool by_attitude = steered_ == PilotMode::attitude && pilot_.link() == PilotLink::ok;
+  react(supervisor_.step(conditions(), state_, static_cast<std::uint32_t>(1e3f * kAttitudeStep_s),
+                         by_attitude));
+  if (state_ == FlightState::armed && !steered_by_hand()) follow_target_into_air();
 }
 
 void Flight::react(const Decision& decision) {

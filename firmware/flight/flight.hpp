@@ -5,16 +5,18 @@
 //   States  disarmed -> armed -> flying -> landing -> disarmed; what is taken in which of them, and
 //           what is done about what goes wrong: the tables of supervisor.hpp
 //   Files   flight.cpp commands and states; flight_watch.cpp what holds now, and what keeps it from
-//           arming; flight_control.cpp from the reference to set-points
+//           arming; flight_control.cpp from the reference to set-points; flight_manual.cpp from sticks
 #pragma once
 #include <array>
 #include <cstdint>
 
 #include "firmware/config/parameters.hpp"
 #include "firmware/control/attitude_controller.hpp"
+#include "firmware/control/attitude_reference.hpp"
 #include "firmware/control/mixer.hpp"
 #include "firmware/control/position_controller.hpp"
 #include "firmware/control/reference.hpp"
+#include "firmware/control/rotor_response.hpp"
 #include "firmware/control/velocity_controller.hpp"
 #include "firmware/esc/core/protocol.hpp"
 #include "firmware/estimation/estimator.hpp"
@@ -22,6 +24,7 @@
 #include "firmware/flight/fence.hpp"
 #include "firmware/flight/flight_state.hpp"
 #include "firmware/flight/motor_watch.hpp"
+#include "firmware/flight/pilot.hpp"
 #include "firmware/flight/supervisor.hpp"
 #include "firmware/math.hpp"
 
@@ -42,6 +45,9 @@ class Flight {
   void on_trajectory(const TrajectoryPoint& point);
   // A horizontal velocity to hold, at a height.
   void on_velocity(const Vector3& v_W_mps, float z_m, float yaw_rad);
+  // An attitude to hold, in the air only; thrust: share of the collective, hover at a half.
+  void on_attitude(const Quaternion& q_WB, float yaw_rate_radps, float thrust_share);
+  void on_rc(const CppmFrame& frame) { pilot_.on_frame(frame); }
   void on_esc_answered(unsigned motor) { motors_.on_answered(motor); }
   void on_esc_status(unsigned motor, const esc::protocol::Status& status) {
     motors_.on_status(motor, status);
@@ -63,6 +69,8 @@ class Flight {
 
   // Outputs.
   std::array<std::uint16_t, 4> setpoints() const { return setpoints_; }
+  // They go out: from here on the rotors follow them.
+  std::array<std::uint16_t, 4> send_setpoints();
   FlightState state() const { return state_; }
   Reason last_reason() const { return reason_; }
   std::uint32_t reason_count() const { return reason_count_; }  // steps with each new reason
@@ -70,6 +78,8 @@ class Flight {
   Reason ready_to_arm() const;
   const Estimator& estimator() const { return estimator_; }
   Estimator& estimator() { return estimator_; }
+  const Pilot& pilot() const { return pilot_; }
+  bool steered_by_hand() const { return steered_ != PilotMode::autonomous; }
   const Reference& reference() const { return reference_; }
   const esc::protocol::Status& esc_status(unsigned motor) const { return motors_.status(motor); }
   const BatteryWatch& battery() const { return battery_; }
@@ -106,9 +116,20 @@ class Flight {
   bool accept_target(const Vector3& p_W_m, float yaw_rad);
   void advance_reference();
   void follow_reference();
+  void follow_pilot();
+  void follow_arm_switch(const PilotDemand& sticks);
+  void follow_sticks(const PilotDemand& sticks);
+  void hand_over(PilotMode mode);
+  void begin_armed();
+  void refuse(Reason reason);
+  void follow_attitude();
+  void stay();
   void descend();
 
   Parameters parameters_;
+  Pilot pilot_;
+  PilotMode steered_ = PilotMode::autonomous;  // by whom; a lost link changes nothing
+  bool arm_switch_ = true;
   Estimator estimator_;
   Supervisor supervisor_;
   MotorWatch motors_;
@@ -116,6 +137,9 @@ class Flight {
   AttitudeController attitude_control_;
   PositionController position_control_;
   VelocityController velocity_control_;
+  AttitudeReference attitude_reference_;
+  RotorResponse rotors_;
+  RotorThrusts setpoints_N_{};
   Reference reference_;
 
   FlightState state_ = FlightState::disarmed;
@@ -128,9 +152,11 @@ class Flight {
 
   Vector3 target_W_m_ = Vector3::Zero();
   float target_yaw_rad_ = 0.0f;
-  enum class Aim : std::uint8_t { place, trajectory, velocity } aim_ = Aim::place;
+  enum class Aim : std::uint8_t { place, trajectory, velocity, attitude } aim_ = Aim::place;
   TrajectoryPoint point_;
   Vector3 jerk_W_mps3_ = Vector3::Zero(), target_v_W_mps_ = Vector3::Zero();
+  AttitudeDemand attitude_;
+  float thrust_share_ = 0.0f;
   std::uint32_t target_age_ms_ = kNever;
   std::uint32_t link_age_ms_ = kNever;
 

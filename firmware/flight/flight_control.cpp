@@ -22,6 +22,7 @@ void Flight::position_step() {
     return follow_reference();
   }
   position_was_known_ = false;
+  if (aim_ == Aim::attitude && state_ == FlightState::flying) return;
   wanted_ = position_control_.sink(descent_mps(), sinking_mps(), estimator_.q_WB(),
                                    reference_.yaw_rad(), lift_);
 }
@@ -32,6 +33,7 @@ void Flight::follow_reference() {
     lift_ = std::min(1.0f, lift_ + kPositionStep_s / kLiftTime_s);
     airborne_ = airborne_ || p_W.z() < ground_W_m_.z() - kAirborne_m;
     if (lift_ >= 1.0f) advance_reference();
+    if (aim_ == Aim::attitude) return;
   } else {
     descend();
   }
@@ -55,19 +57,28 @@ void Flight::descend() {
                      kPositionStep_s);
 }
 
+void Flight::stay() {
+  aim_ = Aim::place;
+  target_W_m_ = reference_.p_W_m();
+  target_yaw_rad_ = reference_.yaw_rad();
+}
+
 void Flight::advance_reference() {
   switch (aim_) {
     case Aim::place:
       return reference_.step(fence().inside(target_W_m_), target_yaw_rad_, kPositionStep_s);
     case Aim::trajectory:
-      if (target_age_ms_ > kTargetFresh_ms) {  // nobody leads any more: stay
-        aim_ = Aim::place;
-        target_W_m_ = reference_.p_W_m();
+      if (target_age_ms_ > kTargetFresh_ms) {  // nobody leads any more
+        stay();
         return reference_.step(target_W_m_, target_yaw_rad_, kPositionStep_s);
       }
       return reference_.follow(point_, jerk_W_mps3_,
                                kTargetDelay_s + 1e-3f * static_cast<float>(target_age_ms_),
                                kPositionStep_s);
+    case Aim::attitude:
+      reference_.start(estimator_.p_WB_W_m(), attitude_reference_.yaw_rad());
+      if (target_age_ms_ > kTargetFresh_ms) stay();
+      return;
     case Aim::velocity:
       return reference_.cruise(
           estimator_.p_WB_W_m(),
@@ -92,11 +103,28 @@ void Flight::detect_touchdown() {
   const bool blind_too_long = state_ == FlightState::failsafe && state_s_ > blind_longest_s_;
   if (lift_ < 0.2f || blind_too_long) {
     const bool failed = state_ == FlightState::failsafe;
+    // Who flies by hand stops the motors by hand.
+    const bool by_hand = steered_by_hand() && pilot_.link() == PilotLink::ok;
+    if (by_hand && !failed) return enter(FlightState::armed, Reason::landed);
     stop_motors(failed ? reason_ : Reason::landed, failed);
   }
 }
 
+std::array<std::uint16_t, 4> Flight::send_setpoints() {
+  rotors_.sent(setpoints_N_);
+  return setpoints_;
+}
+
+void Flight::follow_attitude() {
+  if (aim_ != Aim::attitude || state_ != FlightState::flying) return;
+  attitude_reference_.step(attitude_);
+  attitude_reference_.put(wanted_);
+  wanted_.thrust_N = collective_N(thrust_share_, position_control_.hover_thrust_N());
+  wanted_.v_B_mps = wanted_.q_WB.conjugate() * estimator_.v_WB_W_mps();
+}
+
 void Flight::control() {
+  follow_attitude();
   motors_.ask(state_ != FlightState::disarmed);
   if (!in_air()) return setpoints_.fill(state_ == FlightState::armed ? kIdle : 0);
   const bool trim = airborne_ && contact_s_ < 0.1f;
@@ -104,8 +132,9 @@ void Flight::control() {
                                                  wanted_, kAttitudeStep_s, trim);
   // Until the next position step the wanted attitude goes on turning.
   wanted_.q_WB = turned(wanted_.q_WB, wanted_.w_B_radps, kAttitudeStep_s);
-  const RotorThrusts thrusts = mix(wanted_.thrust_N, tau_B);
-  for (unsigned i = 0; i < 4; ++i) setpoints_[i] = setpoint_for(thrusts[i]);
+  rotors_.step(kAttitudeStep_s);
+  setpoints_N_ = rotors_.setpoints_for(mix(wanted_.thrust_N, tau_B, rotors_.reach()));
+  for (unsigned i = 0; i < 4; ++i) setpoints_[i] = setpoint_for(setpoints_N_[i]);
 }
 
 }  // namespace fw

@@ -32,6 +32,14 @@ const char* text_of(Reason reason) {
       return "set-points stopped";
     case Reason::no_link:
       return "radio link lost";
+    case Reason::rc_lost:
+      return "radio control lost";
+    case Reason::rc_nonsense:
+      return "radio control gives nonsense";
+    case Reason::throttle_high:
+      return "throttle is not low";
+    case Reason::by_hand:
+      return "flown by hand";
     case Reason::tipped_over:
       return "tipped over";
     case Reason::landed:

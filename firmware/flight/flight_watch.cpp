@@ -27,6 +27,8 @@ Conditions Flight::conditions() const {
   now.set(Condition::battery_empty, battery_.rest_V() < parameters_.get(Parameter::bat_empty_V));
   now.set(Condition::battery_low, battery_.rest_V() < parameters_.get(Parameter::bat_low_V));
   now.set(Condition::no_link, link_age_ms_ > kLinkLost_ms && link_age_ms_ < kNever);
+  now.set(Condition::rc_lost, steered_by_hand() && pilot_.link() == PilotLink::lost);
+  now.set(Condition::rc_nonsense, steered_by_hand() && pilot_.link() == PilotLink::nonsense);
   now.set(Condition::no_setpoints, target_age_ms_ > kTargetsLost_ms && target_age_ms_ < kNever);
   now.set(Condition::no_pressure, !estimator_.pressure_fresh());
   now.set(Condition::no_field, !estimator_.field_fresh());

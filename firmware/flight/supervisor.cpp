@@ -6,14 +6,14 @@
 namespace fw {
 namespace {
 
-std::optional<Column> column_of(FlightState state) {
+std::optional<Column> column_of(FlightState state, bool by_attitude) {
   switch (state) {
     case FlightState::disarmed:
       return std::nullopt;
     case FlightState::armed:
       return Column::armed;
     case FlightState::flying:
-      return Column::autonomous;
+      return by_attitude ? Column::by_attitude : Column::autonomous;
     case FlightState::landing:
       return Column::landing;
     case FlightState::failsafe:
@@ -32,8 +32,9 @@ static_assert(rows_in_order(), "kRules has a row for each condition, in their or
 
 }  // namespace
 
-Decision Supervisor::step(const Conditions& now, FlightState state, std::uint32_t dt_ms) {
-  const std::optional<Column> column = column_of(state);
+Decision Supervisor::step(const Conditions& now, FlightState state, std::uint32_t dt_ms,
+                          bool by_attitude) {
+  const std::optional<Column> column = column_of(state, by_attitude);
   Decision gravest;
   for (std::size_t i = 0; i < kConditions; ++i) {
     const Rule& rule = kRules[i];

@@ -5,7 +5,8 @@
 //   kRules     condition, how long it must hold, and the reaction by who steers. Of several that hold
 //              the gravest reaction counts, then the first row. A later state never reacts more mildly to
 //              what took control away: cut stays cut
-//   Columns    armed on the ground; in the air by place, trajectory or velocity (autonomous); the commanded
+//   Columns    armed on the ground; in the air by place, trajectory or velocity (autonomous); in the air by
+//              the pilot's hand in attitude, which needs no position; the commanded
 //              landing; the landing that is a fail-safe already
 #pragma once
 #include <array>
@@ -50,6 +51,8 @@ enum class Condition : std::uint8_t {
   outside_fence,
   battery_empty,
   no_link,
+  rc_lost,
+  rc_nonsense,
   no_setpoints,
   battery_low,
   no_pressure,
@@ -82,7 +85,7 @@ enum class Reaction : std::uint8_t {  // each graver than the one before
   cut,       // motors off wherever it is: nothing can be controlled
 };
 
-enum class Column : std::uint8_t { armed, autonomous, landing, failsafe, count };
+enum class Column : std::uint8_t { armed, autonomous, by_attitude, landing, failsafe, count };
 
 struct Rule {
   Condition condition;
@@ -96,21 +99,23 @@ inline constexpr Reaction none = Reaction::none, tell = Reaction::tell, land = R
                           fail = Reaction::failsafe, stop = Reaction::stop, cut = Reaction::cut;
 // The ESC gives up its motor after 0.5 s without a set-point.
 inline constexpr Rule kRules[kConditions] = {
-    //                                                               armed autonomous landing failsafe
-    {Condition::imu_not_running, Reason::imu_not_running, 0, {cut, cut, cut, cut}},
-    {Condition::imu_frozen, Reason::imu_frozen, 0, {cut, cut, cut, cut}},
-    {Condition::tipped_over, Reason::tipped_over, 100, {cut, cut, cut, cut}},
-    {Condition::motor_out, Reason::motor_out, 0, {stop, cut, cut, cut}},
-    {Condition::esc_silent, Reason::esc_silent, 0, {stop, cut, cut, cut}},
-    {Condition::no_position, Reason::no_position, 0, {stop, fail, fail, none}},
-    {Condition::outside_fence, Reason::outside_fence, 50, {tell, fail, none, none}},
-    {Condition::battery_empty, Reason::battery_empty, 2000, {stop, fail, none, none}},
-    {Condition::no_link, Reason::no_link, 0, {stop, land, none, none}},
-    {Condition::no_setpoints, Reason::no_setpoints, 0, {none, land, none, none}},
-    {Condition::battery_low, Reason::battery_low, 3000, {stop, land, none, none}},
-    {Condition::no_pressure, Reason::no_pressure, 0, {tell, tell, tell, tell}},
-    {Condition::no_field, Reason::no_field, 0, {tell, tell, tell, tell}},
-    {Condition::by_drag, Reason::by_drag, 0, {none, tell, none, none}},
+    //                                                       armed autonomous attitude landing failsafe
+    {Condition::imu_not_running, Reason::imu_not_running, 0, {cut, cut, cut, cut, cut}},
+    {Condition::imu_frozen, Reason::imu_frozen, 0, {cut, cut, cut, cut, cut}},
+    {Condition::tipped_over, Reason::tipped_over, 100, {cut, cut, cut, cut, cut}},
+    {Condition::motor_out, Reason::motor_out, 0, {stop, cut, cut, cut, cut}},
+    {Condition::esc_silent, Reason::esc_silent, 0, {stop, cut, cut, cut, cut}},
+    {Condition::no_position, Reason::no_position, 0, {stop, fail, tell, fail, none}},
+    {Condition::outside_fence, Reason::outside_fence, 50, {tell, fail, tell, none, none}},
+    {Condition::battery_empty, Reason::battery_empty, 2000, {stop, fail, fail, none, none}},
+    {Condition::no_link, Reason::no_link, 0, {stop, land, tell, none, none}},
+    {Condition::rc_lost, Reason::rc_lost, 0, {stop, land, land, none, none}},
+    {Condition::rc_nonsense, Reason::rc_nonsense, 0, {stop, land, land, none, none}},
+    {Condition::no_setpoints, Reason::no_setpoints, 0, {none, land, none, none, none}},
+    {Condition::battery_low, Reason::battery_low, 3000, {stop, land, tell, none, none}},
+    {Condition::no_pressure, Reason::no_pressure, 0, {tell, tell, tell, tell, tell}},
+    {Condition::no_field, Reason::no_field, 0, {tell, tell, tell, tell, tell}},
+    {Condition::by_drag, Reason::by_drag, 0, {none, tell, none, none, none}},
 };
 }  // namespace reaction
 using reaction::kRules;
@@ -123,7 +128,8 @@ struct Decision {
 class Supervisor {
  public:
   // Each `dt_ms`, armed or not; disarmed nothing is decided, but what holds is remembered.
-  Decision step(const Conditions& now, FlightState state, std::uint32_t dt_ms);
+  Decision step(const Conditions& now, FlightState state, std::uint32_t dt_ms,
+                bool by_attitude = false);
   void forget() { held_ms_.fill(0); }
   // A warning that nobody has told yet, or none; it is told then.
   Reason take_warning();

@@ -7,7 +7,7 @@
 namespace fw::hal {
 
 inline constexpr std::uint32_t kPclk1_Hz = 42'000'000, kPclk2_Hz = 84'000'000,
-                               kTimclk1_Hz = 84'000'000;
+                               kTimclk1_Hz = 84'000'000, kTimclk2_Hz = 168'000'000;
 
 Status start_clocks();  // no_answer: the crystal or the PLL did not start; we then run on 16 MHz
 

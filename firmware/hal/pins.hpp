@@ -53,6 +53,7 @@ using EscScl = Pin<hw::GPIOA, 8>;
 using EscSda = Pin<hw::GPIOC, 9>;
 using SensorScl = Pin<hw::GPIOB, 10>;
 using SensorSda = Pin<hw::GPIOB, 11>;
+using ReceiverPulses = Pin<hw::GPIOA, 10>;
 using RadioTx = Pin<hw::GPIOA, 2>;
 using RadioRx = Pin<hw::GPIOA, 3>;
 using GpsTx = Pin<hw::GPIOC, 6>;

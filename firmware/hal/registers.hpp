@@ -29,8 +29,8 @@ struct RCC {
   static constexpr std::uint32_t TIM2EN = bit(0), TIM5EN = bit(3), TIM6EN = bit(4), TIM7EN = bit(5),
                                  SPI3EN = bit(15), USART2EN = bit(17), I2C2EN = bit(22),
                                  I2C3EN = bit(23), PWREN = bit(28);
-  static constexpr std::uint32_t USART6EN = bit(5), ADC1EN = bit(8), SPI1EN = bit(12),
-                                 SYSCFGEN = bit(14);
+  static constexpr std::uint32_t TIM1EN = bit(0), USART6EN = bit(5), ADC1EN = bit(8),
+                                 SPI1EN = bit(12), SYSCFGEN = bit(14);
   static constexpr std::uint32_t RMVF = bit(24), BORRSTF = bit(25), PADRSTF = bit(26),
                                  PORRSTF = bit(27), SFTRSTF = bit(28), WDGRSTF = bit(29),
                                  WWDGRSTF = bit(30), LPWRRSTF = bit(31);
@@ -158,6 +158,14 @@ struct Timer {
   static constexpr std::uint32_t CEN = bit(0), URS = bit(2), OPM = bit(3), UIE = bit(0),
                                  UIF = bit(0), UG = bit(0);
 };
+struct TIM1 : Timer<0x4001'0000> {  // 16 bits
+  using CCMR2 = Reg32<0x4001'0000 + 0x1C>;
+  using CCER = Reg32<0x4001'0000 + 0x20>;
+  using CCR3 = Reg32<0x4001'0000 + 0x3C>;
+  static constexpr std::uint32_t CKD_DIV4 = 2u << 8, CC3IE = bit(3), CC3IF = bit(3),
+                                 CC3OF = bit(11), CC3S_TI3 = 1u, IC3F_LONGEST = 15u << 4,
+                                 CC3E = bit(8);
+};
 using TIM2 = Timer<0x4000'0000>;  // 32 bits
 using TIM5 = Timer<0x4000'0C00>;  // 32 bits
 using TIM6 = Timer<0x4000'1000>;  // 16 bits
@@ -198,6 +206,7 @@ enum class Irq : std::uint8_t {
   DMA1_Stream2 = 13,
   DMA1_Stream3 = 14,
   DMA1_Stream6 = 17,
+  TIM1_CC = 27,
   I2C2_EV = 33,
   I2C2_ER = 34,
   TIM5_Global = 50,

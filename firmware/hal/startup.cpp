@@ -10,6 +10,7 @@ FW_WEAK void exti3_handler();
 FW_WEAK void dma1_stream2_handler();
 FW_WEAK void dma1_stream3_handler();
 FW_WEAK void dma1_stream6_handler();
+FW_WEAK void tim1_cc_handler();
 FW_WEAK void i2c2_ev_handler();
 FW_WEAK void i2c2_er_handler();
 FW_WEAK void tim5_handler();
@@ -34,6 +35,7 @@ constexpr auto make_vectors() {
   on(Irq::DMA1_Stream2, dma1_stream2_handler);
   on(Irq::DMA1_Stream3, dma1_stream3_handler);
   on(Irq::DMA1_Stream6, dma1_stream6_handler);
+  on(Irq::TIM1_CC, tim1_cc_handler);
   on(Irq::I2C2_EV, i2c2_ev_handler);
   on(Irq::I2C2_ER, i2c2_er_handler);
   on(Irq::TIM5_Global, tim5_handler);

@@ -46,6 +46,8 @@ int crc_extra(std::uint32_t id) {
       return 152;
     case kCommandAck:
       return 143;
+    case kSetAttitudeTarget:
+      return 49;
     case kSetPositionTargetLocalNed:
       return 143;
     case kViconPositionEstimate:

@@ -38,6 +38,7 @@ enum MessageId : std::uint32_t {
   kGpsGlobalOrigin = 49,
   kCommandLong = 76,
   kCommandAck = 77,
+  kSetAttitudeTarget = 82,
   kSetPositionTargetLocalNed = 84,
   kViconPositionEstimate = 104,
   kHighresImu = 105,

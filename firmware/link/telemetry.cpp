@@ -57,6 +57,7 @@ void Telemetry::receive(std::span<const std::uint8_t> bytes) {
     const Frame& frame = parser_.frame();
     if (frame.id == mavlink::kViconPositionEstimate) on_vicon(frame);
     if (frame.id == mavlink::kSetPositionTargetLocalNed) on_target(frame);
+    if (frame.id == mavlink::kSetAttitudeTarget) on_attitude(frame);
     if (frame.id == mavlink::kCommandLong) on_command(frame);
     flight_.on_link();
     requests_.on_frame(frame);
@@ -94,6 +95,21 @@ void Telemetry::on_target(const Frame& frame) {
     }
     flight_.on_target(p_W, heading);
   }
+}
+
+// Flown is one mask: attitude, thrust and the rate of yaw, which carries the heading on between two
+// messages. Rates of roll and pitch come from the reference.
+void Telemetry::on_attitude(const Frame& frame) {
+  constexpr std::uint8_t kNoRollAndPitchRate = 0x03;
+  if (frame.get<std::uint8_t>(36) != kSystem) return;
+  if (frame.get<std::uint8_t>(38) != kNoRollAndPitchRate) return;
+  const Quaternion q_WB(frame.get<float>(4), frame.get<float>(8), frame.get<float>(12),
+                        frame.get<float>(16));
+  const auto yaw_rate = frame.get<float>(28), thrust = frame.get<float>(32);
+  const float norm = q_WB.norm();
+  if (!(norm > 0.99f && norm < 1.01f) || !std::isfinite(yaw_rate)) return;
+  if (!(thrust >= 0.0f && thrust <= 1.0f)) return;
+  flight_.on_attitude(q_WB.normalized(), yaw_rate, thrust);
 }
 
 void Telemetry::on_command(const Frame& frame) {

@@ -5,7 +5,8 @@
 //           HIGHRES_IMU 2 Hz, DEBUG_FLOAT_ARRAY of the filters 5 and 4 Hz, of drag 1 Hz, GPS_RAW_INT
 //           1 Hz (with capture 0.2 Hz), GPS_GLOBAL_ORIGIN 1 Hz once there is one; COMMAND_ACK, STATUSTEXT and
 //           PARAM_VALUE in free slots
-//   Up      VICON_POSITION_ESTIMATE, SET_POSITION_TARGET_LOCAL_NED, COMMAND_LONG (400 arm, disarm;
+//   Up      VICON_POSITION_ESTIMATE, SET_POSITION_TARGET_LOCAL_NED, SET_ATTITUDE_TARGET (attitude, body
+//           yaw rate and thrust), COMMAND_LONG (400 arm, disarm;
 //           22 take off to param 7; 21 land; 512 of AUTOPILOT_VERSION, 520: it is sent; any other is
 //           acknowledged as unsupported); the requests of parameter_link.hpp and request_link.hpp
 //   State   HEARTBEAT.custom_mode is the FlightState; system_status 2 not ready, 3 ready, 4 active,
@@ -44,6 +45,7 @@ class Telemetry {
  private:
   void on_vicon(const mavlink::Frame& frame);
   void on_target(const mavlink::Frame& frame);
+  void on_attitude(const mavlink::Frame& frame);
   void on_command(const mavlink::Frame& frame);
 
   mavlink::Message heartbeat() const;

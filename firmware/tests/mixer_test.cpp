@@ -55,15 +55,56 @@ TEST(Mixer, YawGivesWayToRollAndPitch) {
   EXPECT_LT(got.z(), 0.1);
 }
 
-TEST(Mixer, BeyondTheLimitsTheTorqueKeepsItsAxisAndTheThrustItsSize) {
+TEST(Mixer, BeyondTheLimitsTheTorqueKeepsItsAxis) {
   const RotorThrusts thrusts = mix(8.8f, {3.0f, 1.5f, 0.0f});
   const Eigen::Vector3d got = torque_of(thrusts);
   EXPECT_TRUE(near(got.x() / got.y(), 2.0, stated(1e-4, "float round-off")));
-  EXPECT_TRUE(near(total_of(thrusts), 8.8, stated(1e-5, "float round-off")));
   for (const float thrust : thrusts) {
     EXPECT_GE(thrust, 0.8f - 1e-6f);
     EXPECT_LE(thrust, 8.0f);
   }
+}
+
+// Hover leaves 1.4 N below each rotor: 0.7 N m by one pair alone. Carrying 3.2 N each, the pair has 2.4 N.
+TEST(Mixer, APairAtItsLowerLimitCarriesMore) {
+  const RotorThrusts thrusts = mix(8.8f, {0.0f, 1.1f, 0.0f});
+  const Eigen::Vector3d got = torque_of(thrusts);
+  EXPECT_TRUE(near(got.y(), 1.1, stated(1e-5, "float round-off")));
+  EXPECT_TRUE(near(got.x(), 0.0, stated(1e-5, "float round-off")));
+  EXPECT_TRUE(near(thrusts[2], 0.8, stated(1e-5, "float round-off")));
+  EXPECT_TRUE(near(thrusts[0], 5.2, stated(1e-5, "float round-off")));
+  // The pair carries 1.6 N more than its half; the other one gives 0.3 of that back.
+  EXPECT_TRUE(near(total_of(thrusts), 8.8 + 0.7 * 1.6, stated(1e-5, "float round-off")));
+}
+
+TEST(Mixer, WhereNoPairHasMoreToCarryTheThrustKeepsItsSize) {
+  const RotorThrusts thrusts = mix(8.8f, {3.0f, 3.0f, 0.0f});
+  EXPECT_TRUE(near(total_of(thrusts), 8.8, stated(1e-5, "float round-off")));
+}
+
+TEST(Mixer, YawAloneNeverCostsThrust) {
+  const RotorThrusts thrusts = mix(8.8f, {0.0f, 0.0f, 0.5f});
+  EXPECT_TRUE(near(total_of(thrusts), 8.8, stated(1e-5, "float round-off")));
+  EXPECT_TRUE(near(thrusts[1], 0.8, stated(1e-5, "float round-off")));
+}
+
+// A rotor that cannot slow down at once: its partner has to make the torque.
+TEST(Mixer, WithinTheRangesTheTorqueComesFirst) {
+  ThrustRanges ranges = all_thrusts();
+  ranges[2] = {2.0f, 2.4f};
+  const RotorThrusts thrusts = mix(8.8f, {0.0f, 0.3f, 0.0f}, ranges);
+  EXPECT_TRUE(near(torque_of(thrusts).y(), 0.3, stated(1e-5, "float round-off")));
+  EXPECT_TRUE(near(thrusts[2], 2.0, stated(1e-5, "float round-off")));
+  ranges[0] = {2.0f, 2.5f};
+  EXPECT_TRUE(near(torque_of(mix(8.8f, {0.0f, 0.3f, 0.0f}, ranges)).y(), 0.25 * 0.5,
+                   stated(1e-5, "float round-off")));
+}
+
+TEST(Mixer, AHalfOfTheThrottleHoversAndItsEndsAreTheRotors) {
+  EXPECT_FLOAT_EQ(collective_N(0.5f, 9.0f), 9.0f);
+  EXPECT_FLOAT_EQ(collective_N(0.0f, 9.0f), 4.0f * 0.8f);
+  EXPECT_FLOAT_EQ(collective_N(1.0f, 9.0f), 4.0f * 6.0f);
+  EXPECT_FLOAT_EQ(collective_N(0.75f, 9.0f), 16.5f);
 }
 
 // Ends of the range on the wire: v = 1 asks for 0.8 N, v = 2047 for 8 N; steps of 3.5 mN.

@@ -144,7 +144,7 @@ inline void VehicleModel::slow_sensors(Flight& flight) {
 }
 
 inline void VehicleModel::escs(Flight& flight) {
-  const std::array<std::uint16_t, 4> v = flight.setpoints();
+  const std::array<std::uint16_t, 4> v = flight.send_setpoints();
   for (unsigned i = 0; i < 4; ++i) {
     if (!esc_on_[i]) continue;
     zeros_[i] = v[i] == 0 ? zeros_[i] + 1 : 0;

@@ -164,6 +164,9 @@ Result<Done> FlightWorld::command(const Command& command, std::int64_t /*now_ns*
           [this](const request::Land&) -> Result<Done> { return land(), Done{}; },
           [this](const request::Figure8& c) -> Result<Done> { return fly_figure_8(c), Done{}; },
           [this](const request::Cruise& c) -> Result<Done> { return cruise(c), Done{}; },
+          [this](const request::HoldAttitude& c) -> Result<Done> {
+            return hold_attitude(c), Done{};
+          },
           [this](const request::Waypoints& c) -> Result<Done> { return fly_waypoints(c), Done{}; },
           [this](const request::Teleoperation& c) -> Result<Done> {
             return teleoperate(c), Done{};
@@ -229,6 +232,17 @@ void FlightWorld::cruise(const request::Cruise& command) {
   Target at = present_target();
   at.p_W_m.z() = -command.height_m.value_or(-at.p_W_m.z());
   station_.cruise({command.north_mps, command.east_mps, 0.0}, at);
+}
+
+void FlightWorld::hold_attitude(const request::HoldAttitude& command) {
+  const Target now = present_target();
+  const Target held{now.p_W_m, command.yaw_rad.value_or(now.yaw_rad)};
+  station_.hold({.roll_rad = command.roll_rad,
+                 .pitch_rad = command.pitch_rad,
+                 .yaw_rad = held.yaw_rad,
+                 .yaw_rate_radps = command.yaw_rate_radps,
+                 .thrust = command.thrust},
+                held);
 }
 
 void FlightWorld::fly_waypoints(const request::Waypoints& wanted) {

@@ -2,7 +2,7 @@
 //
 //   Step     controllers and station take what the target did; then everything moves 1 ms; then what is
 //            sensed goes out: body_motion, esc_state of each motor, uart_frame to the radio
-//   Command  Arm, TakeOff, GoTo, Figure8, Cruise, Waypoints, Teleoperation, Land, Sticks, SetParameter, Radio. Take-off also streams the point above where the vehicle stands
+//   Command  Arm, TakeOff, GoTo, Figure8, Cruise, HoldAttitude, Waypoints, Teleoperation, Land, Sticks, SetParameter, Radio. Take-off also streams the point above where the vehicle stands
 //            as its target; land and disarm end the stream
 //   Radio    bytes of another ground station go up with the next step. Who commanded last leads: with a set-point, an
 //            arming, a take-off or a landing of the other one ours ends its own set-points until it is commanded anew
@@ -73,6 +73,7 @@ class FlightWorld : public World {
   void land();
   void fly_figure_8(const request::Figure8& figure);
   void cruise(const request::Cruise& command);
+  void hold_attitude(const request::HoldAttitude& command);
   void fly_waypoints(const request::Waypoints& wanted);
   void teleoperate(const request::Teleoperation& wanted);
   void add_guest(const request::Radio& radio);

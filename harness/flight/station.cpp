@@ -9,9 +9,10 @@ namespace {
 constexpr std::uint8_t kVehicle = 1;
 constexpr std::int64_t kRetry_ns = 300'000'000;
 constexpr int kTries = 20;
-constexpr std::int64_t kTargetPeriod_ns = 100'000'000;
+constexpr std::int64_t kTargetPeriod_ns = 100'000'000, kAttitudePeriod_ns = 20'000'000;
 // type_mask: ignore all else.
 constexpr std::uint16_t kPositionAndYaw = 0x09F8, kPathPoint = 0x0800, kVelocityAtHeight = 0x09C3;
+constexpr std::uint8_t kAttitudeAndYawRate = 0x03;
 constexpr std::uint8_t kLocalNed = 1;
 
 }  // namespace
@@ -63,6 +64,7 @@ void Station::set_target(const std::optional<Target>& target) {
   path_ = nullptr;
   guide_ = nullptr;
   cruise_W_mps_.reset();
+  attitude_.reset();
 }
 
 void Station::follow(const Path& path, double yaw_rad) {
@@ -74,6 +76,12 @@ void Station::follow(const Path& path, double yaw_rad) {
 void Station::cruise(const Eigen::Vector3d& v_W_mps, const Target& at_height) {
   set_target(at_height);
   cruise_W_mps_ = v_W_mps;
+}
+
+void Station::hold(const HeldAttitude& attitude, const Target& after) {
+  set_target(after);
+  attitude_ = attitude;
+  next_target_ns_ = std::min(next_target_ns_, last_step_ns_);
 }
 
 void Station::guide(const Guide& guide) {
@@ -124,7 +132,27 @@ void Station::step(std::int64_t t_ns, const Send& send) {
   if (const auto frame = parameters_.step(t_ns, sender_)) send(t_ns, io::encode(*frame));
 }
 
+void Station::send_attitude(std::int64_t t_ns, const Send& send) {
+  const HeldAttitude& held = *attitude_;
+  const Eigen::Quaterniond q_WB = Eigen::AngleAxisd(held.yaw_rad, Eigen::Vector3d::UnitZ()) *
+                                  Eigen::AngleAxisd(held.pitch_rad, Eigen::Vector3d::UnitY()) *
+                                  Eigen::AngleAxisd(held.roll_rad, Eigen::Vector3d::UnitX());
+  io::SetAttitudeTarget message;
+  message.time_boot_ms = static_cast<std::uint32_t>(t_ns / 1'000'000);
+  message.q = {static_cast<float>(q_WB.w()), static_cast<float>(q_WB.x()),
+               static_cast<float>(q_WB.y()), static_cast<float>(q_WB.z())};
+  message.body_yaw_rate = static_cast<float>(held.yaw_rate_radps);
+  message.thrust = static_cast<float>(held.thrust);
+  message.target_system = message.target_component = kVehicle;
+  message.type_mask = kAttitudeAndYawRate;
+  const io::MavlinkFrame frame = io::pack(message, sender_);
+  carry(frame, Awaited::target);
+  send(t_ns, io::encode(frame));
+  next_target_ns_ = t_ns + kAttitudePeriod_ns;
+}
+
 void Station::send_target(std::int64_t t_ns, const Send& send) {
+  if (attitude_) return send_attitude(t_ns, send);
   io::SetPositionTargetLocalNed message;
   message.time_boot_ms = static_cast<std::uint32_t>(t_ns / 1'000'000);
   message.x = static_cast<float>(target_->p_W_m.x());

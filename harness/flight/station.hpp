@@ -2,7 +2,7 @@
 //
 //   Up    captured poses as VICON_POSITION_ESTIMATE; the target at 10 Hz once there is one: a place,
 //         moving straight to a new one where a speed is given; a point of a path with its velocity and
-//         acceleration; a velocity at a height. Commands, repeated every 300 ms with a rising
+//         acceleration; a velocity at a height. An attitude with a thrust instead, at 50 Hz. Commands, repeated every 300 ms with a rising
 //         confirmation until COMMAND_ACK; requests for parameters (parameter_requests.hpp)
 //   Wire  a command has passed when the first frame that carries it has reached the vehicle's UART
 //   Down  the vehicle's telemetry, last value of each; nothing is known before it was heard
@@ -27,6 +27,10 @@ namespace whirl::flight {
 
 struct PathPoint {
   Eigen::Vector3d p_W_m, v_W_mps, a_W_mps2;
+};
+struct HeldAttitude {
+  double roll_rad = 0.0, pitch_rad = 0.0, yaw_rad = 0.0, yaw_rate_radps = 0.0;
+  double thrust = 0.0;  // 0..1
 };
 using Path = std::function<PathPoint(double t_s)>;  // t from when it was begun
 using Guide = std::function<SetPoint(std::int64_t t_ns)>;
@@ -56,6 +60,8 @@ class Station {
   void move_target(const Target& goal, double speed_mps);  // from the present target on
   void follow(const Path& path, double yaw_rad);           // from now on
   void cruise(const Eigen::Vector3d& v_W_mps, const Target& at_height);
+  // after: what target() says meanwhile
+  void hold(const HeldAttitude& attitude, const Target& after);
   void guide(const Guide& guide);  // asked at each step for what is commanded then
   const std::optional<Target>& target() const { return target_; }
   const std::optional<CapturedPose>& last_pose() const { return last_pose_; }  // that was sent
@@ -88,6 +94,7 @@ class Station {
   void await(Awaited what);
   void carry(const io::MavlinkFrame& frame, Awaited what);
   void send_target(std::int64_t t_ns, const Send& send);
+  void send_attitude(std::int64_t t_ns, const Send& send);
   void send_command(std::int64_t t_ns, const Send& send);
   void hear(const io::MavlinkFrame& frame);
   void acknowledged(const io::CommandAck& ack);
@@ -100,6 +107,7 @@ class Station {
   Path path_;
   std::int64_t path_start_ns_ = 0;
   std::optional<Eigen::Vector3d> cruise_W_mps_;
+  std::optional<HeldAttitude> attitude_;
   Guide guide_;
   std::optional<CapturedPose> last_pose_;
   std::int64_t next_target_ns_ = 0, last_step_ns_ = 0;

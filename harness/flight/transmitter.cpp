@@ -3,7 +3,7 @@
 namespace whirl::flight {
 namespace {
 
-constexpr int kRoll = 0, kPitch = 1, kThrust = 2, kYaw = 3, kMode = 4;
+constexpr int kRoll = 0, kPitch = 1, kThrust = 2, kYaw = 3, kMode = 4, kArm = 5;
 constexpr std::int64_t kPeriod_ns = 20'000'000;
 
 double of_switch(int position) {  // 1, 2, 3: -1, 0, +1
@@ -15,6 +15,7 @@ double of_switch(int position) {  // 1, 2, 3: -1, 0, +1
 Transmitter::Transmitter() {
   channels_.position[kThrust] = -1.0;
   channels_.position[kMode] = of_switch(1);
+  channels_.position[kArm] = -1.0;
 }
 
 void Transmitter::set(const request::Sticks& sticks) {
@@ -25,6 +26,7 @@ void Transmitter::set(const request::Sticks& sticks) {
   channel[kYaw] = sticks.yaw.value_or(channel[kYaw]);
   if (sticks.thrust) channel[kThrust] = 2.0 * *sticks.thrust - 1.0;
   if (sticks.mode) channel[kMode] = of_switch(*sticks.mode);
+  if (sticks.arm) channel[kArm] = *sticks.arm ? 1.0 : -1.0;
 }
 
 void Transmitter::step(std::int64_t t_ns, io::Batch& sensed) {

@@ -1,8 +1,8 @@
 // The pilot's radio-control transmitter: sticks and a switch, sent at 50 Hz as rc_channels.
 //
-//   Channels  1 roll, 2 pitch, 3 thrust, 4 yaw, 5 mode switch; 6 to 16 stay centred
+//   Channels  1 roll, 2 pitch, 3 thrust, 4 yaw, 5 mode switch, 6 arm switch; 7 to 16 stay centred
 //   Start     off; the first request switches it on, with roll, pitch and yaw centred, thrust at its
-//             lower stop and the switch in position 1
+//             lower stop, the mode switch in position 1 and the arm switch off
 //   Off       nothing is sent: what a receiver does then is its failsafe
 #pragma once
 #include <cstdint>

@@ -57,7 +57,20 @@ Cruise read_cruise(const Table& t) {
           maybe(t, "height", Dimension::length, above(0.0))};
 }
 
-// { roll = "20 %", thrust = "50 %", mode = 2 }
+// { attitude = { roll = "20 deg", pitch = "0 deg", yaw_rate = "10 deg/s" }, thrust = "50 %" }
+HoldAttitude read_attitude(const Table& t) {
+  constexpr double kMost_rad = 1.0;
+  const Table a = t.table("attitude");
+  HoldAttitude hold;
+  hold.roll_rad = a.quantity_or("roll", Dimension::angle, 0.0, between(-kMost_rad, kMost_rad));
+  hold.pitch_rad = a.quantity_or("pitch", Dimension::angle, 0.0, between(-kMost_rad, kMost_rad));
+  hold.yaw_rad = maybe(a, "yaw", Dimension::angle);
+  hold.yaw_rate_radps = a.quantity_or("yaw_rate", Dimension::angular_rate, 0.0);
+  hold.thrust = t.quantity_or("thrust", Dimension::ratio, hold.thrust, between(0.0, 1.0));
+  return hold;
+}
+
+// { roll = "20 %", thrust = "50 %", mode = 2, arm = true }
 Sticks read_sticks(const Table& t) {
   Sticks sticks;
   const lua::Range travel = between(-1.0, 1.0);
@@ -66,6 +79,7 @@ Sticks read_sticks(const Table& t) {
   sticks.yaw = maybe(t, "yaw", Dimension::ratio, travel);
   sticks.thrust = maybe(t, "thrust", Dimension::ratio, between(0.0, 1.0));
   if (t.has("mode")) sticks.mode = static_cast<int>(t.integer("mode", 1, 3));
+  if (t.has("arm")) sticks.arm = t.flag_or("arm", false);
   sticks.transmitter_on = t.flag_or("on", true);
   return sticks;
 }
@@ -196,6 +210,7 @@ void read_flying(const Table& t, const ReadFile& read_file, std::vector<Command>
   if (t.has("position") || t.has("yaw")) all.emplace_back(read_go_to(t));
   if (t.has("figure_8")) all.emplace_back(read_figure_8(t.table("figure_8")));
   if (t.has("velocity")) all.emplace_back(read_cruise(t.table("velocity")));
+  if (t.has("attitude")) all.emplace_back(read_attitude(t));
   if (t.has("waypoints")) all.emplace_back(read_waypoints(t, read_file));
   if (t.has("teleoperation")) all.emplace_back(read_teleoperation(t.table("teleoperation")));
   if (t.has("radio")) all.emplace_back(read_radio(t));
@@ -213,10 +228,11 @@ void read_turning(const Table& t, std::vector<Command>& all) {
                     {"speed", Dimension::angular_rate, SetPointKind::speed},
                     {"thrust", Dimension::force, SetPointKind::thrust},
                     {"power", Dimension::power, SetPointKind::power}};
-  // A speed beside a place is how fast to go there.
-  const bool goes = t.has("position") || t.has("yaw");
+  // A speed beside a place is how fast to go there, a thrust beside an attitude belongs to it.
+  const bool goes = t.has("position") || t.has("yaw"), tilts = t.has("attitude");
   for (const auto& s : set_points) {
     if (!t.has(s.key) || (goes && s.kind == SetPointKind::speed)) continue;
+    if (tilts && s.kind == SetPointKind::thrust) continue;
     all.emplace_back(SetPoint{s.kind, t.quantity(s.key, s.dimension, at_least(0.0))});
   }
   if (t.has("stop") && t.flag_or("stop", true)) all.emplace_back(Stop{});

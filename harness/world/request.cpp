@@ -9,6 +9,7 @@ const char* word(const Command& command) {
                           [](const request::Land&) { return "land"; },
                           [](const request::Figure8&) { return "figure_8"; },
                           [](const request::Cruise&) { return "velocity"; },
+                          [](const request::HoldAttitude&) { return "attitude"; },
                           [](const request::Waypoints&) { return "waypoints"; },
                           [](const request::Teleoperation&) { return "teleoperation"; },
                           [](const request::Radio&) { return "radio"; },

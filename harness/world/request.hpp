@@ -34,6 +34,12 @@ struct Cruise {  // a velocity over ground, at a height
   double north_mps = 0.0, east_mps = 0.0;
   std::optional<double> height_m;  // left out: as it was
 };
+struct HoldAttitude {  // what is left out: the heading stays
+  double roll_rad = 0.0, pitch_rad = 0.0;
+  std::optional<double> yaw_rad;
+  double yaw_rate_radps = 0.0;
+  double thrust = 0.5;  // share of the vehicle's range, 0..1
+};
 struct SetParameter {           // of the firmware, over the radio
   std::string name;             // 1 to 16 characters
   std::optional<double> value;  // within a float's range; left out: only asked for
@@ -43,6 +49,7 @@ struct Sticks {  // of a radio-control transmitter; what is left out stays as it
       yaw;                       // shares of full travel, -1..1; right, back and right are +
   std::optional<double> thrust;  // 0..1 from the lower stop
   std::optional<int> mode;       // position 1..3 of a switch
+  std::optional<bool> arm;       // another switch, on or off
   bool transmitter_on = true;
 };
 
@@ -120,10 +127,10 @@ struct Magnet {
 
 using Command =
     std::variant<request::Arm, request::TakeOff, request::GoTo, request::Land, request::Figure8,
-                 request::Cruise, request::Waypoints, request::Teleoperation, request::Radio,
-                 request::SetParameter, request::Sticks, request::SetPoint, request::Stop,
-                 request::Silence, request::SetPointRate, request::RawTransfer, request::Pulses,
-                 request::Line, request::Brake>;
+                 request::Cruise, request::HoldAttitude, request::Waypoints, request::Teleoperation,
+                 request::Radio, request::SetParameter, request::Sticks, request::SetPoint,
+                 request::Stop, request::Silence, request::SetPointRate, request::RawTransfer,
+                 request::Pulses, request::Line, request::Brake>;
 using Disturbance = std::variant<request::Wind, request::Jet, request::Magnet>;
 
 const char* word(const Command& command);          // "takeoff"

@@ -154,6 +154,20 @@ struct CommandAck {
   }
 };
 
+struct SetAttitudeTarget {  // q: w, x, y, z; thrust 0..1
+  static constexpr std::uint32_t kId = 82;
+  std::uint32_t time_boot_ms = 0;
+  std::array<float, 4> q{1, 0, 0, 0};
+  float body_roll_rate = 0, body_pitch_rate = 0, body_yaw_rate = 0, thrust = 0;
+  std::uint8_t target_system = 0, target_component = 0, type_mask = 0;
+  std::array<float, 3> thrust_body{};
+  template <typename V>
+  void fields(V& v) {
+    v(time_boot_ms, q, body_roll_rate, body_pitch_rate, body_yaw_rate, thrust, target_system,
+      target_component, type_mask, thrust_body);
+  }
+};
+
 struct SetPositionTargetLocalNed {
   static constexpr std::uint32_t kId = 84;
   std::uint32_t time_boot_ms = 0;

@@ -1,7 +1,7 @@
 -- PX4FMU v1, wired as its schematics say: STM32F405RG, 24 MHz crystal. The IMU's interrupt reaches PC3
 -- through the jumper JP6. The ESCs hang on the expansion header's I2C3, as in the thesis (PX4 used I2C1).
--- What the flight image has no driver for yet is left out: EEPROM (i2c2, 0x50), PPM (PA10); L3GD20, BMA180 and
--- buzzer are not modelled.
+-- What the flight image has no driver for yet is left out: EEPROM (i2c2, 0x50); L3GD20, BMA180 and buzzer are
+-- not modelled.
 return {
   board = "px4fmu_v1",
   mcu = "stm32f405rg",
@@ -19,6 +19,7 @@ return {
     { name = "radio", type = "mavlink_link", bus = "usart2", baud = "57600 baud",
       params = { uplink_loss = "5 %" } },
     { name = "gps", type = "ublox_6", bus = "usart6" },
+    { name = "rc", type = "cppm", bus = "PA10", params = { failsafe = "stop" } },
   },
   pins = { { name = "led_amber", pin = "PB14" }, { name = "led_blue", pin = "PB15" } },
   watch = { "fw::imu_task", "fw::attitude_task", "fw::position_task", "fw::esc_task", "fw::sensor_task", "fw::gps_task", "fw::telemetry_task",

@@ -18,6 +18,7 @@ return {
     { name = "radio", type = "mavlink_link", bus = "usart2", baud = "57600 baud",
       params = { uplink_loss = "5 %" } },
     { name = "gps", type = "ublox_6", bus = "usart6" },
+    { name = "rc", type = "cppm", bus = "PA10", params = { failsafe = "stop" } },
   },
   pins = { { name = "led_amber", pin = "PB14" }, { name = "led_blue", pin = "PB15" } },
   watch = { "fw::imu_task", "fw::attitude_task", "fw::position_task", "fw::esc_task", "fw::sensor_task", "fw::gps_task", "fw::telemetry_task",

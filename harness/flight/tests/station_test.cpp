@@ -76,6 +76,28 @@ TEST(Station, StreamsItsTargetTenTimesASecond) {
   EXPECT_EQ(target->coordinate_frame, 1);
 }
 
+TEST(Station, HoldsAnAttitudeFiftyTimesASecondInsteadOfItsTarget) {
+  Air air;
+  air.run(0, 1000);
+  air.station.hold({.roll_rad = 0.2, .yaw_rad = 0.3, .yaw_rate_radps = 0.1, .thrust = 0.5},
+                   Target{{1.0, 2.0, -1.5}, 0.3});
+  air.run(1000, 2000);
+  ASSERT_EQ(air.sent.size(), 50u);
+  const auto attitude = io::unpack<io::SetAttitudeTarget>(air.sent[0]);
+  ASSERT_TRUE(attitude);
+  // Half angles of 0.2 about the nose, then 0.3 about down.
+  EXPECT_TRUE(near(attitude->q[0], std::cos(0.1) * std::cos(0.15), stated(1e-6, "float")));
+  EXPECT_TRUE(near(attitude->q[1], std::sin(0.1) * std::cos(0.15), stated(1e-6, "float")));
+  EXPECT_TRUE(near(attitude->q[3], std::cos(0.1) * std::sin(0.15), stated(1e-6, "float")));
+  EXPECT_EQ(attitude->body_yaw_rate, 0.1f);
+  EXPECT_EQ(attitude->thrust, 0.5f);
+  EXPECT_EQ(attitude->type_mask, 0x03);
+  EXPECT_EQ(attitude->target_system, 1);
+  air.station.set_target(Target{{1.0, 2.0, -1.5}, 0.3});
+  air.run(2000, 3000);
+  EXPECT_TRUE(io::unpack<io::SetPositionTargetLocalNed>(air.sent.back()));
+}
+
 TEST(Station, KnowsNothingBeforeItHears) {
   Air air;
   EXPECT_TRUE(std::isnan(air.station.telemetry(0).height_m));

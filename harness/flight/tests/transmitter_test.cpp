@@ -47,7 +47,15 @@ TEST(Transmitter, IsOffUntilTheFirstCommandAndThenSendsFiftyTimesASecond) {
   EXPECT_EQ(pilot.at_ns[1] - pilot.at_ns[0], 20 * kMs);
   const auto& p = pilot.sent[0].position;
   EXPECT_EQ((std::vector<double>{p[0], p[1], p[2], p[3], p[4], p[5]}),
-            (std::vector<double>{0.0, 0.0, -1.0, 0.0, -1.0, 0.0}));
+            (std::vector<double>{0.0, 0.0, -1.0, 0.0, -1.0, -1.0}));
+}
+
+TEST(Transmitter, TheArmSwitchIsChannelSix) {
+  Pilot pilot;
+  EXPECT_EQ(pilot.ask("{ arm = true }"), "none");
+  EXPECT_EQ(pilot.ask("{ thrust = '50 %' }"), "none");
+  pilot.run_ms(1);
+  EXPECT_EQ(pilot.sent.at(0).position[5], 1.0);
 }
 
 // The order of channels: roll, pitch, thrust, yaw, mode.

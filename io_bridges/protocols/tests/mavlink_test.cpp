@@ -162,6 +162,7 @@ TEST(Mavlink, StructsAreAsLongAsThePublishedMessages) {
   expect_full_length<LocalPositionNed>(28);
   expect_full_length<CommandLong>(33);
   expect_full_length<CommandAck>(10);
+  expect_full_length<SetAttitudeTarget>(51);
   expect_full_length<SetPositionTargetLocalNed>(53);
   expect_full_length<ViconPositionEstimate>(116);
   expect_full_length<HighresImu>(63);
@@ -183,6 +184,17 @@ TEST(Mavlink, FieldsSitAtThePublishedOffsets) {
   EXPECT_EQ(frame.payload[48], 0xF8);
   EXPECT_EQ(frame.payload[49], 0x09);
   EXPECT_EQ(frame.payload[52], 1);
+
+  SetAttitudeTarget attitude;
+  attitude.q = {0.0f, 0.0f, 0.0f, 1.0f};
+  attitude.thrust = 1.0f;
+  attitude.target_system = 7;
+  attitude.type_mask = 0x83;
+  const MavlinkFrame turned = pack(attitude, sender);
+  EXPECT_EQ(turned.payload[19], 0x3F);  // q[3] at 16..19
+  EXPECT_EQ(turned.payload[35], 0x3F);  // thrust at 32..35
+  EXPECT_EQ(turned.payload[36], 7);
+  EXPECT_EQ(turned.payload[38], 0x83);
 }
 
 }  // namespace

@@ -1,0 +1,107 @@
+// What the pilot asks for, from frames as a receiver gives them.
+#include "firmware/flight/pilot.hpp"
+
+#include <gtest/gtest.h>
+
+namespace fw {
+namespace {
+
+struct Sticks {
+  std::uint16_t roll = 1500, pitch = 1500, throttle = 1000, yaw = 1500, mode = 1000, arm = 1000;
+};
+
+CppmFrame frame_of(const Sticks& s) {
+  CppmFrame frame;
+  frame.channels_us = {s.roll, s.pitch, s.throttle, s.yaw, s.mode, s.arm, 1500, 1500};
+  frame.count = 8;
+  return frame;
+}
+
+// A frame each 22 ms.
+void send(Pilot& pilot, const CppmFrame& frame, int times) {
+  for (int i = 0; i < times; ++i) {
+    pilot.on_frame(frame);
+    for (int ms = 0; ms < 22; ++ms) pilot.tick();
+  }
+}
+
+void wait_ms(Pilot& pilot, int ms) {
+  for (int i = 0; i < ms; ++i) pilot.tick();
+}
+
+TEST(Pilot, SticksAreSharesOfTheirTravel) {
+  Pilot pilot;
+  EXPECT_EQ(pilot.link(), PilotLink::never_heard);
+  send(pilot, frame_of({.roll = 2000, .pitch = 1000, .throttle = 2000, .yaw = 1750}), 3);
+  EXPECT_EQ(pilot.link(), PilotLink::ok);
+  const PilotDemand& demand = pilot.demand();
+  EXPECT_FLOAT_EQ(demand.roll, 1.0f);
+  EXPECT_FLOAT_EQ(demand.pitch, -1.0f);
+  EXPECT_FLOAT_EQ(demand.throttle, 1.0f);
+  EXPECT_FLOAT_EQ(demand.yaw, 230.0f / 460.0f);
+  EXPECT_FALSE(demand.throttle_low());
+}
+
+TEST(Pilot, AStickAboutItsMiddleAsksForNothingAndAThrottleAtItsStopIsLow) {
+  Pilot pilot;
+  send(pilot, frame_of({.roll = 1519, .pitch = 1481, .throttle = 1010, .yaw = 1500}), 3);
+  EXPECT_EQ(pilot.demand().roll, 0.0f);
+  EXPECT_EQ(pilot.demand().pitch, 0.0f);
+  EXPECT_EQ(pilot.demand().throttle, 0.0f);
+  EXPECT_TRUE(pilot.demand().throttle_low());
+}
+
+TEST(Pilot, TheSwitchesSelectModeAndArming) {
+  const PilotMode modes[] = {PilotMode::attitude, PilotMode::velocity, PilotMode::autonomous};
+  for (unsigned i = 0; i < 3; ++i) {
+    Pilot pilot;
+    send(pilot, frame_of({.mode = static_cast<std::uint16_t>(1000 + 500 * i), .arm = 2000}), 3);
+    EXPECT_EQ(pilot.demand().mode, modes[i]);
+    EXPECT_TRUE(pilot.demand().arm);
+  }
+}
+
+TEST(Pilot, OneBadFrameMovesNothing) {
+  Pilot pilot;
+  const Sticks good{.throttle = 1500, .mode = 1500, .arm = 2000};
+  send(pilot, frame_of(good), 5);
+  send(pilot, frame_of({.roll = 2000, .throttle = 1000, .yaw = 1000, .mode = 2000, .arm = 1000}),
+       1);
+  send(pilot, frame_of(good), 1);
+  EXPECT_EQ(pilot.demand().roll, 0.0f);
+  EXPECT_EQ(pilot.demand().yaw, 0.0f);
+  EXPECT_FLOAT_EQ(pilot.demand().throttle, 0.5f);
+  EXPECT_EQ(pilot.demand().mode, PilotMode::velocity);
+  EXPECT_TRUE(pilot.demand().arm);
+}
+
+TEST(Pilot, NonsenseIsNoFrameAndEndsTheLink) {
+  CppmFrame few = frame_of({});
+  few.count = 5;
+  const CppmFrame nonsense[] = {few, frame_of({.roll = 899}), frame_of({.arm = 2101}),
+                                frame_of({.throttle = 949})};
+  for (const CppmFrame& frame : nonsense) {
+    Pilot pilot;
+    send(pilot, frame_of({.throttle = 1500}), 5);
+    send(pilot, frame, 22);  // 484 ms, and 22 since the last good one
+    EXPECT_EQ(pilot.link(), PilotLink::nonsense);
+    EXPECT_EQ(pilot.frames_refused(), 22u);
+    send(pilot, frame_of({.throttle = 1500}), 2);
+    EXPECT_EQ(pilot.link(), PilotLink::lost);
+    send(pilot, frame_of({.throttle = 1500}), 1);
+    EXPECT_EQ(pilot.link(), PilotLink::ok);  // three in a row
+  }
+}
+
+TEST(Pilot, IsLostHalfASecondAfterTheLastFrame) {
+  Pilot pilot;
+  send(pilot, frame_of({.roll = 2000}), 3);
+  wait_ms(pilot, 499 - 22);
+  EXPECT_EQ(pilot.link(), PilotLink::ok);
+  wait_ms(pilot, 1);
+  EXPECT_EQ(pilot.link(), PilotLink::lost);
+  EXPECT_EQ(pilot.demand().roll, 1.0f);
+}
+
+}  // namespace
+}  // namespace fw

@@ -1,0 +1,35 @@
+-- Steps of roll and pitch from hover, told by SET_ATTITUDE_TARGET at 50 Hz: 10 to 90 % within 100 ms, for
+-- steps that the rotors can just follow (20 degrees) and for smaller ones. Settled is within a tenth of the
+-- step about what was asked for. The thrust is not corrected meanwhile.
+include "include/hover.lua"
+
+plan "attitude_step" {
+  image = "flight", board = "px4fmu_v1", vehicle = "hp_quad",
+  tags = { "flight" }, timeout = "120 s",
+  run = function(t)
+    hover(t)
+    t:command { position = { north = "0 m", east = "0 m", height = "1.1 m" } }
+    for _, axis in ipairs { "roll", "pitch" } do
+      for _, angle in ipairs { 10, -10, 20, -20 } do
+        local name = axis .. " " .. angle .. " deg"
+        t:step(name)
+        t:command { attitude = {}, thrust = "50 %" }
+        t:wait "0.5 s"
+        local r = t:record({ axis, "height", "yaw" }, "0.6 s", function()
+          t:command { attitude = { [axis] = angle .. " deg" }, thrust = "50 %" }
+        end)
+        -- A change downward falls, as the metric has it.
+        local rise = angle > 0 and r:rise_time(axis) or r:fall_time(axis)
+        t:expect(rise, name .. ": 10 to 90 %"):at_most "100 ms"
+        t:expect(r:response_time(axis), name .. ": command on the wire to 90 %"):at_most "250 ms"
+        t:expect(r:overshoot(axis), name .. ": overshoot"):at_most "15 %"
+        local band = string.format("%g deg", math.abs(angle) / 10)
+        t:expect(r:settled(band, { [axis] = angle .. " deg" }), name .. ": within " .. band):at_most "400 ms"
+        t:expect(r:max_error { height = "1.1 m" }, name .. ": height"):at_most "40 cm"
+        t:command { position = { north = "0 m", east = "0 m", height = "1.1 m" } }
+        t:within("6 s", function(s) return s.offset_m < 0.1 and s.tilt_rad < 0.05 end, name .. ": back")
+        t:wait "2 s"
+      end
+    end
+  end,
+}
