@@ -162,7 +162,8 @@ void Flight::enter(FlightState state, Reason reason) {
   state_ = state;
   if (state_ == FlightState::failsafe) {
     constexpr float kLongestAtGround_s = 12.0f, kSlowest_mps = 0.25f;
-    blind_longest_s_ = kLongestAtGround_s + height_m() / kSlowest_mps;
+    const float last_known_m = ground_W_m_.z() - estimator_.p_WB_W_m().z();
+    blind_longest_s_ = kLongestAtGround_s + std::max(height_m(), last_known_m) / kSlowest_mps;
   }
   state_s_ = contact_s_ = 0.0f;
   reason_ = reason;

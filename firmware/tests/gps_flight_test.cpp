@@ -207,6 +207,21 @@ TEST(GpsFlight, AJumpOrAFalseVelocityIsNotFollowed) {
   }
 }
 
+// From 6 m it takes 17 s: the rotors turn until it is down.
+TEST(GpsFlight, WithoutAPositionItSinksToTheGround) {
+  Outdoors out;
+  out.hover();
+  out.gps_on = false;
+  double fastest_mps = 0.0;
+  for (int i = 0; i < 300 && out.flight.state() != FlightState::disarmed; ++i) {
+    out.run(0.1);
+    fastest_mps = std::max(fastest_mps, out.vehicle.v_W_.z());
+  }
+  EXPECT_EQ(out.flight.state(), FlightState::disarmed);
+  EXPECT_LT(-out.vehicle.p_W_.z(), 0.3);
+  EXPECT_LT(fastest_mps, 1.0);
+}
+
 // It comes back elsewhere, and twice as wrong: no speed is made of that.
 TEST(GpsFlight, AReceiverThatComesBackAfterAGapIsTakenWhereItIs) {
   Outdoors out;
