@@ -103,7 +103,7 @@ float Flight::height_m() const {
 
 // Faster far up, so that what is left of the battery lasts.
 float Flight::descent_mps() const {
-  constexpr float kHigh_m = 2.5f, kFaster_ps = 0.25f, kFastest_mps = 1.2f;
+  constexpr float kHigh_m = 2.5f, kFaster_ps = 0.25f, kFastest_mps = 0.8f;
   constexpr float kLongestReturn_s = 15.0f;
   const bool outside = estimator_.position_known() && !fence().contains(estimator_.p_WB_W_m());
   if (outside && state_s_ < kLongestReturn_s) return 0.0f;

@@ -11,6 +11,9 @@ using whirl::near, whirl::stated;
 
 struct Teleoperated {
   Teleoperated() : vehicle({}) {
+    for (const Parameter width : {Parameter::fence_north_m, Parameter::fence_east_m}) {
+      flight.parameters().set(width, 0.0f);
+    }
     vehicle.run(flight, 3.0);
     EXPECT_EQ(flight.arm(), Reason::none) << text_of(flight.ready_to_arm());
     vehicle.run(flight, 1.0);

@@ -2,6 +2,7 @@
 -- the vehicle flies on by drag: velocity through the air and the wind as capture had taught it, height by the
 -- barometer, heading by the magnetic field. Position is no longer known: how far it drifts is told. Then it lands.
 include "include/hover.lua"
+include "include/parameter.lua"
 
 local ways = { { "0.6 m/s", "0 m/s" }, { "-0.6 m/s", "0 m/s" }, { "0 m/s", "0.6 m/s" }, { "0 m/s", "-0.6 m/s" },
                { "0.4 m/s", "0.4 m/s" }, { "-0.4 m/s", "-0.4 m/s" } }
@@ -22,11 +23,14 @@ local function teleoperate(t, legs, words)
 end
 
 local function teleoperation(name, wind)
-  plan("teleoperation" .. name) {
+  plan("teleoperation by drag" .. name) {
     image = "flight", board = "px4fmu_v1", vehicle = "hp_quad",
     room = { size = { "100 m", "100 m", "20 m" } },
     tags = { "nightly" }, timeout = "220 s",
     run = function(t)
+      t:within("8 s", function(s) return s.heartbeat_age_s < 1.5 end, "it is up")
+      set_parameter(t, "FENCE_NORTH", 50)
+      set_parameter(t, "FENCE_EAST", 50)
       hover(t)
       if wind then t:gust { north = "1.5 m/s", east = "1 m/s", duration = "200 s", edge = "3 s" } end
       t:always("tilt"):at_most "15 deg"
@@ -48,4 +52,4 @@ local function teleoperation(name, wind)
 end
 
 teleoperation("", false)
-teleoperation("_wind", true)
+teleoperation(" in wind", true)
