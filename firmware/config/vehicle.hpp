@@ -31,10 +31,14 @@ inline constexpr float kTorquePerThrust_m = 0.0165f;
 // Rotor drag, force = -c T v sideways, until flights have identified it [Bangura 2017, 4.4.7].
 inline constexpr float kDrag_spm = 0.04f;
 
-// The frame's drag by the square of speed, over thrust in hover: 1.2 dm^2 of silhouette as measured with
-// a ruler on the drawing of the frame, a coefficient of 1.1 for bars and plates, air of 1.2 kg/m^3.
+// The frame's drag by the square of speed, over thrust in hover. An estimate from the parts' sizes, measured
+// by nobody: two arms of 20 cm by 15 mm, three motors of 28 by 36 mm, the battery's 33 by 35 mm, boards of
+// 50 by 40 mm, two legs of 10 cm by 8 mm; a coefficient of 1.1 for bars and plates, air of 1.2 kg/m^3.
 // A third more or less of it is 6 cm/s of wind in 3 m/s.
-inline constexpr float kFrameDrag_s2pm2 = 0.5f * 1.2f * 1.1f * 0.012f / (kMass_kg * kGravity_mps2);
+inline constexpr float kSilhouette_m2 = 2 * 0.200f * 0.015f + 3 * 0.028f * 0.036f +
+                                        0.033f * 0.035f + 0.050f * 0.040f + 2 * 0.100f * 0.008f;
+inline constexpr float kFrameDrag_s2pm2 =
+    0.5f * 1.2f * 1.1f * kSilhouette_m2 / (kMass_kg * kGravity_mps2);
 
 // The mode that the ESCs are set to: v = 1..2047 spans its range, v = 0 stops the motor.
 #ifndef FW_ESC_MODE  // the image flight_st is built with thrust_by_power
@@ -61,8 +65,9 @@ inline constexpr float kIntegralLimit_mps2[3] = {1.5f, 1.5f, 3.0f};
 inline constexpr float kTiltLimit_tan = 0.40f;  // 22 degrees
 
 // Reference: speed and acceleration that a set-point may ask for.
-inline constexpr float kReferenceGain_ps = 1.35f;  // critically damped with four times this inside
+inline constexpr float kReferenceGain_ps = 1.5f;  // critically damped with four times this inside
 inline constexpr float kSpeedLimit_mps = 1.2f, kClimbLimit_mps = 0.5f;
+inline constexpr float kCruiseAccelerationLimit_mps2 = 1.2f;  // of a commanded velocity
 inline constexpr float kAccelerationLimit_mps2 = 1.5f, kClimbAccelerationLimit_mps2 = 0.8f;
 
 inline constexpr float kDescent_mps = 0.35f, kTouchdown_mps = 0.25f, kTouchdownHeight_m = 0.35f;

@@ -29,11 +29,11 @@ void Reference::start(const Vector3& p_W_m, float yaw_rad) {
   yaw_rad_ = yaw_rad;
 }
 
-void Reference::drive(const Vector3& v_wanted_W_mps, float dt_s) {
+void Reference::drive(const Vector3& v_wanted_W_mps, float dt_s, float most_mps2) {
   constexpr float kInner_ps = 4.0f * config::kReferenceGain_ps;
   tracking_ = false;
   jerk_W_mps3_.setZero();
-  a_W_mps2_ = limited(kInner_ps * (v_wanted_W_mps - v_W_mps_), config::kAccelerationLimit_mps2,
+  a_W_mps2_ = limited(kInner_ps * (v_wanted_W_mps - v_W_mps_), most_mps2,
                       config::kClimbAccelerationLimit_mps2);
   p_W_m_ += dt_s * v_W_mps_ + 0.5f * dt_s * dt_s * a_W_mps2_;
   v_W_mps_ += dt_s * a_W_mps2_;
@@ -69,7 +69,8 @@ void Reference::cruise(const Vector3& p_WB_W_m, const Vector3& v_wanted_W_mps, f
   const float error_m = z_m - p_W_m_.z();
   Vector3 wanted = v_wanted_W_mps;
   wanted.z() = config::kReferenceGain_ps * error_m;
-  drive(limited(wanted, config::kSpeedLimit_mps, climb_limit(error_m)), dt_s);
+  drive(limited(wanted, config::kSpeedLimit_mps, climb_limit(error_m)), dt_s,
+        config::kCruiseAccelerationLimit_mps2);
   p_W_m_.head<2>() = p_WB_W_m.head<2>();  // nowhere to be
   turn_to(yaw_rad, dt_s);
 }

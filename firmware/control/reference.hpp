@@ -2,6 +2,7 @@
 // within limits of speed and acceleration; or a trajectory that somebody else has made, followed
 // between the points in which it is told.
 #pragma once
+#include "firmware/config/vehicle.hpp"
 #include "firmware/math.hpp"
 
 namespace fw {
@@ -36,7 +37,8 @@ class Reference {
   float yaw_rad() const { return yaw_rad_; }
 
  private:
-  void drive(const Vector3& v_wanted_W_mps, float dt_s);
+  void drive(const Vector3& v_wanted_W_mps, float dt_s,
+             float most_mps2 = config::kAccelerationLimit_mps2);
   void turn_to(float goal_yaw_rad, float dt_s);
 
   Vector3 p_W_m_ = Vector3::Zero(), v_W_mps_ = Vector3::Zero(), a_W_mps2_ = Vector3::Zero();

@@ -6,10 +6,10 @@ include "include/parameter.lua"
 
 local ways = { { "0.6 m/s", "0 m/s" }, { "-0.6 m/s", "0 m/s" }, { "0 m/s", "0.6 m/s" }, { "0 m/s", "-0.6 m/s" },
                { "0.4 m/s", "0.4 m/s" }, { "-0.4 m/s", "-0.4 m/s" } }
-local signals = { "velocity_north", "velocity_east", "height", "tilt", "velocity_error_north", "velocity_error_east" }
+local signals = { "velocity_north", "velocity_east", "height", "told_height", "tilt", "velocity_error_north", "velocity_error_east" }
 
 -- Flies the ways, five seconds each, for a time; judges each from when it has been flown up to.
-local function teleoperate(t, legs, words)
+local function teleoperate(t, legs, words, by_drag)
   for leg = 1, legs do
     local way = ways[(leg - 1) % #ways + 1]
     t:command { velocity = { north = way[1], east = way[2] } }
@@ -18,7 +18,10 @@ local function teleoperate(t, legs, words)
     local name = words .. ", leg " .. leg
     t:expect(r:max_error { velocity_north = way[1], velocity_east = way[2] }, name .. ": velocity off the command"):at_most "0.3 m/s"
     t:expect(r:rms_error { velocity_error_north = "0 m/s", velocity_error_east = "0 m/s" }, name .. ": velocity believed, RMS error"):at_most "0.15 m/s"
-    t:expect(r:max_error("height", "1.1 m"), name .. ": height"):at_most "0.3 m"
+    -- Held is the barometer's height. Where that is nobody but capture can tell: it wanders by 8 Pa in 10 minutes
+    -- (plant/sensors), 0.3 m in a minute, in one standard deviation; three of them are told apart from a fault.
+    t:expect(r:max_error("told_height", "1.1 m"), name .. ": height, by the vehicle's own"):at_most "0.3 m"
+    t:expect(r:max_error("height", "1.1 m"), name .. ": height"):at_most(by_drag and "1.2 m" or "0.3 m")
   end
 end
 
@@ -39,7 +42,7 @@ local function teleoperation(name, wind)
       teleoperate(t, 18, "with capture")
       t:step "capture lost"
       t:fault { kind = "capture_lost" }
-      teleoperate(t, 12, "by drag")
+      teleoperate(t, 12, "by drag", true)
       t:expect(t:value "told_velocity_source", "by drag until now"):equal(2)
       local north = t:value("told_north").value - t:value("north").value
       local east = t:value("told_east").value - t:value("east").value
