@@ -91,11 +91,11 @@ TEST(RotorResponse, ReachesSetPointsAtTheRatesOfTheRotors) {
   for (int i = 0; i < 20; ++i) rotors.step(0.001f);
   const RotorThrusts& thrusts = rotors.thrusts_N();
   EXPECT_TRUE(near(thrusts[0], 2.2 + 51.0 * 0.02, stated(1e-3, "the rate's own")));
-  EXPECT_FLOAT_EQ(thrusts[1], 2.2f);
+  EXPECT_TRUE(whirl::near(thrusts[1], 2.2, whirl::stated(1e-5, "floats")));
   // T^-0.5 grows by 2.0 a second while it coasts.
   EXPECT_TRUE(near(thrusts[2], std::pow(std::pow(2.2, -0.5) + 2.0 * 0.02, -2.0),
                    stated(0.005, "steps of a millisecond")));
-  EXPECT_FLOAT_EQ(thrusts[3], 2.3f);
+  EXPECT_TRUE(whirl::near(thrusts[3], 2.3, whirl::stated(1e-5, "floats")));
 }
 
 // Set-points for means: sent, and followed step by step, they have these means.

@@ -101,10 +101,10 @@ TEST(Mixer, WithinTheRangesTheTorqueComesFirst) {
 }
 
 TEST(Mixer, AHalfOfTheThrottleHoversAndItsEndsAreTheRotors) {
-  EXPECT_FLOAT_EQ(collective_N(0.5f, 9.0f), 9.0f);
-  EXPECT_FLOAT_EQ(collective_N(0.0f, 9.0f), 4.0f * 0.8f);
-  EXPECT_FLOAT_EQ(collective_N(1.0f, 9.0f), 4.0f * 6.0f);
-  EXPECT_FLOAT_EQ(collective_N(0.75f, 9.0f), 16.5f);
+  EXPECT_TRUE(whirl::near(collective_N(0.5f, 9.0f), 9.0, whirl::stated(1e-5, "floats")));
+  EXPECT_TRUE(whirl::near(collective_N(0.0f, 9.0f), 4.0f * 0.8f, whirl::stated(1e-5, "floats")));
+  EXPECT_TRUE(whirl::near(collective_N(1.0f, 9.0f), 4.0f * 6.0f, whirl::stated(1e-5, "floats")));
+  EXPECT_TRUE(whirl::near(collective_N(0.75f, 9.0f), 16.5, whirl::stated(1e-5, "floats")));
 }
 
 // Ends of the range on the wire: v = 1 asks for 0.8 N, v = 2047 for 8 N; steps of 3.5 mN.

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "base/near.hpp"
+
 namespace fw {
 namespace {
 
@@ -35,10 +37,10 @@ TEST(Pilot, SticksAreSharesOfTheirTravel) {
   send(pilot, frame_of({.roll = 2000, .pitch = 1000, .throttle = 2000, .yaw = 1750}), 3);
   EXPECT_EQ(pilot.link(), PilotLink::ok);
   const PilotDemand& demand = pilot.demand();
-  EXPECT_FLOAT_EQ(demand.roll, 1.0f);
-  EXPECT_FLOAT_EQ(demand.pitch, -1.0f);
-  EXPECT_FLOAT_EQ(demand.throttle, 1.0f);
-  EXPECT_FLOAT_EQ(demand.yaw, 230.0f / 460.0f);
+  EXPECT_TRUE(whirl::near(demand.roll, 1.0, whirl::stated(1e-5, "floats")));
+  EXPECT_TRUE(whirl::near(demand.pitch, -1.0, whirl::stated(1e-5, "floats")));
+  EXPECT_TRUE(whirl::near(demand.throttle, 1.0, whirl::stated(1e-5, "floats")));
+  EXPECT_TRUE(whirl::near(demand.yaw, 0.5, whirl::stated(1e-5, "floats")));
   EXPECT_FALSE(demand.throttle_low());
 }
 
@@ -70,7 +72,7 @@ TEST(Pilot, OneBadFrameMovesNothing) {
   send(pilot, frame_of(good), 1);
   EXPECT_EQ(pilot.demand().roll, 0.0f);
   EXPECT_EQ(pilot.demand().yaw, 0.0f);
-  EXPECT_FLOAT_EQ(pilot.demand().throttle, 0.5f);
+  EXPECT_TRUE(whirl::near(pilot.demand().throttle, 0.5, whirl::stated(1e-5, "floats")));
   EXPECT_EQ(pilot.demand().mode, PilotMode::velocity);
   EXPECT_TRUE(pilot.demand().arm);
 }

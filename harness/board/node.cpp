@@ -20,4 +20,13 @@ Result<NodePlace> node_place(const std::vector<Node>& nodes, const std::string& 
                    " with NODE of: " + names};
 }
 
+std::string timing_profile(const std::vector<Node>& nodes) {
+  std::string all;
+  for (const Node& node : nodes) {
+    const std::string whose = node.name.empty() ? "" : node.name + ": ";
+    all += (all.empty() ? "" : "; ") + whose + node.board.timing_profile();
+  }
+  return all;
+}
+
 }  // namespace whirl

@@ -29,4 +29,7 @@ struct NodePlace {
 // Errors  bad_input: of several nodes none is named, or one that is not there
 Result<NodePlace> node_place(const std::vector<Node>& nodes, const std::string& text);
 
+// In words: which clock each board's time passes by.
+std::string timing_profile(const std::vector<Node>& nodes);
+
 }  // namespace whirl

@@ -58,15 +58,6 @@ std::pair<std::int32_t, std::int32_t> on_wire(const FaultPlace& place) {
       place);
 }
 
-std::string timing_profile(const std::vector<Node>& nodes) {
-  std::string all;
-  for (const Node& node : nodes) {
-    const std::string whose = node.name.empty() ? "" : node.name + ": ";
-    all += (all.empty() ? "" : "; ") + whose + node.board.timing_profile();
-  }
-  return all;
-}
-
 class Run {
  public:
   explicit Run(const RunParts& parts)

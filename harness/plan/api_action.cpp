@@ -16,6 +16,7 @@ constexpr int kMost_motors =
 
 int command(lua_State* L) {
   Script& script = Script::of(L);
+  script.act();
   const lua::Table table = check_table(L, 2);
   if (auto done = script.give_command(table); !done) raise(L, done.error());
   return 0;
@@ -34,6 +35,7 @@ int at(lua_State* L) {
 }
 
 int gust(lua_State* L) {
+  Script::of(L).act();
   const Stage& stage = Script::of(L).stage();
   const lua::Table table = check_table(L, 2);
   if (auto done = disturb(stage.world, table, stage.now_ns); !done) raise(L, done.error());
@@ -116,6 +118,7 @@ int axis_number(const lua::Table& asked, const FaultPlace& place, const BoardDes
 // Without a duration it stays for ever. start counts from now.
 int fault(lua_State* L) {
   Script& self = Script::of(L);
+  self.act();
   const lua::Table asked = check_table(L, 2);
   FaultSpec fault;
   fault.kind = asked.text("kind");

@@ -124,7 +124,8 @@ int after_telling(lua_State* L, int, lua_KContext ref) {
   return 1;
 }
 
-// t:told(limit, words) -> whether the firmware told a text with these words within the limit.
+// t:told(limit, words) -> whether the firmware told a text with these words between the plan's latest fault,
+// command or gust and the limit, which counts from now.
 int told(lua_State* L) {
   Script& self = Script::of(L);
   Stage& stage = self.stage();
@@ -132,7 +133,7 @@ int told(lua_State* L) {
   const std::string words = check_text(L, kTold_words, "words");
   if (words.empty()) raise(L, "t:told: no words");
   lua_settop(L, kTold_words);
-  const auto before = static_cast<lua_Integer>(stage.world.told_texts().size());
+  const auto before = static_cast<lua_Integer>(self.told_before());
   lua_pushstring(L, place_of(L).c_str());
   lua_pushinteger(L, before);
   lua_pushinteger(L, stage.now_ns);

@@ -140,6 +140,9 @@ class Script {
   void add(results::Expectation expectation);  // makes its name unique
   // The plan has taken in something of the run: a signal, an answer, a window.
   void look() { looked_ = true; }
+  // It has done something: what is told from now on may be the answer.
+  void act() { told_before_ = stage_.world.told_texts().size(); }
+  std::size_t told_before() const { return told_before_; }  // texts, by its latest act
   bool has_looked() const { return looked_; }
   void wait_until(std::int64_t t_ns, int condition_ref = -1);
   bool condition_met() const { return condition_met_; }
@@ -186,6 +189,7 @@ class Script {
   bool condition_met_ = false;
   bool started_ = false, done_ = false;
   bool looked_ = false;
+  std::size_t told_before_ = 0;
   std::optional<RandomStream> chance_;
   std::string step_name_;
   std::vector<OpenWindow> windows_;

@@ -3,11 +3,10 @@
 #
 #   Flies test_plans/flight/flight_log.lua's first plan, then: fsck.fat calls the card's volume clean, mtools
 #   takes the log out of it, Foxglove's reader (npm, @foxglove/ulog) reads it and agrees with run.json and
-#   with truth.csv. Exit code 77, "skipped": no node, or npm's registry is not reached; the rest was good
+#   with truth.csv. npm brings it by its lock file
 set -euo pipefail
 whirl=$1 root=$2
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-reader='@foxglove/ulog@2.3.2'
 PATH=$PATH:/sbin:/usr/sbin
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
@@ -21,15 +20,15 @@ fsck.fat -n "$scratch/volume.img"
 mcopy -n -i "$run/card.img@@1M" ::LOG00001.ULG "$scratch/log.ulg"
 cmp "$scratch/log.ulg" "$run/flight.ulg"
 
-if ! command -v node >/dev/null || ! command -v npm >/dev/null; then
-  echo 'log_readers: skipped: no node and npm here, so Foxglove'"'"'s reader was not asked'
-  exit 77
-fi
+for tool in node npm; do
+  command -v "$tool" >/dev/null || { echo "$tool is not there: ./whirl test installs it (nodejs, npm)" >&2; exit 1; }
+done
 cd "$scratch"
-if ! timeout 120 npm install --no-audit --no-fund --loglevel=error "$reader" >npm.txt 2>&1; then
-  cat npm.txt
-  echo "log_readers: skipped: npm did not get $reader, is its registry reachable? The log was not read by it"
-  exit 77
+cp "$here/package.json" "$here/package-lock.json" .
+if ! timeout 120 npm ci --ignore-scripts --no-audit --no-fund --loglevel=error >npm.txt 2>&1; then
+  cat npm.txt >&2
+  echo "log_readers: npm did not get @foxglove/ulog, is its registry reachable? The log was not read by it" >&2
+  exit 1
 fi
 cp "$here/read_ulog.js" .
 node read_ulog.js log.ulg "$run"

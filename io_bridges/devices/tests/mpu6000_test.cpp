@@ -349,42 +349,6 @@ TEST(Mpu6000, BetaflightsStartUpPasses) {
   EXPECT_TRUE(bench.findings.empty());
 }
 
-TEST(Mpu6000, Px4sStartUpPassesAndItsFifoHoldsEachAccelerationEightTimes) {
-  MpuBench bench;
-  bench.write(0x6B, 0x80);
-  bench.run(100);
-  EXPECT_EQ(bench.read(0x75), 0x68);
-  EXPECT_EQ(bench.read(0x6B), 0x40);
-  bench.write(0x6B, 0x01);
-  bench.write(0x68, 0x07);
-  bench.write(0x6A, 0x11);
-  bench.run(100);
-  const std::pair<std::uint8_t, std::uint8_t> settings[] = {
-      {0x1B, 0x18}, {0x1C, 0x18}, {0x23, 0x78}, {0x37, 0x80}, {0x38, 0x01}, {0x6A, 0x50}};
-  for (const auto& [address, value] : settings) bench.write(address, bench.read(address) | value);
-  for (const auto& [address, value] : settings) {
-    EXPECT_EQ(bench.read(address) & value, value) << int{address};
-  }
-  bench.write(0x6A, 0x54);        // FIFO_RESET
-  for (int i = 0; i < 50; ++i) {  // 5 ms at 8 kHz while the vehicle shakes
-    bench.truth.specific_force_mps2[0] = i % 2 == 0 ? 20.0 : -20.0;
-    bench.run(0.1);
-  }
-  const int length = bench.word(0x72);
-  ASSERT_EQ(length, 40 * 12);
-  std::vector<std::uint8_t> fifo(1 + static_cast<std::size_t>(length), 0);
-  fifo[0] = 0x80 | 0x74;
-  fifo = bench.spi(fifo, 5'000'000);
-  const auto accel_x = [&fifo](std::size_t i) { return fifo[1 + 12 * i] << 8 | fifo[2 + 12 * i]; };
-  std::vector<std::size_t> changes;
-  for (std::size_t i = 1; i < 40; ++i) {
-    if (accel_x(i) != accel_x(i - 1)) changes.push_back(i);
-  }
-  ASSERT_GE(changes.size(), 4u);
-  for (std::size_t k = 1; k < changes.size(); ++k) EXPECT_EQ(changes[k] - changes[k - 1], 8u);
-  EXPECT_TRUE(bench.findings.empty()) << bench.findings.front();
-}
-
 TEST(Mpu6000, ABrownOutPutsItToSleepWithItsFirstSettings) {
   MpuBench bench;
   bench.wake();
