@@ -17,9 +17,8 @@ using Quaternion = Eigen::Quaternionf;
 inline constexpr float kPi = 3.14159265358979f;
 
 inline float wrap_pi(float angle_rad) {
-  while (angle_rad > kPi) angle_rad -= 2.0f * kPi;
-  while (angle_rad < -kPi) angle_rad += 2.0f * kPi;
-  return angle_rad;
+  if (std::abs(angle_rad) <= kPi) return angle_rad;
+  return std::remainder(angle_rad, 2.0f * kPi);  // in bounded time, whatever a message says
 }
 
 inline Vector3 clamp_each(const Vector3& v, const Vector3& limit) {

@@ -67,7 +67,7 @@ bool Estimator::converged() const {
 
 void Estimator::on_fix(const CaptureFix& fix) {
   // Who flies by GPS comes into a room in another frame: not before it has landed.
-  if (situation_.in_flight && gps_guard_.fresh()) return;
+  if (situation_.in_flight && gps_frame_.known()) return;
   const bool first = fix_age_ms_ >= kFixLost_ms && !situation_.in_flight;
   const float since_last_s = seconds(fix_age_ms_);
   if (!fix_fresh()) calibration_.restart();  // a window by gravity is none by capture

@@ -98,8 +98,8 @@ void Flight::on_velocity(const Vector3& v_W_mps, float z_m, float yaw_rad) {
 void Flight::on_attitude(const Quaternion& q_WB, float yaw_rate_radps, float thrust_share) {
   constexpr float kSteepest_cos = 0.5f;  // 60 degrees: what tips over is not asked for
   if (steered_by_hand()) return;
-  target_age_ms_ = 0;
   if (state_ != FlightState::flying || !airborne_ || lift_ < 1.0f) return;
+  target_age_ms_ = 0;
   if (tilt_cosine(q_WB) < kSteepest_cos) return;
   if (aim_ != Aim::attitude) attitude_reference_.start(wanted_.q_WB);
   aim_ = Aim::attitude;
@@ -118,7 +118,8 @@ Reason Flight::arm() {
 
 void Flight::begin_armed() {
   emergency_ = false;
-  ground_W_m_ = estimator_.p_WB_W_m();
+  ground_W_m_ = target_W_m_ = estimator_.p_WB_W_m();  // what was flown to before is forgotten
+  target_age_ms_ = kNever;
   enter(FlightState::armed, Reason::commanded);
 }
 

@@ -100,7 +100,8 @@ void Flight::detect_touchdown() {
   } else {
     lift_ = std::min(1.0f, lift_ + kPositionStep_s / kTakeUp_s);
   }
-  const bool blind_too_long = state_ == FlightState::failsafe && state_s_ > blind_longest_s_;
+  const bool blind_too_long =
+      state_ == FlightState::failsafe && !navigates() && state_s_ > blind_longest_s_;
   if (lift_ < 0.2f || blind_too_long) {
     const bool failed = state_ == FlightState::failsafe;
     // Who flies by hand stops the motors by hand.

@@ -23,7 +23,7 @@ void Flight::follow_pilot() {
   if (state_ == FlightState::armed && sticks.arm && lifts && state_s_ > manual::kSpinUp_s) {
     enter(FlightState::flying, Reason::commanded);
     hand_over(steered_);
-  } else if (state_ == FlightState::landing && lifts) {
+  } else if (state_ == FlightState::landing && lifts && reason_ == Reason::commanded) {
     enter(FlightState::flying, Reason::commanded);
     hand_over(steered_);
   }
@@ -32,14 +32,16 @@ void Flight::follow_pilot() {
 
 void Flight::follow_arm_switch(const PilotDemand& sticks) {
   const bool switched_on = sticks.arm && !arm_switch_;
+  const bool by_hand = steered_ != PilotMode::autonomous;
+  const bool switched_off = !sticks.arm && (arm_switch_ || by_hand);
   arm_switch_ = sticks.arm;
   if (switched_on && state_ == FlightState::disarmed) {
     const Reason why_not = sticks.throttle_low() ? ready_to_arm() : Reason::throttle_high;
     if (why_not != Reason::none) return refuse(why_not);
     begin_armed();
   }
-  const bool by_hand = steered_ != PilotMode::autonomous;
-  if (by_hand && !sticks.arm && sticks.throttle_low() && state_ == FlightState::armed) {
+  // Who armed by radio while the switch was off is not stopped by it: it has to be switched.
+  if (switched_off && sticks.throttle_low() && state_ == FlightState::armed) {
     stop_motors(Reason::commanded, false);
   }
 }

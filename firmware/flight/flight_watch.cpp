@@ -22,8 +22,7 @@ Conditions Flight::conditions() const {
   now.set(Condition::esc_silent, motors_.silent());
   now.set(Condition::no_position, !navigates());
   now.set(Condition::by_drag, estimator_.velocity_source() == VelocitySource::drag);
-  now.set(Condition::outside_fence,
-          estimator_.position_known() && !fence().contains(estimator_.p_WB_W_m()));
+  now.set(Condition::outside_fence, navigates() && !fence().contains(estimator_.p_WB_W_m()));
   now.set(Condition::battery_empty, battery_.rest_V() < parameters_.get(Parameter::bat_empty_V));
   now.set(Condition::battery_low, battery_.rest_V() < parameters_.get(Parameter::bat_low_V));
   now.set(Condition::no_link, link_age_ms_ > kLinkLost_ms && link_age_ms_ < kNever);
@@ -37,7 +36,7 @@ Conditions Flight::conditions() const {
 
 // The capture system's room, or, by GPS alone, about where it began.
 Fence Flight::fence() const {
-  if (!estimator_.fix_fresh()) {
+  if (estimator_.velocity_source() == VelocitySource::gps) {
     return {.top_m = parameters_.get(Parameter::fence_height_m),
             .radius_m = parameters_.get(Parameter::fence_radius_m)};
   }

@@ -123,14 +123,22 @@ struct RunCommand {
 CLI::App* add_fly(CLI::App& app, FlyOptions& options, RunCommand& run) {
   auto* fly = app.add_subcommand(
       "fly", "a flight paced to real time, for a MAVLink client on UDP; gives no verdict");
+  // A range does not keep NaN out.
+  const CLI::Validator finite(
+      [](const std::string& text) {
+        return text.find_first_of("nN") == std::string::npos ? "" : "is not a finite number";
+      },
+      "FINITE");
   fly->add_option("plan", options.plan, "vehicle, surroundings and script (default: free.lua)");
   fly->add_option("--only", run.options.only, "the plan of this name");
   fly->add_option("--udp", options.udp, "HOST:PORT where the client listens (127.0.0.1:14550)");
   fly->add_option("--listen", options.listen, "our own port (default: one that is free)");
   fly->add_option("--pace", options.pace, "virtual seconds to one of the host (1)")
-      ->check(CLI::Range(0.001, 1000.0));
+      ->check(CLI::Range(0.001, 1000.0))
+      ->check(finite);
   fly->add_option("--seconds", options.seconds, "of virtual time (default: until Ctrl-C)")
-      ->check(CLI::Range(0.001, 1e6));
+      ->check(CLI::Range(0.001, 1e6))
+      ->check(finite);
   fly->add_option("--image", options.image, "instead of the plan's");
   fly->add_option("--board", options.board, "instead of the plan's");
   fly->add_option("--vehicle", options.vehicle, "instead of the plan's");

@@ -9,7 +9,8 @@ namespace {
 constexpr std::uint8_t kVehicle = 1;
 constexpr std::int64_t kRetry_ns = 300'000'000;
 constexpr int kTries = 20;
-constexpr std::int64_t kTargetPeriod_ns = 100'000'000, kAttitudePeriod_ns = 20'000'000;
+constexpr std::int64_t kTargetPeriod_ns = 100'000'000, kAttitudePeriod_ns = 50'000'000;
+constexpr double kOldNews_s = 3.5;
 // type_mask: ignore all else.
 constexpr std::uint16_t kPositionAndYaw = 0x09F8, kPathPoint = 0x0800, kVelocityAtHeight = 0x09C3;
 constexpr std::uint8_t kAttitudeAndYawRate = 0x03;
@@ -241,6 +242,8 @@ Telemetry Station::telemetry(std::int64_t now_ns) const {
   Telemetry known = telemetry_;
   if (heartbeat_ns_ >= 0)
     known.heartbeat_age_s = static_cast<double>(now_ns - heartbeat_ns_) * 1e-9;
+  // Three heartbeats missed: what the last one said is no news, and meets no limit.
+  if (known.heartbeat_age_s > kOldNews_s) known.state = known.armed = std::nan("");
   return known;
 }
 

@@ -33,11 +33,16 @@ Result<Addresses> resolve(const std::string& peer) {
   if (host.size() > 2 && host.front() == '[' && host.back() == ']') {
     host = host.substr(1, host.size() - 2);
   }
+  const std::string digits = peer.substr(colon + 1);
+  const bool number = digits.size() <= 5 && digits.find_first_not_of("0123456789") == digits.npos;
+  if (!number || std::stoi(digits) < 1 || std::stoi(digits) > 65535) {
+    return no_address(peer, "its port is no number from 1 to 65535");
+  }
   addrinfo hints{};
   hints.ai_socktype = SOCK_DGRAM;
   hints.ai_flags = AI_NUMERICSERV;
   addrinfo* found = nullptr;
-  const int status = getaddrinfo(host.c_str(), peer.substr(colon + 1).c_str(), &hints, &found);
+  const int status = getaddrinfo(host.c_str(), digits.c_str(), &hints, &found);
   if (status != 0) return no_address(peer, gai_strerror(status));
   return Addresses(found, freeaddrinfo);
 }

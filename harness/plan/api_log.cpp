@@ -174,6 +174,8 @@ int error(lua_State* L) {
   const metrics::Record truth = column_of(L, info, signal);
   const auto topic = log.log.topics.find(std::string(twin.topic));
   double worst = kNothing;
+  const Dimension dimension = Script::of(L).dimension(Script::of(L).column(L, signal));
+  const std::string name = "largest error of " + signal;
   if (topic != log.log.topics.end() && topic->second.columns.count(std::string(twin.column)) != 0) {
     const auto& values = topic->second.columns.at(std::string(twin.column));
     for (std::size_t i = 0; i < values.size(); ++i) {
@@ -182,10 +184,10 @@ int error(lua_State* L) {
       double off = twin.factor * values[i] - value_at(truth, info, t_ns);
       if (signal == "yaw") off = std::remainder(off, 2.0 * M_PI);
       if (!(std::abs(off) <= worst)) worst = std::abs(off);
+      if (std::isnan(off)) return push(L, log, kNothing, dimension, name);  // and stays it
     }
   }
-  const Dimension dimension = Script::of(L).dimension(Script::of(L).column(L, signal));
-  return push(L, log, worst, dimension, "largest error of " + signal);
+  return push(L, log, worst, dimension, name);
 }
 
 // log:untold(record): of the positions that the radio told in the record's time, those that the log does

@@ -368,6 +368,12 @@ std::vector<Error> Script::finish(bool completed) {
                       "t:always(\"" + guard.name + "\") has no limit",
                       "add :at_most, :at_least or :within"});
   }
+  if (completed && !timed_.empty()) {
+    errors.push_back({ErrorKind::bad_input, stage_.report.file,
+                      "t:at: " + std::to_string(timed_.size()) +
+                          " commands were still to come when the plan ended",
+                      "wait for the last of them"});
+  }
   judge_windows(completed);
   list_faults();
   for (const PendingExpectation& e : pending) {

@@ -151,7 +151,8 @@ TEST(Verdict, ATimeThatLiesOnItsLimitMeetsIt) {
 }
 
 TEST(Plan, WhatIsDrawnLiesBetweenItsEndsAndComesFromTheSeed) {
-  const std::string text = plan_text(R"(t:wait(t:drawn("1 s", "2 s"))
+  const std::string text = plan_text(R"(t:expect(t:value "tilt"):at_most "3 rad"
+    t:wait(t:drawn("1 s", "2 s"))
     t:expect(t:now(), "one"):within("1 s", "2 s")
     t:wait(t:drawn("500 ms", "600 ms"))
     t:expect(t:now(), "two"):at_least "1.5 s")");
@@ -165,9 +166,12 @@ TEST(Plan, WhatIsDrawnLiesBetweenItsEndsAndComesFromTheSeed) {
   EXPECT_EQ(times("1"), first);
   EXPECT_NE(times("2").first, first.first);
   EXPECT_NE(first.second - first.first - 0.5, first.first - 1.0);
-  const Ran turned = run_plan(plan_text(R"(t:drawn("2 s", "1 s"))"));
-  EXPECT_EQ(turned.outcome.code, 2);
-  EXPECT_NE(turned.outcome.err.find("the lower end comes first"), std::string::npos);
+  check({{R"(t:drawn("2 s", "1 s"))", "flight", 2, "the lower end comes first"}});
+}
+
+TEST(Plan, ACommandThatIsStillToComeAtTheEndIsAnError) {
+  check({{R"(t:at("3 s", { land = true })  t:wait "1 s"  t:expect(t:value "tilt"):at_most "3 rad")",
+          "flight", 2, "1 commands were still to come"}});
 }
 
 TEST(Plan, WordsThatNobodyTellsFailAndNoneAreRefused) {

@@ -42,6 +42,12 @@ local function cuts(t, words, driven)
     end
     return true
   end, "no rotor is driven")
+  local currents = {}
+  for motor = 1, 4 do
+    if motor ~= driven then currents[#currents + 1] = "winding_current_" .. motor end
+  end
+  local after = t:record(currents, "500 ms")
+  for _, current in ipairs(currents) do t:expect(after:max(current), current .. " from then on"):at_most "0.5 A" end
   t:told("3 s", words)
 end
 

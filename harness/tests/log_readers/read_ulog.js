@@ -24,12 +24,14 @@ async function main([file, folder]) {
   const log = new ULog(new FileReader(file));
   await log.open();
   const truth = heights(folder);
-  let samples = 0, dropouts = 0, compared = 0, worst_m = 0;
+  let samples = 0, dropouts = 0, compared = 0, worst_m = 0, from_us = Infinity, to_us = 0;
   for await (const message of log.readMessages()) {
     if (message.type === kDropout) ++dropouts;
     if (message.type !== kData) continue;
     ++samples;
     const { z, timestamp } = message.value;
+    from_us = Math.min(from_us, Number(timestamp));  // of samples alone: its timeRange() has texts, too
+    to_us = Math.max(to_us, Number(timestamp));
     const height_m = truth.get(Math.round(Number(timestamp) / 1000));
     if (z === undefined || log.subscriptions.get(message.msgId).name !== "vehicle_local_position") continue;
     if (height_m === undefined) continue;
@@ -37,7 +39,6 @@ async function main([file, folder]) {
     worst_m = Math.max(worst_m, Math.abs(height_m + z));
   }
   const said = JSON.parse(fs.readFileSync(folder + "/run.json", "utf8")).flight_logs[0];
-  const [from_us, to_us] = log.timeRange().map(Number);
   const facts = {
     "sys_name": [log.header.information.get("sys_name"), "Whirlstand"],
     "samples": [samples, said.samples],
