@@ -27,13 +27,22 @@ enum class Topic : std::uint16_t {
 
 inline constexpr std::size_t kTopics = 13;
 
+// Two that are longer than a line.
+inline constexpr std::string_view kLocalPosition =
+    "vehicle_local_position:uint64_t timestamp;float x;float y;float z;float vx;float vy;float vz;"
+    "float heading;";
+// The worst since the one before: from the IMU's data-ready to the start of the tick, and to the
+// set-points' way to the ESCs; the length of a tick.
+inline constexpr std::string_view kTiming =
+    "flight_timing:uint64_t timestamp;uint16_t start_us;uint16_t setpoint_us;uint16_t tick_us;"
+    "uint32_t deadlines_missed;";
+
 // In the order of Topic; then the formats that others contain.
 inline constexpr std::string_view kFormats[] = {
     "vehicle_attitude:uint64_t timestamp;float[4] q;",
     "sensor_combined:uint64_t timestamp;float[3] gyro_rad;float[3] accelerometer_m_s2;",
     "vehicle_angular_velocity:uint64_t timestamp;float[3] xyz;",
-    "vehicle_local_position:uint64_t timestamp;float x;float y;float z;float vx;float vy;float vz;"
-    "float heading;",
+    kLocalPosition,
     // Of the ESCs' set-points: 1 to 2047, 0 stops the motor.
     "actuator_outputs:uint64_t timestamp;uint32_t noutputs;float[4] output;",
     "vehicle_local_position_setpoint:uint64_t timestamp;float x;float y;float z;float yaw;",
@@ -43,10 +52,7 @@ inline constexpr std::string_view kFormats[] = {
     "esc_status:uint64_t timestamp;uint8_t esc_count;esc_report[4] esc;",
     "battery_status:uint64_t timestamp;float current_a;",  // sum of what the ESCs tell
     "cpuload:uint64_t timestamp;float load;",
-    // The worst since the one before: from the IMU's data-ready to the start of the tick, and to the
-    // set-points' way to the ESCs; the length of a tick.
-    "flight_timing:uint64_t timestamp;uint16_t start_us;uint16_t setpoint_us;uint16_t tick_us;"
-    "uint32_t deadlines_missed;",
+    kTiming,
     "vehicle_air_data:uint64_t timestamp;float baro_pressure_pa;",
     "vehicle_magnetometer:uint64_t timestamp;float[3] magnetometer_ga;",
     "esc_report:uint64_t timestamp;int32_t esc_rpm;float esc_current;uint8_t esc_state;",
