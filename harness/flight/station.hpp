@@ -2,7 +2,7 @@
 //
 //   Up    captured poses as VICON_POSITION_ESTIMATE; the target at 10 Hz once there is one: a place,
 //         moving straight to a new one where a speed is given; a point of a path with its velocity and
-//         acceleration; a velocity at a height. An attitude with a thrust instead, at 50 Hz. Commands, repeated every 300 ms with a rising
+//         acceleration; a velocity at a height. An attitude with a thrust instead, at 20 Hz. Commands, repeated every 300 ms with a rising
 //         confirmation until COMMAND_ACK; requests for parameters (parameter_requests.hpp)
 //   Wire  a command has passed when the first frame that carries it has reached the vehicle's UART
 //   Down  the vehicle's telemetry, last value of each; nothing is known before it was heard
