@@ -1,12 +1,11 @@
 #include "firmware/flight/flight.hpp"
 
 #include "firmware/config/vehicle.hpp"
+#include "firmware/flight/schedule.hpp"
 
 namespace fw {
 namespace {
 
-constexpr float kAttitudeStep_s = 0.005f;
-constexpr float kSpinUp_s = 1.5f;
 constexpr float kHighest_m = 10.0f;  // of a take-off
 constexpr float kJoin_m = 0.3f;      // a trajectory is joined from so near
 
@@ -219,10 +218,9 @@ void Flight::estimate() {
 }
 
 void Flight::supervise() {
-  state_s_ += kAttitudeStep_s;
+  state_s_ += schedule::kAttitudeStep_s;
   const bool by_attitude = steered_ == PilotMode::attitude && pilot_.link() == PilotLink::ok;
-  react(supervisor_.step(conditions(), state_, static_cast<std::uint32_t>(1e3f * kAttitudeStep_s),
-                         by_attitude));
+  react(supervisor_.step(conditions(), state_, schedule::kAttitudePeriod, by_attitude));
   if (state_ == FlightState::armed && !steered_by_hand()) follow_target_into_air();
 }
 

@@ -90,6 +90,7 @@ class Flight {
   static constexpr std::uint32_t kNever = Estimator::kNever;
   static constexpr std::uint32_t kTargetFresh_ms = 500, kTargetsLost_ms = 3000;
   static constexpr std::uint32_t kImuLost_ms = 20, kLinkLost_ms = 3000;
+  static constexpr float kSpinUp_s = 1.5f;       // armed before it flies
   static constexpr float kAboveGround_m = 0.3f;  // a target below that does not mean flight
 
   void tick();

@@ -1,10 +1,11 @@
 #include "firmware/config/vehicle.hpp"
 #include "firmware/flight/flight.hpp"
+#include "firmware/flight/schedule.hpp"
 
 namespace fw {
 namespace {
 
-constexpr float kAttitudeStep_s = 0.005f, kPositionStep_s = 0.025f;
+using schedule::kAttitudeStep_s, schedule::kPositionStep_s;
 constexpr float kLiftTime_s = 0.8f, kAirborne_m = 0.06f;
 constexpr float kTargetDelay_s = 0.014f;  // 65 bytes at 57600 baud, and half a poll
 constexpr std::uint16_t kIdle = 1;        // the lowest set-point that turns a rotor

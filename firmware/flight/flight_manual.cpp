@@ -2,14 +2,9 @@
 #include "firmware/config/vehicle.hpp"
 #include "firmware/flight/flight.hpp"
 #include "firmware/flight/manual.hpp"
+#include "firmware/flight/schedule.hpp"
 
 namespace fw {
-namespace {
-
-constexpr float kStep_s = 0.005f;
-
-}  // namespace
-
 void Flight::follow_pilot() {
   if (pilot_.link() != PilotLink::ok) {
     arm_switch_ = true;  // it has to be seen off before it arms
@@ -20,7 +15,7 @@ void Flight::follow_pilot() {
   follow_arm_switch(sticks);
   if (steered_ == PilotMode::autonomous) return;
   const bool lifts = manual::lifts(sticks);
-  if (state_ == FlightState::armed && sticks.arm && lifts && state_s_ > manual::kSpinUp_s) {
+  if (state_ == FlightState::armed && sticks.arm && lifts && state_s_ > kSpinUp_s) {
     enter(FlightState::flying, Reason::commanded);
     hand_over(steered_);
   } else if (state_ == FlightState::landing && lifts && reason_ == Reason::commanded) {
@@ -72,7 +67,7 @@ void Flight::follow_sticks(const PilotDemand& sticks) {
     thrust_share_ = sticks.throttle;
     const bool down = sticks.throttle_low() && height_m() < manual::kGround_m &&
                       std::abs(sinking_mps()) < manual::kStanding_mps;
-    contact_s_ = down ? contact_s_ + kStep_s : 0.0f;
+    contact_s_ = down ? contact_s_ + schedule::kAttitudeStep_s : 0.0f;
     if (contact_s_ > manual::kSettled_s) enter(FlightState::armed, Reason::landed);
     return;
   }

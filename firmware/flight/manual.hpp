@@ -15,7 +15,6 @@
 
 namespace fw::manual {
 
-inline constexpr float kSpinUp_s = 1.5f;
 inline constexpr float kThrottleDeadZone = 0.1f;  // about the middle, share of the range
 inline constexpr float kTurn_radps = 0.6f;        // the reference's own limit
 inline constexpr float kYawLead_s = 0.1f;         // the reference is drawn along by that much

@@ -14,6 +14,10 @@ inline constexpr std::uint32_t kAttitudePeriod = 5, kPositionPeriod = 25, kSetpo
                                kSensorPeriod = 10;
 inline constexpr std::uint32_t kPositionTick = 3, kTelemetryTick = 2, kGpsTick = 1, kSensorTick = 9;
 
+// How long the steps of those tasks are.
+inline constexpr float kAttitudeStep_s = static_cast<float>(kAttitudePeriod) / 1000.0f;
+inline constexpr float kPositionStep_s = static_cast<float>(kPositionPeriod) / 1000.0f;
+
 constexpr bool attitude(std::uint32_t tick) {
   return tick % kAttitudePeriod == 0;
 }

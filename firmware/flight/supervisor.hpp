@@ -130,7 +130,6 @@ class Supervisor {
   // Each `dt_ms`, armed or not; disarmed nothing is decided, but what holds is remembered.
   Decision step(const Conditions& now, FlightState state, std::uint32_t dt_ms,
                 bool by_attitude = false);
-  void forget() { held_ms_.fill(0); }
   // A warning that nobody has told yet, or none; it is told then.
   Reason take_warning();
 

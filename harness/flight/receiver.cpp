@@ -28,6 +28,18 @@ void Receiver::hear(const io::MavlinkFrame& frame) {
   const auto told = io::unpack<io::GpsGlobalOrigin>(frame);
   if (!told) return;
   origin_ = {kRad_per_e7 * told->latitude, kRad_per_e7 * told->longitude, 1e-3 * told->altitude};
+  place_solution();
+}
+
+void Receiver::on_solution(const io::GnssSolution& solution) {
+  solution_ = solution;
+  place_solution();
+}
+
+void Receiver::place_solution() {
+  if (!solution_ || !origin_) return;
+  const Geodetic seen{solution_->latitude_rad, solution_->longitude_rad, solution_->height_m};
+  solution_m_ = ned_m(*origin_, seen);
 }
 
 Eigen::Vector3d Receiver::error_W_m() const {
@@ -36,10 +48,8 @@ Eigen::Vector3d Receiver::error_W_m() const {
 
 Eigen::Vector3d Receiver::place_m(const Eigen::Vector3d& p_WB_W_m) const {
   if (!solution_ || !origin_) return nothing();
-  const Geodetic seen{solution_->latitude_rad, solution_->longitude_rad, solution_->height_m};
-  const Eigen::Vector3d then_m = ned_m(*origin_, seen);
   // The same error, and where the vehicle has moved since.
-  return then_m + p_WB_W_m + error_W_m() - Eigen::Vector3d(solution_->p_WB_W_m);
+  return solution_m_ + p_WB_W_m + error_W_m() - Eigen::Vector3d(solution_->p_WB_W_m);
 }
 
 }  // namespace whirl::flight

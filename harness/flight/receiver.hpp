@@ -17,7 +17,7 @@ namespace whirl::flight {
 
 class Receiver {
  public:
-  void on_solution(const io::GnssSolution& solution) { solution_ = solution; }
+  void on_solution(const io::GnssSolution& solution);
   void hear(const io::MavlinkFrame& frame);
 
   Eigen::Vector3d error_W_m() const;
@@ -25,8 +25,12 @@ class Receiver {
   Eigen::Vector3d place_m(const Eigen::Vector3d& p_WB_W_m) const;
 
  private:
+  void place_solution();
+
   std::optional<io::GnssSolution> solution_;
   std::optional<Geodetic> origin_;
+  Eigen::Vector3d solution_m_ =
+      Eigen::Vector3d::Constant(std::nan(""));  // of origin_; signals ask each step
 };
 
 }  // namespace whirl::flight

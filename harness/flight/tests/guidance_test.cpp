@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/near.hpp"
+#include "base/text.hpp"
 #include "harness/flight/teleoperation.hpp"
 #include "harness/flight/tests/piloted_flight.hpp"
 #include "harness/flight/waypoint_flight.hpp"
@@ -110,11 +111,7 @@ TEST(Teleoperation, WhatAnEntryLeavesOutStays) {
 
 std::string hex_of(const std::vector<std::uint8_t>& bytes) {
   std::string text;
-  char digits[3];
-  for (const std::uint8_t byte : bytes) {
-    std::snprintf(digits, sizeof digits, "%02x", byte);
-    text += digits;
-  }
+  add_hex(bytes, text);
   return text;
 }
 
