@@ -29,8 +29,11 @@ ordered_json chart_json(const Chart& chart) {
                       {"source", chart.source},   {"note", chart.note}};
   out["curves"] = out["figures"] = ordered_json::array();
   for (const ChartCurve& c : chart.curves) {
-    out["curves"].push_back(
-        {{"name", c.name}, {"x", numbers(c.x)}, {"y", numbers(c.y)}, {"marks", c.marks}});
+    out["curves"].push_back({{"name", c.name},
+                             {"x", numbers(c.x)},
+                             {"y", numbers(c.y)},
+                             {"marks", c.marks},
+                             {"faint", c.faint}});
   }
   for (const ChartFigure& f : chart.figures) {
     out["figures"].push_back({{"name", f.name},
@@ -42,11 +45,22 @@ ordered_json chart_json(const Chart& chart) {
   return out;
 }
 
+ordered_json table_json(const ChartTable& table) {
+  ordered_json out = {{"title", table.title}, {"rows", table.rows}};
+  out["heads"] = ordered_json::array();
+  for (const ChartTable::Head& head : table.heads) {
+    out["heads"].push_back({head.text, head.number ? "n" : ""});
+  }
+  return out;
+}
+
 }  // namespace
 
 std::string charts_html(const std::string& title, const std::string& about,
-                        const std::vector<Chart>& charts) {
+                        const std::vector<Chart>& charts, const std::vector<ChartTable>& tables) {
   ordered_json data = {{"title", title}, {"about", about}};
+  data["tables"] = ordered_json::array();
+  for (const ChartTable& t : tables) data["tables"].push_back(table_json(t));
   data["charts"] = ordered_json::array();
   for (const Chart& chart : charts) data["charts"].push_back(chart_json(chart));
   make_legal(data);

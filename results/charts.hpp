@@ -7,9 +7,10 @@
 namespace whirl::results {
 
 struct ChartCurve {
-  std::string name;
+  std::string name;  // "": not in the legend
   std::vector<double> x, y;
   bool marks = false;  // points of a reference instead of a line
+  bool faint = false;  // one of many: thin and pale
 };
 
 struct ChartFigure {
@@ -26,8 +27,19 @@ struct Chart {
   std::vector<ChartFigure> figures;
 };
 
+struct ChartTable {  // above the charts
+  struct Head {
+    std::string text;
+    bool number = false;  // to the right
+  };
+  std::string title;
+  std::vector<Head> heads;
+  std::vector<std::vector<std::string>> rows;  // a text per head
+};
+
 std::string charts_html(const std::string& title, const std::string& about,
-                        const std::vector<Chart>& charts);
+                        const std::vector<Chart>& charts,
+                        const std::vector<ChartTable>& tables = {});
 std::string figures_text(const std::vector<Chart>& charts);  // a line per figure
 
 }  // namespace whirl::results

@@ -21,15 +21,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string file_name(const std::string& plan) {
-  std::string name;
-  for (char c : plan) {
-    const bool plain = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-' || c == '.';
-    name += plain ? c : '_';
-  }
-  return name.substr(0, 60);
-}
-
 std::string time_stamp() {
   const std::time_t now = std::time(nullptr);
   std::tm local{};
@@ -48,6 +39,15 @@ void point_latest(const fs::path& runs, const fs::path& folder) {
 }
 
 }  // namespace
+
+std::string file_name(const std::string& plan) {
+  std::string name;
+  for (char c : plan) {
+    const bool plain = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-' || c == '.';
+    name += plain ? c : '_';
+  }
+  return name.substr(0, 60);
+}
 
 RunFolder::RunFolder(std::string runs, std::string name)
     : runs_(std::move(runs)), name_(std::move(name)) {}

@@ -20,6 +20,9 @@
 
 namespace whirl::results {
 
+// What a plan's name is in the names of files.
+std::string file_name(const std::string& plan);
+
 class RunFolder {
  public:
   static Result<RunFolder> create(const std::string& results_root, const std::string& plan);

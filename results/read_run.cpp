@@ -54,6 +54,11 @@ Expectation expectation(const json& from) {
   from.at("unit").get_to(e.unit);
   from.at("note").get_to(e.note);
   from.at("place").get_to(e.place);
+  from.at("signals").get_to(e.signals);
+  from.at("from_s").get_to(e.from_s);
+  from.at("to_s").get_to(e.to_s);
+  from.at("level").get_to(e.level);
+  for (const json& limit : from.at("limits_SI")) e.limits_SI.push_back(number(limit));
   read_limit(from.at("limit"), e);
   return e;
 }

@@ -34,6 +34,7 @@ io_bridges/qemu/board    base/ io_bridges/ plant/
 results                  base/ io_bridges/messages/ results/
 results/messages         base/ io_bridges/messages/ results/messages/
 results/flight_log       base/ results/flight_log/
+results/spread           base/ io_bridges/messages/ results/
 results/sinks            base/ io_bridges/messages/ results/messages/ results/sinks/
 harness                  base/ harness/catalogue/ harness/cli/ harness/flight/ harness/stand/ harness/target/
 harness/job              base/ harness/job/

@@ -109,6 +109,21 @@ std::string images_of(const plan::Plan& plan) {
   return all;
 }
 
+// Each plan on each seed, a plan's runs one after the other.
+std::vector<PlanChoice> on_seeds(std::vector<PlanChoice> plans,
+                                 const std::vector<std::uint64_t>& seeds) {
+  if (seeds.empty()) return plans;
+  std::vector<PlanChoice> all;
+  all.reserve(plans.size() * seeds.size());
+  for (const PlanChoice& plan : plans) {
+    for (const std::uint64_t seed : seeds) {
+      all.push_back(plan);
+      all.back().seed = seed;
+    }
+  }
+  return all;
+}
+
 }  // namespace
 
 FoundPlans find_plans(const RunOptions& options, const std::string& root) {
@@ -122,9 +137,11 @@ FoundPlans find_plans(const RunOptions& options, const std::string& root) {
     for (const plan::Plan& p : file.value()->plans()) {
       if (!options.tag.empty() && !p.has_tag(options.tag)) continue;
       if (!options.only.empty() && p.name != options.only) continue;
-      found.plans.push_back({path, p.name, p.tags, images_of(p), p.vehicle, p.timeout_ns});
+      found.plans.push_back(
+          {path, p.name, p.tags, images_of(p), p.vehicle, p.timeout_ns, options.seed});
     }
   }
+  found.plans = on_seeds(std::move(found.plans), options.seeds);
   if (found.plans.empty() && found.errors.empty()) {
     const std::string what =
         !options.only.empty() ? "name '" + options.only + "'" : "tag '" + options.tag + "'";

@@ -1,6 +1,7 @@
 // Which plans a command speaks of.
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,7 @@ struct PlanChoice {
   std::vector<std::string> tags;
   std::string image, vehicle;  // for people
   std::int64_t timeout_ns = 0;
+  std::optional<std::uint64_t> seed = {};  // of this run; nothing: the plan's own
 };
 
 // Lua files below the given paths that declare plans. Files in folders named boards, vehicles or

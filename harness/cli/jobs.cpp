@@ -52,8 +52,7 @@ void keep_to(int core) {
 }
 
 Job job_of(const PlanChoice& plan, const RunOptions& options, const std::string& results) {
-  return {plan.file, plan.name,    options.seed, options.settings,
-          results,   options.keep, options.twice};
+  return {plan.file, plan.name, plan.seed, options.settings, results, options.keep, options.twice};
 }
 
 // In the child: nothing but the other program.
@@ -185,7 +184,8 @@ class Jobs {
     const auto report = read_job_report(text);
     const auto run = report ? results::read_run(report.value().run) : report.error();
     if (is_read && run && code_of(status) == report.value().exit_code) {
-      return outcomes_.add(run.value(), report.value().outcome, report.value().run);
+      return outcomes_.add({run.value(), report.value().folder}, report.value().outcome,
+                           report.value().run);
     }
     lose(*child.plan, status, unread);
   }

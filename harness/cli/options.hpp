@@ -12,6 +12,7 @@ namespace whirl::cli {
 struct RunOptions {
   std::vector<std::string> paths;  // plans or folders; empty: test_plans
   std::optional<std::uint64_t> seed;
+  std::vector<std::uint64_t> seeds;  // each plan on each of them; empty: once, on `seed` or its own
   int jobs = 1;
   bool gdb = false;
   int gdb_port = 1234;

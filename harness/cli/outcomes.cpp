@@ -3,10 +3,14 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <map>
+#include <utility>
 
 #include "harness/cli/console.hpp"
+#include "harness/cli/find_plans.hpp"
 #include "results/folder.hpp"
 #include "results/history.hpp"
+#include "results/spread/file_spread.hpp"
 
 namespace whirl::cli {
 namespace {
@@ -41,8 +45,8 @@ results::Blame blame_for(int code) {
 
 }  // namespace
 
-void Outcomes::add(const results::Report& report, const std::string& text,
-                   const std::string& run_json) {
+void Outcomes::add(const Finished& finished, const std::string& text, const std::string& run_json) {
+  const results::Report& report = finished.report;
   int code = results::exit_code(report);
   // The line in the history is a result: without it a pass is not one.
   const auto kept = results::remember(results_ + "/history.sqlite", report);
@@ -51,39 +55,61 @@ void Outcomes::add(const results::Report& report, const std::string& text,
     code = code == 0 ? 3 : code;
   }
   print(json_ ? run_json : text);
-  file(report, code);
+  file(finished, code);
 }
 
 void Outcomes::add_refused(const Error& error) {
   const std::string file_name = error.place.substr(0, error.place.find(':'));
-  file(without_run(file_name.empty() ? "whirl run" : file_name, file_name,
-                   results::reason_of(error)),
+  file({without_run(file_name.empty() ? "whirl run" : file_name, file_name,
+                    results::reason_of(error)),
+        ""},
        complain(error));
 }
 
 void Outcomes::add_lost(const std::string& plan, const std::string& file_name, int code,
                         const std::string& what) {
-  const results::Report report = without_run(plan, file_name, {blame_for(code), what});
-  print(outcome({report, ""}));
-  file(report, code);
+  const Finished lost{without_run(plan, file_name, {blame_for(code), what}), ""};
+  print(outcome(lost));
+  file(lost, code);
 }
 
-// What only the merged file shows must not fill the memory of a night of runs.
-void Outcomes::file(const results::Report& report, int code) {
+// What only the merged files show must not fill the memory of a night of runs.
+void Outcomes::file(const Finished& finished, int code) {
   tally_.add(code);
-  reports_.push_back(report);
-  reports_.back().histograms.clear();
-  reports_.back().statistics_json.clear();
+  runs_.push_back({finished.report, finished.folder});
+  results::Report& report = runs_.back().report;
+  report.histograms.clear();
+  report.statistics_json.clear();
+  report.boards.clear();
+}
+
+// A plan whose runs were lost before they had a seed has none.
+void Outcomes::file_spreads() {
+  std::map<std::pair<std::string, std::string>, std::vector<const results::SeedRun*>> plans;
+  for (const results::SeedRun& run : runs_) {
+    if (!run.report.digest.empty()) plans[{run.report.file, run.report.plan}].push_back(&run);
+  }
+  for (const auto& [plan, runs] : plans) {
+    if (runs.size() < 2) continue;
+    const auto filed = results::file_spread(results_ + "/seeds", runs);
+    if (!filed) {
+      tally_.worsen(complain(filed.error()));
+    } else if (!json_) {
+      print(results::spread_text(results::spread_of(runs)) + "  " + shown_path(filed.value()) +
+            "\n");
+    }
+  }
 }
 
 int Outcomes::finish() {
   std::vector<const results::Report*> all;
-  all.reserve(reports_.size());
-  for (const results::Report& report : reports_) all.push_back(&report);
+  all.reserve(runs_.size());
+  for (const results::SeedRun& run : runs_) all.push_back(&run.report);
   std::error_code ignored;
   std::filesystem::create_directories(results_, ignored);
   const auto written = write_text(results_ + "/junit.xml", results::junit_xml(all));
   if (!written) tally_.worsen(complain(written.error()));
+  file_spreads();
   if (!json_ && tally_.plans() > 1) print(tally_.summary());
   return tally_.code();
 }

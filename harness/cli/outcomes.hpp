@@ -6,6 +6,7 @@
 #include "base/result.hpp"
 #include "harness/cli/run_one.hpp"
 #include "harness/cli/tally.hpp"
+#include "results/spread/spread.hpp"
 
 namespace whirl::cli {
 
@@ -15,7 +16,7 @@ class Outcomes {
   Outcomes(std::string results, bool json) : results_(std::move(results)), json_(json) {}
 
   // What is printed is the report's run.json, or `text`.
-  void add(const results::Report& report, const std::string& text, const std::string& run_json);
+  void add(const Finished& finished, const std::string& text, const std::string& run_json);
   // A plan file that cannot be read: a testcase, and the error on standard error.
   void add_refused(const Error& error);
   void add_not_run(std::size_t plans) { tally_.add_not_run(plans); }
@@ -23,16 +24,18 @@ class Outcomes {
   void add_lost(const std::string& plan, const std::string& file, int code,
                 const std::string& what);
 
-  // Writes RESULTS/junit.xml, says what came of all, and gives the exit code.
+  // Writes RESULTS/junit.xml, of plans that ran on several seeds their spread (RESULTS/seeds/PLAN.html and
+  // .csv), says what came of all, and gives the exit code.
   int finish();
 
  private:
-  void file(const results::Report& report, int code);
+  void file(const Finished& finished, int code);
+  void file_spreads();
 
   std::string results_;
   bool json_;
   Tally tally_;
-  std::vector<results::Report> reports_;
+  std::vector<results::SeedRun> runs_;
 };
 
 }  // namespace whirl::cli

@@ -1,6 +1,5 @@
 // The command line. CLI11 stays in this file: its header is a heavy one.
 #include <CLI/CLI.hpp>
-#include <charconv>
 #include <filesystem>
 #include <tuple>
 
@@ -17,6 +16,7 @@
 #include "harness/cli/job_command.hpp"
 #include "harness/cli/page_command.hpp"
 #include "harness/cli/run_command.hpp"
+#include "harness/cli/seeds.hpp"
 
 #ifndef WHIRL_VERSION
 #define WHIRL_VERSION "unknown"
@@ -30,6 +30,8 @@ constexpr const char* kExamples = R"(Examples:
   whirl run test_plans/flight/hover.lua        one file
   whirl run test_plans/flight --tag quick      the quick ones of a folder
   whirl run test_plans/flight/hover.lua --seed 7 --twice
+  whirl run test_plans/flight/gust_crossing.lua --seeds 2..21 --jobs 2
+                                               mean, spread and worst, and a page of all laid over
   whirl run test_plans/flight/hover.lua --gdb  then: gdb-multiarch build/firmware/flight.elf
   whirl fly --pace 1                           a flight in real time for QGroundControl or another
                                                MAVLink client, on UDP 127.0.0.1:14550
@@ -49,7 +51,8 @@ Exit codes: 0 pass, 1 a plan failed, 2 bad input or usage, 3 inconclusive (the h
 run was interrupted, or what the plan asks was not shown), 4 internal error; of several plans the
 worst counts: 4, then 2, 1, 3, 0. A flight of `whirl fly` that ended in order is 0, without a verdict.
 Results: results/runs/latest/index.html, run.json, junit.xml, messages.whirl (all that crossed), and
-of it truth.csv, bus.csv, telemetry.tlog (serial.txt on a stand), bus_NODE.csv of boards with names)";
+of it truth.csv, bus.csv, telemetry.tlog (serial.txt on a stand), bus_NODE.csv of boards with names;
+of --seeds results/seeds/PLAN.html and PLAN.csv)";
 
 void add_plan_options(CLI::App& command, RunOptions& options) {
   command.add_option("plans", options.paths, "plan files or folders (default: test_plans)");
@@ -57,12 +60,14 @@ void add_plan_options(CLI::App& command, RunOptions& options) {
   command.add_option("--only", options.only, "only the plan of this name");
 }
 
-// A whole number from 0 to 2^64 - 1; CLI11 would make something of "-1" and of nothing.
 std::string seed_complaint(const std::string& text) {
-  std::uint64_t seed = 0;
-  const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), seed);
-  const bool good = status == std::errc() && end == text.data() + text.size() && !text.empty();
-  return good ? "" : "'" + text + "' is no seed (0 to 18446744073709551615)";
+  const auto seed = read_seed(text);
+  return seed ? "" : seed.error().what;
+}
+
+std::string seeds_complaint(const std::string& text) {
+  const auto seeds = read_seeds(text);
+  return seeds ? "" : seeds.error().what;
 }
 
 // "vehicle.motor.inertia=3e-5": of a plan, its stand or its vehicle.
@@ -79,7 +84,13 @@ struct RunCommand {
   explicit RunCommand(CLI::App& app) {
     auto* run = app.add_subcommand("run", "run plans; exit code 0 only if all pass");
     add_plan_options(*run, options);
-    run->add_option("--seed", seed, "instead of the plans' own seeds")->check(seed_complaint);
+    auto* one = run->add_option("--seed", seed, "instead of the plans' own seeds");
+    one->check(seed_complaint);
+    run->add_option(
+           "--seeds", seeds,
+           "each plan on each of these (2..21, or 1,4,10..12), and their spread at the end")
+        ->check(seeds_complaint)
+        ->excludes(one);
     run->add_option("--jobs,-j", options.jobs, "so many plans at once")->check(CLI::Range(1, 256));
     run->add_flag("--gdb", options.gdb,
                   "open a gdb port and hold the world's time while gdb holds");
@@ -99,13 +110,16 @@ struct RunCommand {
 
   // What was parsed as text. Nothing is said twice.
   Result<Done> parse_texts() {
-    if (!seed.empty()) options.seed = std::stoull(seed);
+    if (!seed.empty()) options.seed = read_seed(seed).value();
+    if (!seeds.empty()) options.seeds = read_seeds(seeds).value();
     for (const std::string& text : settings) {
       const Setting setting{text.substr(0, text.find('=')), text.substr(text.find('=') + 1)};
       for (const Setting& other : options.settings) {
         if (other.key == setting.key) return twice(setting.key, "--set " + setting.key);
       }
-      if (setting.key == "plan.seed" && options.seed) return twice(setting.key, "--seed");
+      const bool is_seed = setting.key == "plan.seed";
+      if (is_seed && options.seed) return twice(setting.key, "--seed");
+      if (is_seed && !options.seeds.empty()) return twice(setting.key, "--seeds");
       options.settings.push_back(setting);
     }
     return Done{};
@@ -115,7 +129,7 @@ struct RunCommand {
   }
 
   RunOptions options;
-  std::string seed;
+  std::string seed, seeds;
   std::vector<std::string> settings;
 };
 

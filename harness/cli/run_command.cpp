@@ -20,7 +20,7 @@ void run_here(const std::vector<PlanChoice>& plans, const RunOptions& options,
     if (interrupted_by() != 0) return outcomes.add_not_run(plans.size() - i);
     const Finished finished = run_one(plans[i], options, composition, progress_line(plans[i].name));
     clear_progress();
-    outcomes.add(finished.report, outcome(finished),
+    outcomes.add(finished, outcome(finished),
                  options.json ? results::run_json(finished.report) : "");
   }
 }

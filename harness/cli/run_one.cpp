@@ -114,8 +114,9 @@ Result<std::unique_ptr<Target>> make_target(const plan::Plan& plan,
 }
 
 // `folder`: where the parts of the boards leave their files; empty: nowhere.
-Result<Prepared> prepare(const plan::Plan& plan, const RunOptions& options,
-                         const Composition& composition, const std::string& folder) {
+Result<Prepared> prepare(const plan::Plan& plan, const PlanChoice& choice,
+                         const RunOptions& options, const Composition& composition,
+                         const std::string& folder) {
   const std::string& root = composition.root;
   const Asker who{plan.file, plan.place};
   std::string vehicle_file;
@@ -146,7 +147,7 @@ Result<Prepared> prepare(const plan::Plan& plan, const RunOptions& options,
     all.nodes.push_back(std::move(node.value()));
     const int port = options.gdb ? options.gdb_port : 0;
     all.setups.push_back({plan, i, all.nodes.back().board, root, image.value(), vehicle_file,
-                          options.seed.value_or(plan.seed), port, settings, folder});
+                          choice.seed.value_or(plan.seed), port, settings, folder});
   }
   if (const auto joined = check_wires(plan, all.nodes); !joined) return joined.error();
   auto world = composition.world(all.setups.front());
@@ -188,7 +189,8 @@ Result<RunRecord> run_record(const PlanChoice& choice, const RunOptions& options
     if (p.name == choice.name) plan = &p;
   }
   WHIRL_CHECK(plan != nullptr, choice.name);
-  auto prepared = prepare(*plan, options, composition, folder == nullptr ? "" : folder->path());
+  auto prepared =
+      prepare(*plan, choice, options, composition, folder == nullptr ? "" : folder->path());
   if (!prepared) return prepared.error();
   const Prepared& parts = prepared.value();
   for (const Setup& setup : parts.setups) {
@@ -235,12 +237,12 @@ void add_second_run(const results::Report& second, results::Report& report) {
   }
 }
 
-results::Report refused(const PlanChoice& choice, const RunOptions& options, const Error& error) {
+results::Report refused(const PlanChoice& choice, const Error& error) {
   results::Report report;
   report.plan = choice.name;
   report.file = choice.file;
   report.tags = choice.tags;
-  report.seed = options.seed.value_or(0);
+  report.seed = choice.seed.value_or(0);
   report.reasons.push_back(results::reason_of(error));
   results::conclude(report);
   return report;
@@ -298,9 +300,9 @@ Finished run_one(const PlanChoice& choice, const RunOptions& options,
                  const Company* company) {
   try {
     auto folder = RunFolder::create(composition.results, choice.name);
-    if (!folder) return {refused(choice, options, folder.error()), ""};
+    if (!folder) return {refused(choice, folder.error()), ""};
     auto record = run_record(choice, options, composition, progress, &folder.value(), company);
-    if (!record) return file_refusal(folder.value(), refused(choice, options, record.error()));
+    if (!record) return file_refusal(folder.value(), refused(choice, record.error()));
     results::Report& report = record.value().report;
     if (options.twice && interrupted_by() == 0) {
       try {
@@ -312,7 +314,7 @@ Finished run_one(const PlanChoice& choice, const RunOptions& options,
     results::conclude(report);
     return file_run(folder.value(), std::move(record.value()), options);
   } catch (...) {
-    return {refused(choice, options, error_of_current_exception()), ""};
+    return {refused(choice, error_of_current_exception()), ""};
   }
 }
 

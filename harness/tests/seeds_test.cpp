@@ -1,0 +1,69 @@
+// whirl run --seeds: each plan on each seed, and the spread of what it measured.
+#include <gtest/gtest.h>
+
+#include "harness/cli/seeds.hpp"
+#include "harness/tests/fake.hpp"
+#include "harness/tests/plans.hpp"
+
+namespace whirl::test {
+namespace {
+
+const std::string kDrawn =
+    "t:wait \"1 s\" t:expect(t:value \"tilt\"):at_most \"1 rad\" "
+    "t:expect(t:quantity(t:drawn(\"1 s\", \"2 s\")), \"drawn\"):at_least(0)";
+
+TEST(Seeds, AreReadAsOneWritesThem) {
+  EXPECT_EQ(cli::read_seeds("2..4").value(), (std::vector<std::uint64_t>{2, 3, 4}));
+  EXPECT_EQ(cli::read_seeds("7").value(), (std::vector<std::uint64_t>{7}));
+  EXPECT_EQ(cli::read_seeds("1,5..6,0").value(), (std::vector<std::uint64_t>{1, 5, 6, 0}));
+  EXPECT_EQ(cli::read_seeds("18446744073709551614..18446744073709551615").value().size(), 2U);
+  EXPECT_EQ(cli::read_seeds("1..10000").value().size(), cli::kMost_seeds);
+  for (const char* bad :
+       {"", ",", "1,", "1,,2", "x", "-1", "3..2", "1..", "..2", "1...3", "1,1", "2..4,3",
+        "0..10000", "0..5000,5001..10000", "18446744073709551616", " 1"}) {
+    EXPECT_FALSE(cli::read_seeds(bad).ok()) << bad;
+    EXPECT_EQ(whirl(FakeRoot(), {"run", "--seeds", bad}).code, 2) << bad;
+  }
+}
+
+TEST(Seeds, EachIsARunAndTheSpreadIsFiled) {
+  FakeRoot root;
+  root.write("test_plans/a.lua", plan_text(kDrawn));
+  const Outcome outcome = whirl(root, {"run", "--seeds", "5,3..4"});
+  EXPECT_EQ(outcome.code, 0) << outcome.out << outcome.err;
+  EXPECT_NE(outcome.out.find("on 3 seeds: 3 passed"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("3 passed\n"), std::string::npos) << outcome.out;
+  const std::string table = root.read("results/seeds/p.csv");
+  for (const char* line : {"\"tilt\",3,", "\"tilt\",4,", "\"tilt\",5,", "\"drawn\",5,"}) {
+    EXPECT_NE(table.find(line), std::string::npos) << table;
+  }
+  EXPECT_NE(root.read("results/seeds/p.html").find("3 of 3 seeds passed"), std::string::npos);
+  // What one seed alone gives is what it gives among others.
+  EXPECT_EQ(whirl(root, {"run", "--seed", "4"}).code, 0);
+  const std::string one = root.read("results/runs/latest/run.json");
+  const auto at = table.find("\"drawn\",4,") + 10;
+  EXPECT_NE(one.find("\"measured\": " + table.substr(at, 6)), std::string::npos) << one;
+}
+
+TEST(Seeds, OneThatFailsFailsTheCommandAndIsNamed) {
+  FakeRoot root;
+  root.write("test_plans/a.lua",
+             plan_text("t:wait \"1 s\" t:expect(t:value \"tilt\"):at_most \"1 rad\" "
+                       "t:expect(t:quantity(t:drawn(\"1 s\", \"2 s\")), \"drawn\"):at_most(1.5)"));
+  const Outcome outcome = whirl(root, {"run", "--seeds", "1..8"});
+  EXPECT_EQ(outcome.code, 1) << outcome.out;
+  const std::string table = root.read("results/seeds/p.csv");
+  EXPECT_NE(table.find(",fail"), std::string::npos) << table;
+  EXPECT_NE(table.find(",pass"), std::string::npos) << table;
+}
+
+TEST(Seeds, AreSaidOnce) {
+  FakeRoot root;
+  root.write("test_plans/a.lua", plan_text(kDrawn));
+  EXPECT_EQ(whirl(root, {"run", "--seeds", "1..2", "--seed", "1"}).code, 2);
+  EXPECT_EQ(whirl(root, {"run", "--seeds", "1..2", "--set", "plan.seed=1"}).code, 2);
+  EXPECT_EQ(whirl(root, {"run", "--seeds", "1..2", "--gdb"}).code, 2);
+}
+
+}  // namespace
+}  // namespace whirl::test

@@ -1,0 +1,28 @@
+#include "results/spread/file_spread.hpp"
+
+#include <filesystem>
+
+#include "base/output_file.hpp"
+#include "results/folder.hpp"
+#include "results/spread/overlay.hpp"
+
+namespace whirl::results {
+
+Result<std::string> file_spread(const std::string& folder,
+                                const std::vector<const SeedRun*>& runs) {
+  std::error_code status;
+  std::filesystem::create_directories(folder, status);
+  if (status) {
+    return Error{ErrorKind::host, folder, "no folder for the spread: " + status.message(), ""};
+  }
+  const Spread spread = spread_of(runs);
+  const std::string stem = folder + "/" + file_name(spread.plan);
+  if (const auto csv = write_text(stem + ".csv", spread_csv(runs)); !csv) return csv.error();
+  const auto charts = overlays(runs);
+  if (!charts) return charts.error();
+  const auto page = write_text(stem + ".html", spread_html(spread, charts.value()));
+  if (!page) return page.error();
+  return stem + ".html";
+}
+
+}  // namespace whirl::results
