@@ -1,46 +1,68 @@
--- The gust crossing of the thesis (Fig 5.15): at 0.3 m/s through a round jet of 3.5 m/s upwards, 0.35 m
--- in radius, at 1.1 m height. Once through the middle, and back 20 cm beside it, where only one side of
--- the vehicle stands in the jet. Under RPM control the thesis's vehicle departs up to about 0.1 m in
--- height, and sideways by 0.3 m (1 sigma) with its own position loop.
--- By power (mode 5) the thesis's vehicle departs less. The power of this rotor falls in an upward flow as it
--- does in a downward one, so that 3.5 m/s from below look like some 3 m/s from above. Calibrated in an
--- updraft of that strength, the ESC concludes nothing there, and departs as under RPM control.
+-- The gust crossing of the thesis (5.4.2, Fig 5.15): at 0.3 m/s and 1.1 m height through a round jet of some
+-- 3.5 m/s and 0.35 m radius. Once through the middle, and back 20 cm beside it, where only one side of
+-- the vehicle stands in the jet. Upwards as in the thesis, and downwards. How strong the jet is, where its
+-- axis stands and where the way begins is drawn from the seed, as no crossing is flown twice;
+--     whirl run test_plans/flight/gust_crossing.lua --seeds 2..21 --jobs 2
+-- draws the heights of all over each other, as the figure has them.
+--
+-- Limits: under RPM control the thesis's vehicle departs up to about 0.1 m in height, and sideways by 0.3 m
+-- (1 sigma) with its own position loop. By power (mode 5) it departs less. The power of this rotor falls in
+-- an upward flow as it does in a downward one, so that 3.5 m/s from below look like some 3 m/s from above.
+-- Calibrated in an updraft of that strength, the ESC concludes nothing there, and departs as under RPM
+-- control.
+-- Downwards nothing of the thesis says how far. This rotor's inflow hardly changes in 3.5 m/s from below
+-- (the vortex ring state), in 3.5 m/s from above by some 2 m/s, and with it the thrust by a third; earlier
+-- this vehicle lost 31 cm in such a stream. 35 cm is the limit, 30 cm that it may rise above its height behind.
 include "include/hover.lua"
 
 local signals = { "height", "east", "north", "tilt", "wind_down" }
 
+local limits = {
+  up = { highest = { "1.11 m", "1.2 m" }, lowest = { "1.0 m", "1.1 m" } },
+  down = { highest = { "1.1 m", "1.4 m" }, lowest = { "0.75 m", "1.09 m" } },
+}
+
 -- Flies to `north` at `east` through the jet, and judges the way.
-local function cross(t, name, north, east, highest)
+local function cross(t, jet, name, north, east)
   t:step(name)
   t:command { position = { east = east .. " m" }, speed = "0.3 m/s" }
   t:wait "4 s"
   local way = t:record(signals, "13 s", function()
     t:command { position = { north = north .. " m" }, speed = "0.3 m/s" }
   end)
-  t:expect(way:min "wind_down", name .. ": upward flow met"):at_most "-3.4 m/s"
-  t:expect(way:max "height", name .. ": it lifts"):at_least "1.11 m"
-  t:expect(way:max "height", name .. ": highest"):at_most(highest)
-  t:expect(way:min "height", name .. ": lowest"):at_least "1.0 m"
+  if jet == "up" then
+    t:expect(way:min "wind_down", name .. ": upward flow met"):at_most "-3.2 m/s"
+  else
+    t:expect(way:max "wind_down", name .. ": downward flow met"):at_least "3.2 m/s"
+  end
+  t:expect(way:max "height", name .. ": highest"):within(limits[jet].highest[1], limits[jet].highest[2])
+  t:expect(way:min "height", name .. ": lowest"):within(limits[jet].lowest[1], limits[jet].lowest[2])
   t:expect(way:max_error("east", east .. " m"), name .. ": sideways"):at_most "30 cm"
   t:expect(way:max "tilt", name .. ": tilt"):at_most "15 deg"
   t:expect(way:final "north", name .. ": is through"):within(north - 0.1 .. " m", north + 0.1 .. " m")
 end
 
-local function gust_crossing(name, image, vehicle, highest)
+local function gust_crossing(name, jet, image, vehicle)
   plan(name) {
     image = image, board = "px4fmu_v1", vehicle = vehicle,
     tags = { "flight", "gust" }, timeout = "60 s",
     run = function(t)
+      local strength = t:quantity(t:drawn("3.3 m/s", "3.7 m/s"))
+      local from = t:quantity(t:drawn("1.3 m", "1.5 m")) -- as far back from the axis as the thesis's
       t:step "to the start"
       hover(t)
-      t:command { position = { north = "1.5 m" }, speed = "0.5 m/s" }
+      t:command { position = { north = from .. " m" }, speed = "0.5 m/s" }
       t:wait "7 s"
-      t:gust { jet = { up = "3.5 m/s", radius = "35 cm" } }
-      cross(t, "through the middle", -1.5, 0, highest)
-      cross(t, "beside it", 1.5, 0.2, highest)
+      t:gust { jet = { up = (jet == "up" and strength or -strength) .. " m/s", radius = "35 cm",
+                       north = t:drawn("-5 cm", "5 cm"), east = t:drawn("-5 cm", "5 cm") } }
+      cross(t, jet, "through the middle", -1.5, 0)
+      cross(t, jet, "beside it", 1.5, 0.2)
     end,
   }
 end
 
-gust_crossing("gust_crossing", "flight", "hp_quad", "1.2 m")
-gust_crossing("gust_crossing_by_power", "flight_st", "hp_quad_st", "1.2 m")
+for _, jet in ipairs { "up", "down" } do
+  local suffix = jet == "up" and "" or "_" .. jet
+  gust_crossing("gust_crossing" .. suffix, jet, "flight", "hp_quad")
+  gust_crossing("gust_crossing_by_power" .. suffix, jet, "flight_st", "hp_quad_st")
+end
