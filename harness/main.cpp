@@ -1,4 +1,5 @@
 // whirl: the virtual board and its world, a flight or a thrust stand, put together.
+#include <algorithm>
 #include <cstdlib>
 #include <set>
 
@@ -43,6 +44,15 @@ Result<Done> check_escs(const cli::Setup& setup, const flight::FlightParams& par
   return Done{};
 }
 
+flight::BoardEars ears_of(const BoardDescription& board) {
+  const auto has = [&](std::initializer_list<const char*> types) {
+    return std::any_of(board.devices.begin(), board.devices.end(), [&](const BoardDevice& device) {
+      return std::find(types.begin(), types.end(), device.type) != types.end();
+    });
+  };
+  return {.radio = has({"mavlink_link"}), .receiver = has({"cppm", "sbus"})};
+}
+
 Result<std::unique_ptr<World>> make_world(const cli::Setup& setup) {
   if (setup.plan.stand) {
     const auto params = stand_of(setup);
@@ -54,6 +64,7 @@ Result<std::unique_ptr<World>> make_world(const cli::Setup& setup) {
   const auto around = catalogue::read_surroundings(*setup.plan.surroundings, params.value());
   if (!around) return around.error();
   if (const auto joined = check_escs(setup, params.value()); !joined) return joined.error();
+  params.value().ears = ears_of(setup.board);
   return std::unique_ptr<World>(std::make_unique<flight::FlightWorld>(params.value(), setup.seed));
 }
 

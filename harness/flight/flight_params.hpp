@@ -12,6 +12,12 @@
 
 namespace whirl::flight {
 
+// What of the ground the board can hear.
+struct BoardEars {
+  bool radio = true;     // a telemetry radio
+  bool receiver = true;  // of radio control
+};
+
 struct FlightParams {
   std::string name;
   plant::VehicleParams vehicle;
@@ -20,6 +26,7 @@ struct FlightParams {
   EscParams esc;                        // esc_core's
   CaptureParams capture;
   Surroundings place;
+  BoardEars ears;
 };
 
 }  // namespace whirl::flight

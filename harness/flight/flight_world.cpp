@@ -37,6 +37,7 @@ FlightWorld::FlightWorld(const FlightParams& params, plant::RotorSet rotors, std
                          const ControllerTypes& types)
     : place_(params.place),
       has_load_(params.vehicle.load.has_value()),
+      ears_(params.ears),
       vehicle_(params.vehicle, std::move(rotors), seed),
       capture_(params.capture, seed),
       drag_truth_(params.vehicle.airframe) {
@@ -155,7 +156,19 @@ void FlightWorld::send(std::int64_t t_ns, io::Batch& sensed) {
 
 // ---- What a plan may ask
 
+// A command that nobody on board can hear would be none, and a plan that shows nothing.
+Result<Done> FlightWorld::must_be_heard(const Command& command) const {
+  if (std::holds_alternative<request::Sticks>(command)) {
+    if (ears_.receiver) return Done{};
+    return refusal("rc", "the board has no receiver for it", "cppm or sbus, in the board file");
+  }
+  if (ears_.radio) return Done{};
+  return refusal(word(command), "the board has no radio that hears it",
+                 "mavlink_link, in the board file");
+}
+
 Result<Done> FlightWorld::command(const Command& command, std::int64_t /*now_ns*/) {
+  if (const auto heard = must_be_heard(command); !heard) return heard.error();
   return std::visit(
       Match{
           [this](const request::Arm& c) -> Result<Done> { return arm(c), Done{}; },

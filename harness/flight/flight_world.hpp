@@ -67,6 +67,7 @@ class FlightWorld : public World {
   void name_telemetry_signals();
   void name_estimate_signals();
   void name_receiver_signals();
+  Result<Done> must_be_heard(const Command& command) const;
   void arm(const request::Arm& command);
   void take_off(const request::TakeOff& command);
   void go_to(const request::GoTo& command);
@@ -85,6 +86,7 @@ class FlightWorld : public World {
 
   Surroundings place_;
   bool has_load_;
+  BoardEars ears_;
   plant::Vehicle vehicle_;
   std::vector<std::unique_ptr<MotorController>> controllers_;  // index: motor number - 1
   std::vector<double> unbalance_m_;                            // likewise, over the vehicle's mass

@@ -302,6 +302,29 @@ Result<Done> placed(const lua::Table& t, Result<Done> done) {
   return t.finish();
 }
 
+// Where a vehicle goes, or what a motor turns by: of one command there is one.
+bool leads(const Command& command) {
+  return std::visit(
+      Match{[](const TakeOff&) { return true; }, [](const GoTo&) { return true; },
+            [](const Land&) { return true; }, [](const Figure8&) { return true; },
+            [](const Cruise&) { return true; }, [](const HoldAttitude&) { return true; },
+            [](const Waypoints&) { return true; }, [](const Teleoperation&) { return true; },
+            [](const SetPoint&) { return true; }, [](const auto&) { return false; }},
+      command);
+}
+
+void refuse_contradictions(const Table& t, const std::vector<Command>& all) {
+  const Command* leader = nullptr;
+  for (const Command& command : all) {
+    if (!leads(command)) continue;
+    if (leader != nullptr) {
+      t.refuse(word(command), std::string("contradicts '") + word(*leader) + "' beside it",
+               "one t:command each");
+    }
+    leader = &command;
+  }
+}
+
 }  // namespace
 
 bool is_one_line(const std::string& text) {
@@ -312,8 +335,11 @@ Result<std::vector<Command>> read_commands(const Table& t, const ReadFile& read_
   std::vector<Command> all;
   read_flying(t, read_file, all);
   read_turning(t, all);
+  refuse_contradictions(t, all);
   if (auto good = t.finish(); !good) return good.error();
-  return all;
+  if (!all.empty()) return all;
+  t.refuse("command", "is empty: nothing is commanded");
+  return t.finish().error();
 }
 
 Result<Disturbance> read_disturbance(const Table& t) {

@@ -8,6 +8,7 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <system_error>
 #include <utility>
 
 #include "base/check.hpp"
@@ -17,6 +18,12 @@ namespace {
 
 Error refuse(ErrorKind kind, const std::string& path, const std::string& what) {
   return {kind, path, what, ""};
+}
+
+// Of the host: its disk is full, say. Less than was asked for sets no errno.
+[[noreturn]] void fail(const char* what, ssize_t moved) {
+  throw std::system_error(moved < 0 ? errno : ENOSPC, std::generic_category(),
+                          std::string("what a part's memory holds cannot be ") + what);
 }
 
 }  // namespace
@@ -77,13 +84,13 @@ Result<Done> MemoryFile::copy_from(const std::string& path) {
 void MemoryFile::read(std::int64_t at, std::span<std::uint8_t> into) const {
   WHIRL_CHECK(at >= 0 && at + std::ssize(into) <= size_bytes_, at, into.size());
   const ssize_t got = pread(fd_, into.data(), into.size(), at);
-  WHIRL_CHECK(got == std::ssize(into), got, errno);
+  if (got != std::ssize(into)) fail("read", got);
 }
 
 void MemoryFile::write(std::int64_t at, std::span<const std::uint8_t> bytes) {
   WHIRL_CHECK(at >= 0 && at + std::ssize(bytes) <= size_bytes_, at, bytes.size());
   const ssize_t put = pwrite(fd_, bytes.data(), bytes.size(), at);
-  WHIRL_CHECK(put == std::ssize(bytes), put, errno);
+  if (put != std::ssize(bytes)) fail("written", put);
 }
 
 void MemoryFile::clear(std::int64_t at, std::int64_t bytes) {

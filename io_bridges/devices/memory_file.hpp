@@ -2,7 +2,8 @@
 //
 //   Lasts   each write goes to the file at once: whatever ends the process, the file holds what the
 //           part held. Without a path the bytes live as long as the process
-//   Host    a file that cannot be read or written any more is a failed check: results are lost
+//   Host    a file that cannot be read or written any more (a full disk) throws std::system_error, which
+//           ends the run as the host's lack
 //   Errors  host: the file cannot be made; bad_input: the file to start from cannot be read, or is
 //           larger than the part
 #pragma once

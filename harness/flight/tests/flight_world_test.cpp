@@ -168,7 +168,10 @@ TEST(FlightWorld, RefusesCommandsItDoesNotUnderstand) {
         "{ parameter = { name = '', value = 1 } }",
         "{ parameter = { name = 'SEVENTEEN_LETTERS', value = 1 } }",
         "{ parameter = { name = 'A', value = 1e300 } }",
-        "{ parameter = { name = 'A', value = '1 m' } }"}) {
+        "{ parameter = { name = 'A', value = '1 m' } }", "{}", "{ land = false }",
+        "{ land = true, takeoff = '1 m' }", "{ position = { north = '1 m' }, figure_8 = {} }",
+        "{ attitude = { roll = '1 deg' }, thrust = '50 %', velocity = {} }",
+        "{ duty = '10 %', power = '10 W' }"}) {
     EXPECT_FALSE(plan::command(flight.world, table(text), 0).ok()) << text;
   }
   for (const char* text : {"{ jet = { up = '3 m/s' } }", "{ jet = { radius = '1 m' } }",
@@ -220,6 +223,24 @@ TEST(FlightWorld, WhatAStandDoesIsRefusedByItsKey) {
   const auto gust = plan::disturb(flight.world, table("{ duration = '0 s', east = '1 m/s' }"), 0);
   ASSERT_FALSE(gust.ok());
   EXPECT_EQ(gust.error().message(), "plan.lua:1: duration: must be positive");
+}
+
+// What nobody on board can hear would be no command, and the plan would show nothing.
+TEST(FlightWorld, CommandsThatTheBoardCannotHearAreRefused) {
+  const auto refusal = [](BoardEars ears, const std::string& text) {
+    FlightParams params = hp_quad_file();
+    params.ears = ears;
+    FlightWorld world(params, 1);
+    const auto done = plan::command(world, table(text), 0);
+    return done ? "none" : done.error().message();
+  };
+  const std::string sticks = "{ rc = { roll = '10 %' } }", take_off = "{ takeoff = '1 m' }";
+  EXPECT_NE(refusal({.radio = true, .receiver = false}, sticks).find("has no receiver"),
+            std::string::npos);
+  EXPECT_EQ(refusal({.radio = true, .receiver = false}, take_off), "none");
+  EXPECT_NE(refusal({.radio = false, .receiver = true}, take_off).find("has no radio"),
+            std::string::npos);
+  EXPECT_EQ(refusal({.radio = false, .receiver = true}, sticks), "none");
 }
 
 TEST(FlightWorld, ItsFaultsActAndAreReportedOnlyThen) {

@@ -1,11 +1,14 @@
 #include "io_bridges/devices/memory_file.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <array>
+#include <csignal>
 #include <string>
+#include <system_error>
 
 namespace whirl::io {
 namespace {
@@ -72,6 +75,23 @@ TEST(MemoryFile, AFileThatIsNotThereOrTooLargeIsRefused) {
   const auto no_folder = MemoryFile::create(temporary("no/folder"), 1024);
   ASSERT_FALSE(no_folder);
   EXPECT_EQ(no_folder.error().kind, ErrorKind::host);
+}
+
+// A full disk is the host's lack, and no bug of ours.
+TEST(MemoryFile, WhatTheHostHasNoRoomForIsSaidToBeItsLack) {
+  const std::string path = temporary("full");
+  auto file = MemoryFile::create(path, 1 << 20);
+  ASSERT_TRUE(file);
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
+  const rlimit little{4096, before.rlim_max};
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &little), 0);
+  file.value().write(0, Bytes{1, 2, 3, 4});
+  EXPECT_THROW(file.value().write(8192, Bytes{1, 2, 3, 4}), std::system_error);
+  setrlimit(RLIMIT_FSIZE, &before);
+  std::signal(SIGXFSZ, handler);
+  unlink(path.c_str());
 }
 
 }  // namespace

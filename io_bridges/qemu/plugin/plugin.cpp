@@ -18,6 +18,7 @@
 #include <memory>
 #include <new>
 #include <optional>
+#include <system_error>
 
 #include "io_bridges/qemu/plugin/instruments.hpp"
 #include "io_bridges/qemu/plugin/machine.hpp"
@@ -125,6 +126,8 @@ void on_uncaught() {
     std::rethrow_exception(std::current_exception());
   } catch (const std::bad_alloc&) {
     refuse_as(ErrorKind::host, "out of memory");
+  } catch (const std::system_error& error) {
+    refuse_as(ErrorKind::host, error.what());
   } catch (const std::exception& exception) {
     refuse_as(ErrorKind::internal, std::string("uncaught exception: ") + exception.what());
   } catch (...) {
