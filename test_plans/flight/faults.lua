@@ -90,6 +90,28 @@ flight_plan("an IMU that leaves the bus stops the motors", function(t)
   t:within("2 s", function(s) return s.told_armed == 0 end, "motors off")
 end)
 
+-- 2048 of a rate's counts in twenty samples: 62 degrees per second that are not there.
+flight_plan("a bit of the IMU's wire that is flipped for 20 ms is flown through", function(t)
+  hover(t)
+  t:fault { kind = "spi_flip", device = "imu", duration = "20 ms", value = 8 * 9 + 3 }
+  t:wait "500 ms"
+  flies_on(t)
+end)
+
+-- The wire repeats what it last carried. Five samples are no sign of anything; for good, the IMU is lost.
+flight_plan("an IMU's wire that stands still for 5 ms is flown through", function(t)
+  hover(t)
+  t:fault { kind = "spi_frozen", device = "imu", duration = "5 ms" }
+  t:wait "500 ms"
+  flies_on(t)
+end)
+
+flight_plan("an IMU's wire that stands still for good stops the motors", function(t)
+  hover(t)
+  t:fault { kind = "spi_frozen", device = "imu" }
+  t:within("2 s", function(s) return s.told_armed == 0 end, "motors off")
+end)
+
 -- It sleeps until the image has set it up anew: longer than attitude can be held without it.
 flight_plan("an IMU whose supply fails for 5 ms stops the motors, and is set up anew", function(t)
   hover(t)

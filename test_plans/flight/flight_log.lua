@@ -137,6 +137,23 @@ log_plan("a card that answers late costs samples, and the log says which", { "fl
   t:expect(log:dropouts()):within("100 ms", "2.5 s")
 end)
 
+-- The card says that it has not written, or that what came was spoiled on the wire, for a second: what was in
+-- hand is written again or owned up to, and nothing else is lost.
+for _, kind in ipairs { "memory_write_error", "memory_crc_error" } do
+  log_plan("a card whose blocks fail for a second is written on: " .. kind, { "flight", "log" }, function(t)
+    hover(t)
+    undisturbed(t, "8 s")
+    t:fault { kind = kind, device = "card", start = "1 s", duration = "1 s" }
+    steady(t, "6 s")
+    land(t)
+    t:expect(t:value "told_logging", "it is well again"):equal "1"
+    local log = t:flight_log("card")
+    t:expect(log:closed()):equal "1"
+    whole(t, log)
+    t:expect(log:dropouts()):at_most "2.5 s"
+  end)
+end
+
 log_plan("without a card it flies as ever", { "flight", "log" }, function(t)
   t:fault { kind = "memory_removed", device = "card" }
   hover(t)
