@@ -113,12 +113,20 @@ Result<std::unique_ptr<Target>> make_target(const plan::Plan& plan,
   return std::unique_ptr<Target>(std::make_unique<NodeSet>(std::move(entries), std::move(wires)));
 }
 
+// Who names the file under this key: the plan, or the command line in its place.
+Asker asker_of(const std::string& key, const plan::Plan& plan, const Settings& settings) {
+  for (const Setting& setting : settings) {
+    if (setting.key == key) return {plan.file, "the command line's " + key};
+  }
+  return {plan.file, plan.place};
+}
+
 // `folder`: where the parts of the boards leave their files; empty: nowhere.
 Result<Prepared> prepare(const plan::Plan& plan, const PlanChoice& choice,
                          const RunOptions& options, const Composition& composition,
                          const std::string& folder) {
   const std::string& root = composition.root;
-  const Asker who{plan.file, plan.place};
+  const auto who = [&](const char* key) { return asker_of(key, plan, options.settings); };
   std::string vehicle_file;
   for (const Setting& setting : options.settings) {
     if (!plan.vehicle.empty() || path_in(setting, "vehicle").empty()) continue;
@@ -126,7 +134,8 @@ Result<Prepared> prepare(const plan::Plan& plan, const PlanChoice& choice,
                  "--set " + setting.key + ": this plan has a stand and no vehicle", ""};
   }
   if (!plan.vehicle.empty()) {
-    const auto vehicle = find_file(plan.vehicle, who, {root + "/test_plans/vehicles"}, ".lua");
+    const auto vehicle =
+        find_file(plan.vehicle, who("plan.vehicle"), {root + "/test_plans/vehicles"}, ".lua");
     if (!vehicle) return vehicle.error();
     vehicle_file = shown_path(vehicle.value());
   }
@@ -140,9 +149,10 @@ Result<Prepared> prepare(const plan::Plan& plan, const PlanChoice& choice,
   Prepared all;
   all.nodes.reserve(plan.nodes.size());  // the setups point at them
   for (std::size_t i = 0; i < plan.nodes.size(); ++i) {
-    auto node = read_node(plan.nodes[i], who, root);
+    auto node = read_node(plan.nodes[i], who("plan.board"), root);
     if (!node) return node.error();
-    const auto image = find_file(plan.nodes[i].image, who, image_folders(root), ".elf");
+    const auto image =
+        find_file(plan.nodes[i].image, who("plan.image"), image_folders(root), ".elf");
     if (!image) return image.error();
     all.nodes.push_back(std::move(node.value()));
     const int port = options.gdb ? options.gdb_port : 0;

@@ -308,6 +308,13 @@ TEST(Program, ASettingTakesThePlaceOfWhatThePlanSays) {
   EXPECT_EQ(whirl(root, {"run", "--set", "plan.timeout=500 ms"}).code, 1);
   const json run = parse_json(root.read("results/runs/latest/run.json"));
   EXPECT_EQ(run["versions"]["set plan.timeout"], "500 ms");
+  for (const std::string key : {"plan.image", "plan.board", "plan.vehicle"}) {
+    const Outcome missing = whirl(root, {"run", "--set", key + "=nowhere"});
+    EXPECT_EQ(missing.code, 2);
+    EXPECT_NE(missing.out.find("the command line's " + key + ": 'nowhere' is not there"),
+              std::string::npos)
+        << missing.out;
+  }
   const Outcome unknown = whirl(root, {"run", "--set", "plan.timeuot=1 s"});
   EXPECT_EQ(unknown.code, 2);
   EXPECT_NE(unknown.err.find("unknown key 'timeuot'"), std::string::npos) << unknown.err;
