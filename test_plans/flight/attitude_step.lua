@@ -1,4 +1,4 @@
--- Steps of roll and pitch from hover, told by SET_ATTITUDE_TARGET at 50 Hz: 10 to 90 % within 100 ms, for
+-- Steps of roll and pitch from hover, told by SET_ATTITUDE_TARGET at 20 Hz: 10 to 90 % within 100 ms, for
 -- steps that the rotors can just follow (20 degrees) and for smaller ones. Settled is within a tenth of the
 -- step about what was asked for. The thrust is not corrected meanwhile.
 include "include/hover.lua"
