@@ -63,6 +63,7 @@ struct Vehicle::Parts {
   void set_dip();
   Forcing run_rotors(double dt_s);
   void run_body(Forcing& forcing, double dt_s);
+  void feel_motion(const BodyState& before, double dt_s);
   void strike();
   void publish_air();
   Vector3d spin_B() const;
@@ -83,6 +84,7 @@ struct Vehicle::Parts {
   std::vector<ShaftLoad> shaft;
   std::vector<Dip> dips;
   std::vector<Push> pushes;
+  std::optional<CarriedBody> carried;  // of the next step
   Vector3d spin_start_B_Nms = Vector3d::Zero();
   double viscosity_Pas = 0.0;
   BodyState body;
@@ -151,14 +153,18 @@ void Vehicle::Parts::run_body(Forcing& forcing, double dt_s) {
   if (load) {
     load->step(body, forcing, state.air_density_kgpm3, air.wind_W_mps(load->p_W_m()), dt_s);
   }
-  const Touch touch = contact.in_reach(body, dt_s) ? contact.step(body, forcing, dt_s) : Touch{};
+  const bool held = carried.has_value();
+  const bool may_touch = !held && contact.in_reach(body, dt_s);
+  const Touch touch = may_touch ? contact.step(body, forcing, dt_s) : Touch{};
   state.contact_impulse_Ns = touch.sum_Ns;
   state.on_ground = touch.from_below_Ns > 0.0;
   state.touching = touch.sum_Ns > touch.from_below_Ns;
-  if (touch.sum_Ns > 0.0) {
-    const Vector3d a_W = (body.v_WB_W_mps - before.v_WB_W_mps) / dt_s;
-    state.specific_force_B_mps2 = body.q_WB.conjugate() * (a_W - Vector3d(0.0, 0.0, kGravity_mps2));
-    state.alpha_WB_B_radps2 = (body.w_WB_B_radps - before.w_WB_B_radps) / dt_s;
+  if (held) {
+    body = {carried->p_WB_W_m, carried->v_WB_W_mps, carried->q_WB, carried->w_WB_B_radps};
+    carried.reset();
+    feel_motion(before, dt_s);
+  } else if (touch.sum_Ns > 0.0) {
+    feel_motion(before, dt_s);
   } else {
     body = step_free(body, mass, forcing, dt_s);
     state.specific_force_B_mps2 =
@@ -166,6 +172,13 @@ void Vehicle::Parts::run_body(Forcing& forcing, double dt_s) {
     state.alpha_WB_B_radps2 = angular_acceleration_B(body, mass, forcing, dt_s);
   }
   spin_start_B_Nms = forcing.spin_end_B_Nms;
+}
+
+// What the sensors feel of a motion that forces alone do not tell.
+void Vehicle::Parts::feel_motion(const BodyState& before, double dt_s) {
+  const Vector3d a_W = (body.v_WB_W_mps - before.v_WB_W_mps) / dt_s;
+  state.specific_force_B_mps2 = body.q_WB.conjugate() * (a_W - Vector3d(0.0, 0.0, kGravity_mps2));
+  state.alpha_WB_B_radps2 = (body.w_WB_B_radps - before.w_WB_B_radps) / dt_s;
 }
 
 // A disc with a point in the ground or an obstacle: the propeller stops, and stays stopped.
@@ -238,6 +251,11 @@ void Vehicle::set_motor_speed(int index, double speed_radps) {
   parts_->powertrain->set_speed(i, speed_radps);
   parts_->state.motors[i].speed_radps = parts_->powertrain->speed_radps(i);
   parts_->spin_start_B_Nms = parts_->spin_B();
+}
+
+void Vehicle::carry(const CarriedBody& to) {
+  WHIRL_CHECK(to.p_WB_W_m.allFinite() && to.v_WB_W_mps.allFinite() && to.w_WB_B_radps.allFinite());
+  parts_->carried = to;
 }
 
 void Vehicle::command(int index, const MotorCommand& command) {

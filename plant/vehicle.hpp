@@ -68,6 +68,14 @@ struct VehicleState : PowertrainState {
   double line_tension_N = 0.0;
 };
 
+// Where something that holds the body has it at the end of a step.
+struct CarriedBody {
+  Eigen::Vector3d p_WB_W_m = Eigen::Vector3d::Zero();
+  Eigen::Vector3d v_WB_W_mps = Eigen::Vector3d::Zero();
+  Eigen::Quaterniond q_WB = Eigen::Quaterniond::Identity();
+  Eigen::Vector3d w_WB_B_radps = Eigen::Vector3d::Zero();
+};
+
 class Vehicle {
  public:
   // Pre: validate(params) succeeded. The vehicle starts at rest on its gear at W's origin, nose
@@ -86,6 +94,9 @@ class Vehicle {
   void place(const Eigen::Vector3d& p_WB_W_m, const Eigen::Quaterniond& q_WB,
              const Eigen::Vector3d& v_WB_W_mps, const Eigen::Vector3d& w_WB_B_radps);
   void set_motor_speed(int index, double speed_radps);
+  // In the next step the body moves as told, whatever pulls at it; then it is free again. Specific force and
+  // angular acceleration are the means over the step.
+  void carry(const CarriedBody& to);
 
   void command(int index, const MotorCommand& command);  // holds until the next one
   void set_steady_wind(const Eigen::Vector3d& wind_W_mps);

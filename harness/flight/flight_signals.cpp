@@ -62,6 +62,7 @@ void FlightWorld::name_signals() {
   name_telemetry_signals();
   name_estimate_signals();
   name_receiver_signals();
+  name_sensor_signals();
 }
 
 void FlightWorld::name_load_signals() {

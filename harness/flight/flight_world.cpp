@@ -39,6 +39,8 @@ FlightWorld::FlightWorld(const FlightParams& params, plant::RotorSet rotors, std
       has_load_(params.vehicle.load.has_value()),
       ears_(params.ears),
       vehicle_(params.vehicle, std::move(rotors), seed),
+      airframe_(params.vehicle.airframe),
+      seed_(seed),
       capture_(params.capture, seed),
       drag_truth_(params.vehicle.airframe) {
   const auto type = std::find_if(types.begin(), types.end(), [&](const ControllerType& t) {
@@ -75,7 +77,7 @@ void FlightWorld::read(std::span<double> values) const {
 void FlightWorld::step(std::int64_t t_ns, const io::Batch& happened, io::Batch& sensed) {
   on_messages(happened);
   if (t_ns > 0) move(t_ns);
-  estimates_.remember(t_ns, vehicle_.state());
+  estimates_.remember(t_ns, vehicle_.state(), place_.field_W_T(vehicle_.state().p_WB_W_m, t_ns));
   now_ns_ = t_ns;
   send(t_ns, sensed);
 }
@@ -110,6 +112,7 @@ void FlightWorld::move(std::int64_t t_ns) {
     vehicle_.command(static_cast<int>(i),
                      controllers_[i]->step(now_ns_, before.motors[i], before.bus_voltage_V));
   }
+  carry(t_ns);
   vehicle_.step(kStep_s);
   drag_truth_.step(vehicle_.state(), kStep_s);
 }
@@ -186,6 +189,7 @@ Result<Done> FlightWorld::command(const Command& command, std::int64_t /*now_ns*
           },
           [this](const request::Radio& c) -> Result<Done> { return add_guest(c), Done{}; },
           [this](const request::Sticks& c) -> Result<Done> { return transmitter_.set(c), Done{}; },
+          [this](const request::Calibrate& c) -> Result<Done> { return calibrate(c), Done{}; },
           [this](const request::SetParameter& c) -> Result<Done> {
             station_.request_parameter(
                 c.name, c.value ? std::optional(static_cast<float>(*c.value)) : std::nullopt);
@@ -277,7 +281,9 @@ void FlightWorld::add_guest(const request::Radio& radio) {
 Result<Done> FlightWorld::disturb(const Disturbance& disturbance, std::int64_t now_ns) {
   return std::visit(Match{[this](const request::Jet& jet) { return add_jet(jet); },
                           [&](const request::Wind& wind) { return blow(wind, now_ns); },
-                          [&](const request::Magnet& m) { return add_magnet(m, now_ns); }},
+                          [&](const request::Magnet& m) { return add_magnet(m, now_ns); },
+                          [&](const request::Hold& h) { return hold_in_hand(h, now_ns); },
+                          [&](const request::Release& r) { return release(r, now_ns); }},
                     disturbance);
 }
 

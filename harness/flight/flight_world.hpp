@@ -7,11 +7,12 @@
 //   Radio    bytes of another ground station go up with the next step. Who commanded last leads: with a set-point, an
 //            arming, a take-off or a landing of the other one ours ends its own set-points until it is commanded anew
 //   Begins   standing at W's origin, or as the plan's `start` says (surroundings.hpp)
-//   Disturbed by Wind with a duration, Jet, Magnet
+//   Disturbed by Wind with a duration, Jet, Magnet; held and turned by Hold until Release (flight_hand.cpp)
 //   Faults   capture_lost; supply_dip (value: volts below); esc_stopped (of a motor, or of the device that is its ESC)
 #pragma once
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,7 @@
 #include "harness/flight/estimates.hpp"
 #include "harness/flight/flight_params.hpp"
 #include "harness/flight/guest_radio.hpp"
+#include "harness/flight/hand.hpp"
 #include "harness/flight/receiver.hpp"
 #include "harness/flight/station.hpp"
 #include "harness/flight/transmitter.hpp"
@@ -68,6 +70,7 @@ class FlightWorld : public World {
   void name_estimate_signals();
   void name_receiver_signals();
   Result<Done> must_be_heard(const Command& command) const;
+  void name_sensor_signals();
   void arm(const request::Arm& command);
   void take_off(const request::TakeOff& command);
   void go_to(const request::GoTo& command);
@@ -78,6 +81,11 @@ class FlightWorld : public World {
   void fly_waypoints(const request::Waypoints& wanted);
   void teleoperate(const request::Teleoperation& wanted);
   void add_guest(const request::Radio& radio);
+  void calibrate(const request::Calibrate& command);
+  Result<Done> hold_in_hand(const request::Hold& wanted, std::int64_t now_ns);
+  Result<Done> release(const request::Release& wanted, std::int64_t now_ns);
+  void carry(std::int64_t t_ns);
+  double standing_m() const;
   Target present_target() const;  // as commanded; where it is, if nothing was
   Result<Done> blow(const request::Wind& wind, std::int64_t now_ns);
   Result<Done> add_jet(const request::Jet& wanted);
@@ -90,6 +98,9 @@ class FlightWorld : public World {
   plant::Vehicle vehicle_;
   std::vector<std::unique_ptr<MotorController>> controllers_;  // index: motor number - 1
   std::vector<double> unbalance_m_;                            // likewise, over the vehicle's mass
+  const plant::AirframeParams airframe_;
+  std::uint64_t seed_;
+  std::optional<Hand> hand_;
   Capture capture_;
   Station station_;
   GuestRadio guest_;

@@ -42,6 +42,28 @@ int gust(lua_State* L) {
   return 0;
 }
 
+// t:hold { roll = "90 deg", over = "2 s" }: a hand takes the vehicle and turns it there.
+int hold_by_hand(lua_State* L) {
+  Script::of(L).act();
+  const Stage& stage = Script::of(L).stage();
+  const lua::Table table = check_table(L, 2);
+  if (auto done = hold(stage.world, table, stage.now_ns); !done) raise(L, done.error());
+  return 0;
+}
+
+// t:release(), t:release { over = "2 s" }
+int release_from_hand(lua_State* L) {
+  Script::of(L).act();
+  const Stage& stage = Script::of(L).stage();
+  if (lua_isnoneornil(L, 2)) {
+    lua_settop(L, 1);
+    lua_newtable(L);
+  }
+  const lua::Table table = check_table(L, 2);
+  if (auto done = release(stage.world, table, stage.now_ns); !done) raise(L, done.error());
+  return 0;
+}
+
 int named_bus(lua_State* L, const std::string& bus) {
   const auto number = bus_number(bus);
   if (!number) raise(L, "'" + bus + "' is no bus", "write it as \"i2c3\", \"spi1\" or \"usart2\"");
@@ -155,8 +177,10 @@ int fault(lua_State* L) {
 }  // namespace
 
 void add_action_calls(lua_State* L) {
-  const luaL_Reg calls[] = {
-      {"command", command}, {"at", at}, {"gust", gust}, {"fault", fault}, {nullptr, nullptr}};
+  const luaL_Reg calls[] = {{"command", command},   {"at", at},
+                            {"gust", gust},         {"fault", fault},
+                            {"hold", hold_by_hand}, {"release", release_from_hand},
+                            {nullptr, nullptr}};
   luaL_setfuncs(L, calls, 0);
 }
 

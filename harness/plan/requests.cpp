@@ -202,6 +202,15 @@ Teleoperation read_teleoperation(const Table& t) {
   return all;
 }
 
+Calibrate read_calibrate(const Table& t) {
+  // In the order of request::Calibration.
+  static const std::vector<std::string> kWords = {"gyroscope", "accelerometer", "magnetometer",
+                                                  "motor_fields", "cancel"};
+  const std::string word = t.choice("calibrate", kWords);
+  const auto found = std::find(kWords.begin(), kWords.end(), word);
+  return {static_cast<Calibration>(found - kWords.begin())};
+}
+
 void read_flying(const Table& t, const ReadFile& read_file, std::vector<Command>& all) {
   if (t.has("arm")) all.emplace_back(Arm{t.flag_or("arm", true)});
   if (t.has("takeoff")) {
@@ -217,6 +226,7 @@ void read_flying(const Table& t, const ReadFile& read_file, std::vector<Command>
   if (t.has("land") && t.flag_or("land", true)) all.emplace_back(Land{});
   if (t.has("parameter")) all.emplace_back(read_parameter(t.table("parameter")));
   if (t.has("rc")) all.emplace_back(read_sticks(t.table("rc")));
+  if (t.has("calibrate")) all.emplace_back(read_calibrate(t));
 }
 
 void read_turning(const Table& t, std::vector<Command>& all) {
@@ -280,6 +290,19 @@ Magnet read_magnet(const Table& t) {
   magnet.at_east_m = at.quantity_or("east", Dimension::length, 0.0);
   magnet.at_height_m = at.quantity_or("height", Dimension::length, 0.0);
   return magnet;
+}
+
+// { roll = "90 deg", height = "1 m", over = "2 s" }: level, nose north, where nothing is said.
+Hold read_hold(const Table& t) {
+  Hold hold;
+  hold.roll_rad = t.quantity_or("roll", Dimension::angle, 0.0);
+  hold.pitch_rad = t.quantity_or("pitch", Dimension::angle, 0.0);
+  hold.yaw_rad = t.quantity_or("yaw", Dimension::angle, 0.0);
+  hold.height_m = maybe(t, "height", Dimension::length, above(0.0));
+  hold.north_m = maybe(t, "north", Dimension::length);
+  hold.east_m = maybe(t, "east", Dimension::length);
+  hold.over_s = t.quantity_or("over", Dimension::time, hold.over_s, between(0.2, 60.0));
+  return hold;
 }
 
 Wind read_wind(const Table& t) {
@@ -361,6 +384,18 @@ Result<Done> disturb(World& world, const Table& t, std::int64_t now_ns) {
   const auto disturbance = read_disturbance(t);
   if (!disturbance) return disturbance.error();
   return placed(t, world.disturb(disturbance.value(), now_ns));
+}
+
+Result<Done> hold(World& world, const Table& t, std::int64_t now_ns) {
+  const Hold wanted = read_hold(t);
+  if (auto good = t.finish(); !good) return good;
+  return placed(t, world.disturb(wanted, now_ns));
+}
+
+Result<Done> release(World& world, const Table& t, std::int64_t now_ns) {
+  const Release wanted{maybe(t, "over", Dimension::time, between(0.2, 60.0))};
+  if (auto good = t.finish(); !good) return good;
+  return placed(t, world.disturb(wanted, now_ns));
 }
 
 }  // namespace whirl::plan

@@ -27,5 +27,7 @@ Result<Disturbance> read_disturbance(const lua::Table& t);
 Result<Done> command(World& world, const lua::Table& t, std::int64_t now_ns,
                      const ReadFile& read_file = {});
 Result<Done> disturb(World& world, const lua::Table& t, std::int64_t now_ns);
+Result<Done> hold(World& world, const lua::Table& t, std::int64_t now_ns);
+Result<Done> release(World& world, const lua::Table& t, std::int64_t now_ns);
 
 }  // namespace whirl::plan

@@ -25,14 +25,17 @@ const char* word(const Command& command) {
                           [](const request::RawTransfer&) { return "i2c_raw"; },
                           [](const request::Pulses&) { return "pulses"; },
                           [](const request::Line&) { return "line"; },
-                          [](const request::Brake&) { return "brake"; }},
+                          [](const request::Brake&) { return "brake"; },
+                          [](const request::Calibrate&) { return "calibrate"; }},
                     command);
 }
 
 const char* word(const Disturbance& disturbance) {
   return std::visit(
       Match{[](const request::Wind&) { return "wind"; }, [](const request::Jet&) { return "jet"; },
-            [](const request::Magnet&) { return "magnet"; }},
+            [](const request::Magnet&) { return "magnet"; },
+            [](const request::Hold&) { return "hold"; },
+            [](const request::Release&) { return "release"; }},
       disturbance);
 }
 

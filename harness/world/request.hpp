@@ -123,6 +123,21 @@ struct Magnet {
   std::optional<double> duration_s;  // above 0; left out: for ever
 };
 
+struct Hold {  // by hand, and turn it there; frame W
+  double roll_rad = 0.0, pitch_rad = 0.0, yaw_rad = 0.0;
+  std::optional<double> height_m, north_m, east_m;  // left out: as it was, but high enough
+  double over_s = 2.0;                              // above 0
+};
+struct Release {
+  std::optional<double>
+      over_s;  // above 0: put down on its gear first; left out: let go where it is
+};
+
+enum class Calibration { gyroscope, accelerometer, magnetometer, motor_fields, cancel };
+struct Calibrate {  // the vehicle's sensors, by its own procedure
+  Calibration what = Calibration::gyroscope;
+};
+
 }  // namespace request
 
 using Command =
@@ -130,8 +145,9 @@ using Command =
                  request::Cruise, request::HoldAttitude, request::Waypoints, request::Teleoperation,
                  request::Radio, request::SetParameter, request::Sticks, request::SetPoint,
                  request::Stop, request::Silence, request::SetPointRate, request::RawTransfer,
-                 request::Pulses, request::Line, request::Brake>;
-using Disturbance = std::variant<request::Wind, request::Jet, request::Magnet>;
+                 request::Pulses, request::Line, request::Brake, request::Calibrate>;
+using Disturbance =
+    std::variant<request::Wind, request::Jet, request::Magnet, request::Hold, request::Release>;
 
 const char* word(const Command& command);          // "takeoff"
 const char* word(const Disturbance& disturbance);  // "jet"

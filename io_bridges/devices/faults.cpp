@@ -71,11 +71,12 @@ void FaultBook::add(const Fault& fault) {
   for (const auto& listener : added_) listener(fault);
 }
 
-const Fault* FaultBook::find(FaultKind kind, int bus, int address, Nanoseconds now) const {
+const Fault* FaultBook::find(FaultKind kind, int bus, int address, Nanoseconds now,
+                             int axis) const {
   for (const Entry& entry : entries_) {
     const Fault& f = entry.fault;
     if (f.kind == kind && f.start_ns <= now && now < f.end_ns && matches(f.bus, bus) &&
-        matches(f.address, address)) {
+        matches(f.address, address) && (axis == kAnywhere || f.axis == axis)) {
       return &f;
     }
   }
@@ -91,9 +92,8 @@ void FaultBook::applied(const Fault& fault, Nanoseconds now) {
 }
 
 const Fault* FaultBook::apply(FaultKind kind, int bus, int address, Nanoseconds now, int axis) {
-  const Fault* fault = find(kind, bus, address, now);
-  if (fault == nullptr || (axis != kAnywhere && fault->axis != axis)) return nullptr;
-  applied(*fault, now);
+  const Fault* fault = find(kind, bus, address, now, axis);
+  if (fault != nullptr) applied(*fault, now);
   return fault;
 }
 

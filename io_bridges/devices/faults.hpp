@@ -83,7 +83,8 @@ class FaultBook {
   void add(const Fault& fault);
 
   // The first fault of that kind that is in force at that place, or null. Cheap when there is none.
-  const Fault* find(FaultKind kind, int bus, int address, Nanoseconds now) const;
+  const Fault* find(FaultKind kind, int bus, int address, Nanoseconds now,
+                    int axis = kAnywhere) const;
   // It really acted: told to the sink once per fault.
   void applied(const Fault& fault, Nanoseconds now);
   // find() and, when there is one (of that axis), applied().
