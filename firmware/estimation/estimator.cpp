@@ -282,6 +282,14 @@ Vector3 Estimator::velocity_measured_B() const {
   return v_B;
 }
 
+void Estimator::forget_zeros() {
+  zeros_ = Zeros::unknown;
+  accel_zero_B_mps2_.setZero();
+  gyro_zero_B_radps_.setZero();
+  explicit_.set_gyro_bias(gyro_zero_B_radps_);
+  calibration_.restart();
+}
+
 // True: a window is over, and the gyro's zero point is the one of it.
 bool Estimator::new_zeros(const Quaternion& q_WB) {
   if (!calibration_.add(raw_w_B_radps_, a_B_mps2_ + accel_zero_B_mps2_, q_WB)) return false;

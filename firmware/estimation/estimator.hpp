@@ -10,7 +10,8 @@
 //   Outdoors without capture. Position: GPS along the floor, the barometer's height, which GPS draws by
 //            1/600 s; W's origin: gps_frame.hpp. Velocity: GPS. Heading: the magnetic field, by filter 1 and
 //            the explicit filter. Zero points: the gyro's; of the accelerometer only its length at rest, so
-//            that its level axes' zero points stay in the attitude (0.15 m/s2: 0.9 degrees)
+//            that what its level axes are off stays in the attitude (0.15 m/s2: 0.9 degrees), but for what a
+//            calibration has taken off
 //   Both     while there is capture, GPS counts nothing, nor after it: its frame would be another one
 #pragma once
 #include <cstdint>
@@ -73,6 +74,9 @@ class Estimator {
   void on_pressure(float pressure_Pa);
   void on_field(const Vector3& field_B_uT);
   void step(const Situation& situation);
+
+  // Samples are corrected otherwise from now on: zero points are found anew.
+  void forget_zeros();
 
   void choose(AttitudeSource source) { source_ = source; }
   void set_declination(float declination_rad) { declination_rad_ = declination_rad; }

@@ -22,7 +22,11 @@ void Flight::tick() {
 void Flight::on_imu(const ImuSample& sample) {
   tick();
   imu_missing_ms_ = 0;
-  estimator_.on_imu(sample);
+  calibrator_.on_imu(sample.a_B_mps2, sample.w_B_radps);
+  ImuSample corrected = sample;
+  corrected.a_B_mps2 = correction_.acceleration(sample.a_B_mps2);
+  corrected.w_B_radps = correction_.rate(sample.w_B_radps);
+  estimator_.on_imu(corrected);
 }
 
 void Flight::on_imu_missing() {
@@ -36,9 +40,7 @@ void Flight::on_fix(const CaptureFix& fix) {
 
 void Flight::on_battery(float voltage_V) {
   float current_A = 0.0f;
-  for (unsigned i = 0; i < 4; ++i) {
-    current_A += 1e-3f * static_cast<float>(motors_.status(i).current_mA);
-  }
+  for (const float of_motor_A : motor_currents_A()) current_A += of_motor_A;
   battery_.on_voltage(voltage_V, current_A, parameters_.get(Parameter::bat_resistance_ohm));
 }
 
@@ -131,6 +133,7 @@ Reason Flight::disarm() {
 Reason Flight::take_off(float height_m) {
   if (!allowed(Command::take_off, state_)) return Reason::wrong_state;
   if (steered_by_hand()) return Reason::by_hand;
+  if (calibrator_.running() != Calibration::none) return Reason::calibrating;
   if (!(height_m > kAboveGround_m && height_m < kHighest_m)) return Reason::height_out_of_range;
   if (state_ == FlightState::armed) {
     target_W_m_ = ground_W_m_;
@@ -181,11 +184,13 @@ void Flight::attitude_step() {
   estimate();
   follow_pilot();
   supervise();
+  watch_calibration();
   control();
 }
 
 void Flight::apply_parameters() {
   constexpr float kDegree = kPi / 180.0f;
+  if (correction_.load(parameters_)) estimator_.forget_zeros();
   estimator_.choose(parameters_.is_on(Parameter::est_filter) ? AttitudeSource::velocity_aided
                                                              : AttitudeSource::explicit_filter);
   estimator_.set_declination(kDegree * parameters_.get(Parameter::mag_declination_deg));
@@ -242,6 +247,7 @@ void Flight::react(const Decision& decision) {
 
 void Flight::follow_target_into_air() {
   const bool target_in_air = target_W_m_.z() < ground_W_m_.z() - kAboveGround_m;
+  if (calibrator_.running() != Calibration::none) return;
   if (state_s_ > kSpinUp_s && target_age_ms_ < kTargetFresh_ms && target_in_air) {
     enter(FlightState::flying, Reason::commanded);
   }

@@ -1,15 +1,19 @@
 // The flight logic: sensor samples, fixes, commands in; rotor set-points and state out.
 //
+//   Sensors come as they read; what corrects them: calibration/sensor_correction.hpp
 //   Rates   on_imu 1 kHz, attitude_step 200 Hz, position_step 40 Hz. Knows no bus and no clock but
 //           its own count of ticks
 //   States  disarmed -> armed -> flying -> landing -> disarmed; what is taken in which of them, and
 //           what is done about what goes wrong: the tables of supervisor.hpp
 //   Files   flight.cpp commands and states; flight_watch.cpp what holds now, and what keeps it from
-//           arming; flight_control.cpp from the reference to set-points; flight_manual.cpp from sticks
+//           arming; flight_control.cpp from the reference to set-points; flight_manual.cpp from sticks;
+//           flight_calibration.cpp when sensors are calibrated
 #pragma once
 #include <array>
 #include <cstdint>
 
+#include "firmware/calibration/calibrator.hpp"
+#include "firmware/calibration/sensor_correction.hpp"
 #include "firmware/config/parameters.hpp"
 #include "firmware/control/attitude_controller.hpp"
 #include "firmware/control/attitude_reference.hpp"
@@ -39,7 +43,7 @@ class Flight {
   void on_fix(const CaptureFix& fix);
   void on_gps(const GpsSolution& solution) { estimator_.on_gps(solution); }
   void on_pressure(float pressure_Pa) { estimator_.on_pressure(pressure_Pa); }
-  void on_field(const Vector3& field_B_uT) { estimator_.on_field(field_B_uT); }
+  void on_field(const Vector3& field_B_uT);
   void on_target(const Vector3& p_W_m, float yaw_rad);
   // A point of a trajectory; far from where the reference is, it is a target to go to first.
   void on_trajectory(const TrajectoryPoint& point);
@@ -59,6 +63,9 @@ class Flight {
   Reason disarm();
   Reason take_off(float height_m);
   Reason land();
+  // none: what runs is cancelled. Its outcome: calibrator().
+  Reason calibrate(Calibration what);
+  Calibrator& calibrator() { return calibrator_; }
 
   Parameters& parameters() { return parameters_; }
   const Parameters& parameters() const { return parameters_; }
@@ -96,12 +103,15 @@ class Flight {
   void tick();
   void apply_parameters();
   void keep_drag();
+  MotorCurrents motor_currents_A() const;
+  void watch_calibration();
   void estimate();
   void supervise();
   void react(const Decision& decision);
   void follow_target_into_air();
   void detect_touchdown();
   void control();
+  void run_motor_to_calibrate();
   void enter(FlightState state, Reason reason);
   void stop_motors(Reason reason, bool emergency);
   Reason first_esc_problem() const;
@@ -128,6 +138,8 @@ class Flight {
   void descend();
 
   Parameters parameters_;
+  SensorCorrection correction_;
+  Calibrator calibrator_{parameters_};
   Pilot pilot_;
   PilotMode steered_ = PilotMode::autonomous;  // by whom; a lost link changes nothing
   bool arm_switch_ = true;

@@ -125,10 +125,20 @@ void Flight::follow_attitude() {
   wanted_.v_B_mps = wanted_.q_WB.conjugate() * estimator_.v_WB_W_mps();
 }
 
+void Flight::run_motor_to_calibrate() {
+  const int motor = calibrator_.motor();
+  if (motor < 0) return;
+  setpoints_[static_cast<std::size_t>(motor)] = setpoint_for(MotorFieldCalibration::kThrust_N);
+}
+
 void Flight::control() {
   follow_attitude();
   motors_.ask(state_ != FlightState::disarmed);
-  if (!in_air()) return setpoints_.fill(state_ == FlightState::armed ? kIdle : 0);
+  if (!in_air()) {
+    setpoints_.fill(state_ == FlightState::armed ? kIdle : 0);
+    if (state_ == FlightState::armed) run_motor_to_calibrate();
+    return;
+  }
   const bool trim = airborne_ && contact_s_ < 0.1f;
   const Vector3 tau_B = attitude_control_.torque(estimator_.q_WB(), estimator_.w_WB_B_radps(),
                                                  wanted_, kAttitudeStep_s, trim);

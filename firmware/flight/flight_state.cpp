@@ -64,6 +64,10 @@ const char* text_of(Reason reason) {
       return "magnetometer silent or out of range";
     case Reason::by_drag:
       return "no position: velocity by drag";
+    case Reason::calibrating:
+      return "a calibration runs";
+    case Reason::motors_turn:
+      return "motors turn";
   }
   return "";
 }

@@ -38,6 +38,8 @@ enum class Reason : std::uint8_t {  // why a command was refused, or a flight en
   no_pressure,
   no_field,
   by_drag,
+  calibrating,
+  motors_turn,
 };
 const char* text_of(Reason reason);
 

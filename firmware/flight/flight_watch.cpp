@@ -76,6 +76,7 @@ Reason Flight::first_sensor_problem() const {
 }
 
 Reason Flight::ready_to_arm() const {
+  if (calibrator_.running() != Calibration::none) return Reason::calibrating;
   if (imu_missing_ms_ > kImuLost_ms) return Reason::imu_not_running;
   if (imu_frozen_) return Reason::imu_frozen;
   if (!estimator_.position_good()) return Reason::no_position;

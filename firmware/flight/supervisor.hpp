@@ -17,7 +17,7 @@
 
 namespace fw {
 
-enum class Command : std::uint8_t { arm, disarm, take_off, land };
+enum class Command : std::uint8_t { arm, disarm, take_off, land, calibrate };
 
 constexpr std::uint8_t in(FlightState state) {
   return static_cast<std::uint8_t>(1u << static_cast<unsigned>(state));
@@ -32,6 +32,7 @@ inline constexpr CommandRule kCommands[] = {
     {Command::disarm, in(FlightState::disarmed) | in(FlightState::armed)},
     {Command::take_off, in(FlightState::armed) | in(FlightState::flying)},
     {Command::land, in(FlightState::flying) | in(FlightState::landing)},
+    {Command::calibrate, in(FlightState::disarmed)},
 };
 
 constexpr bool allowed(Command command, FlightState state) {

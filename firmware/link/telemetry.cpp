@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "firmware/config/vehicle.hpp"
+#include "firmware/link/calibration_request.hpp"
 
 namespace fw {
 namespace {
@@ -14,6 +15,7 @@ constexpr std::uint32_t kSlotsPerSecond = 200, kGpsSecondsByCapture = 5;
 enum Command : std::uint16_t {
   kNavLand = 21,
   kNavTakeoff = 22,
+  kPreflightCalibration = 241,
   kArmDisarm = 400,
   kRequestMessage = 512,
   kRequestCapabilities = 520
@@ -126,6 +128,8 @@ void Telemetry::on_command(const Frame& frame) {
     case kNavLand:
       reason = flight_.land();
       break;
+    case kPreflightCalibration:
+      return on_calibration(frame);
     case kRequestMessage:
       return on_request_message(frame.get<float>(0));
     case kRequestCapabilities:
@@ -134,10 +138,23 @@ void Telemetry::on_command(const Frame& frame) {
     default:
       return acknowledge(command, kUnsupported);
   }
+  if (reason != Reason::none) return refuse(command, reason);
+  acknowledge(command, kAccepted);
+}
+
+void Telemetry::refuse(std::uint16_t command, Reason reason) {
   acknowledge(command, result_of(reason));
-  if (reason == Reason::none) return;
   refusal_ = reason;
   refusal_due_ = true;
+}
+
+void Telemetry::on_calibration(const Frame& frame) {
+  const auto what = calibration_asked(frame);
+  if (!what) return acknowledge(kPreflightCalibration, kUnsupported);
+  const Reason reason = flight_.calibrate(*what);
+  if (reason != Reason::none) return refuse(kPreflightCalibration, reason);
+  // What runs tells how far it is by itself.
+  if (*what == Calibration::none) acknowledge(kPreflightCalibration, kAccepted);
 }
 
 // Numbers of messages travel as floats. Those of the slots come by themselves.
@@ -147,8 +164,8 @@ void Telemetry::on_request_message(float message) {
   acknowledge(kRequestMessage, version ? kAccepted : kDenied);
 }
 
-void Telemetry::acknowledge(std::uint16_t command, std::uint8_t result) {
-  if (acks_due_ < acks_.size()) acks_[acks_due_++] = {command, result};
+void Telemetry::acknowledge(std::uint16_t command, std::uint8_t result, std::uint8_t percent) {
+  if (acks_due_ < acks_.size()) acks_[acks_due_++] = {command, result, percent};
 }
 
 std::span<const std::uint8_t> Telemetry::send(const Message& message) {
@@ -173,6 +190,11 @@ std::span<const std::uint8_t> Telemetry::next(std::uint32_t time_ms, const Fault
   // While capture comes up, the radio has no more room.
   const bool gps_due = second % kGpsSecondsByCapture == 0 || !flight_.estimator().fix_fresh();
   if (slot == 146 && gps_due) return send(gps_raw(time_ms));
+  if (acks_due_ == 0) {
+    if (const auto answer = flight_.calibrator().take_answer()) {
+      acknowledge(kPreflightCalibration, answer->result, answer->percent);
+    }
+  }
   if (acks_due_ > 0) return send(ack());
   if (slot % 10 == 2 && requests_.due()) return send(requests_.next(time_ms));
   if (slot % 10 == 7 && parameters_.due()) return send(parameters_.next(flight_.parameters()));
@@ -184,6 +206,9 @@ std::span<const std::uint8_t> Telemetry::next(std::uint32_t time_ms, const Fault
   if (refusal_due_) {
     refusal_due_ = false;
     return send(status_text(text_of(refusal_), true));
+  }
+  if (const CalibrationText said = flight_.calibrator().take_text(); said.text != nullptr) {
+    return send(status_text(said.text, said.bad));
   }
   if (unsaved_told_ != health.parameters_unsaved) {
     unsaved_told_ = health.parameters_unsaved;
@@ -359,8 +384,8 @@ Message Telemetry::ack() {
   const Ack first = acks_[0];
   --acks_due_;
   std::copy_n(acks_.begin() + 1, acks_due_, acks_.begin());
-  Message m(mavlink::kCommandAck, 3);
-  return m.put(0, first.command).put(2, first.result);
+  Message m(mavlink::kCommandAck, 4);
+  return m.put(0, first.command).put(2, first.result).put(3, first.percent);
 }
 
 Message Telemetry::status_text(const char* text, bool bad) {

@@ -7,7 +7,7 @@
 //           PARAM_VALUE in free slots
 //   Up      VICON_POSITION_ESTIMATE, SET_POSITION_TARGET_LOCAL_NED, SET_ATTITUDE_TARGET (attitude, body
 //           yaw rate and thrust), COMMAND_LONG (400 arm, disarm;
-//           22 take off to param 7; 21 land; 512 of AUTOPILOT_VERSION, 520: it is sent; any other is
+//           22 take off to param 7; 21 land; 241 calibrate by param 1, 2, 5 or 6; 512 of AUTOPILOT_VERSION, 520: it is sent; any other is
 //           acknowledged as unsupported); the requests of parameter_link.hpp and request_link.hpp
 //   State   HEARTBEAT.custom_mode is the FlightState; system_status 2 not ready, 3 ready, 4 active,
 //           5 failsafe, 6 motors stopped in an emergency
@@ -60,8 +60,10 @@ class Telemetry {
   mavlink::Message drag(std::uint32_t time_ms) const;
   static mavlink::Message float_array(std::uint32_t time_ms, std::uint16_t id, const char* name,
                                       std::uint8_t count);
+  void refuse(std::uint16_t command, Reason reason);
   void on_request_message(float message);
-  void acknowledge(std::uint16_t command, std::uint8_t result);
+  void on_calibration(const mavlink::Frame& frame);
+  void acknowledge(std::uint16_t command, std::uint8_t result, std::uint8_t percent = 0);
   mavlink::Message ack();
   static mavlink::Message status_text(const char* text, bool bad);
   std::span<const std::uint8_t> send(const mavlink::Message& message);
@@ -75,7 +77,7 @@ class Telemetry {
   std::uint8_t sequence_ = 0;
   struct Ack {
     std::uint16_t command = 0;
-    std::uint8_t result = 0;
+    std::uint8_t result = 0, percent = 0;
   };
   std::array<Ack, 8> acks_{};  // due; those of a burst beyond are lost, and asked for again
   std::size_t acks_due_ = 0;

@@ -21,6 +21,8 @@ struct Value {
   unsigned count, index, type, component;
 };
 
+constexpr int kLong = static_cast<int>(10 * kParameterCount + 100);  // slots for a whole list
+
 // The vehicle's end of the radio: what goes up, and the PARAM_VALUEs that come down.
 struct Radio {
   Flight flight;
@@ -76,7 +78,7 @@ Message set(const std::string& name, float value, std::uint8_t type = 9, std::ui
 TEST(ParameterLink, AListTellsEachOnceInOrderWithIndexAndCount) {
   Radio radio;
   radio.send(list());
-  const auto values = radio.listen(static_cast<int>(10 * kParameterCount + 100));
+  const auto values = radio.listen(kLong);
   ASSERT_EQ(values.size(), kParameterCount);
   for (unsigned i = 0; i < kParameterCount; ++i) {
     EXPECT_EQ(values[i].name, kParameterTable[i].name);
@@ -140,7 +142,7 @@ TEST(ParameterLink, UnknownNamesAndIndicesAndOthersRequestsGetNoAnswer) {
 TEST(ParameterLink, RequestsToEverybodyAreOurs) {
   Radio radio;
   radio.send(list(0, 0));
-  EXPECT_EQ(radio.listen().size(), kParameterCount);
+  EXPECT_EQ(radio.listen(kLong).size(), kParameterCount);
 }
 
 TEST(ParameterLink, WhileArmedOnlyWhatTheTableAllows) {
@@ -159,7 +161,7 @@ TEST(ParameterLink, OneThatIsAskedForGoesBeforeAList) {
   Radio radio;
   radio.send(list());
   radio.send(read("CTL_FEEDFWD"));
-  const auto values = radio.listen();
+  const auto values = radio.listen(kLong);
   ASSERT_EQ(values.size(), kParameterCount + 1);
   EXPECT_EQ(values[0].name, "CTL_FEEDFWD");
   EXPECT_EQ(values[1].name, "EST_FILTER");

@@ -15,7 +15,7 @@ struct PowerCut {};
 // anything between.
 class FakeFlash {
  public:
-  static constexpr std::uint32_t kWords = 64;
+  static constexpr std::uint32_t kWords = 128;
 
   std::uint32_t read(unsigned sector, std::uint32_t word) const { return cells_[sector][word]; }
   Status program(unsigned sector, std::uint32_t word, std::uint32_t value) {
@@ -186,7 +186,8 @@ void expect_old_or_new(int cut, unsigned seed) {
   }
 }
 
-// 20 saves of 8 words fill sectors of 64 words twice: their changes, and their erases, are among them.
+// 20 saves of 8 words go on from one sector of 128 words into the other: that, and the erase after it, are
+// among them.
 TEST(ParameterStore, APowerCutAtAnyMomentLeavesTheOldSetOrTheNewOne) {
   for (int cut = 1; cut <= 20 * 8 + 2; ++cut) {
     for (unsigned seed = 0; seed < 8; ++seed) expect_old_or_new(cut, seed);
@@ -196,12 +197,12 @@ TEST(ParameterStore, APowerCutAtAnyMomentLeavesTheOldSetOrTheNewOne) {
 TEST(ParameterStore, AnEraseThatIsCutIsMadeAgain) {
   for (unsigned seed = 0; seed < 20; ++seed) {
     FakeFlash flash;
-    for (int i = 0; i < 9; ++i) Boot(flash).save(i);  // the ninth is in the second sector
+    for (int i = 0; i < 17; ++i) Boot(flash).save(i);  // the last is in the second sector
     EXPECT_EQ(flash.erased(), 0);
     flash.cut_at(1, seed);
     EXPECT_THROW(Boot{flash}, PowerCut);
-    EXPECT_EQ(read_back(flash), 8);
-    EXPECT_EQ(Boot(flash).store.generation(), 9u);
+    EXPECT_EQ(read_back(flash), 16);
+    EXPECT_EQ(Boot(flash).store.generation(), 17u);
     EXPECT_EQ(flash.read(0, 0), 0xFFFF'FFFFu);
   }
 }
@@ -209,24 +210,24 @@ TEST(ParameterStore, AnEraseThatIsCutIsMadeAgain) {
 TEST(ParameterStore, OneStartHasRoomForASectorOfSavesAndThenSaysSo) {
   FakeFlash flash;
   Boot boot(flash);
-  for (int i = 0; i < 16; ++i) {
+  for (int i = 0; i < 32; ++i) {
     boot.save(i);
     EXPECT_FALSE(boot.store.gave_up(boot.parameters)) << i;
   }
-  boot.save(16);
+  boot.save(32);
   EXPECT_TRUE(boot.store.gave_up(boot.parameters));
   EXPECT_EQ(flash.erased(), 0);
-  EXPECT_EQ(read_back(flash), 15);
-  Boot(flash).save(17);  // the start has made room
-  EXPECT_EQ(read_back(flash), 17);
+  EXPECT_EQ(read_back(flash), 31);
+  Boot(flash).save(33);  // the start has made room
+  EXPECT_EQ(read_back(flash), 33);
 }
 
 TEST(ParameterStore, CountsItsErases) {
   FakeFlash flash;
-  for (int i = 0; i < 40; ++i) Boot(flash).save(i);
+  for (int i = 0; i < 80; ++i) Boot(flash).save(i);
   EXPECT_EQ(flash.erased(), 4);
   EXPECT_EQ(Boot(flash).store.erases(), 4u);
-  EXPECT_EQ(Boot(flash).store.generation(), 40u);
+  EXPECT_EQ(Boot(flash).store.generation(), 80u);
 }
 
 TEST(ParameterStore, ARottenBitGivesTheSetBefore) {
