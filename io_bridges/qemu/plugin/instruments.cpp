@@ -8,6 +8,7 @@ namespace {
 
 constexpr int kXpsr = 25;
 constexpr std::uint32_t kIpsr = 0x1FF;
+constexpr std::uint32_t kLongest = 4;  // instruction, bytes
 
 bool is_wfi(const Code& code) {
   return !code.wide && code.first == 0xBF30;
@@ -45,6 +46,7 @@ void Instruments::translated(qemu_plugin_tb* block) {
   found_.clear();
   const auto start = static_cast<std::uint32_t>(qemu_plugin_tb_vaddr(block));
   report_unreachable_code(start);
+  machine_.code_translated(start, start + kLongest * static_cast<std::uint32_t>(length));
   find_at_start(start);
   for (std::size_t i = 0; i < length; ++i) {
     find_in(qemu_plugin_tb_get_insn(block, i), static_cast<std::uint32_t>(i));

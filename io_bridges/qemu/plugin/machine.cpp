@@ -69,6 +69,9 @@ Result<Done> Machine::build(const std::string& versions) {
                         ""};
   }
   if (auto found = clock_->find_qemu(); !found) return found;
+  if (!exit_request_.find(api_, cpu_) || !class_casts_.find(api_, cpu_)) {
+    return whirl::Error{ErrorKind::internal, "QEMU", "its CPU is not laid out as in 7.2", ""};
+  }
   if (const auto hooked = hook_exceptions(api_, cpu_, [this] { take_exception(); }); !hooked) {
     return hooked.error();
   }
@@ -129,21 +132,12 @@ void Machine::queue_reset(stm32::ResetCause cause) {
         Machine& self = *static_cast<Machine*>(data.pointer);
         const stm32::ResetCause why = self.queued_resets_.front();
         self.queued_resets_.pop_front();
+        self.class_casts_.restore();
         self.api_.qemu_devices_reset(kGuestReset);
         self.system_control_->core_was_reset();
         self.board_.core_was_reset(why);
       },
       WorkData{.pointer = this});
-}
-
-bool Machine::read_bus(std::uint32_t address, void* to, std::size_t size) {
-  return api_.address_space_rw(api_.address_space_memory, address, kPrivileged, to, size, false) ==
-         kOk;
-}
-
-bool Machine::write_bus(std::uint32_t address, const void* from, std::size_t size) {
-  return api_.address_space_rw(api_.address_space_memory, address, kPrivileged,
-                               const_cast<void*>(from), size, true) == kOk;
 }
 
 bool Machine::peek(std::uint32_t address, void* to, std::size_t size) {
@@ -218,6 +212,12 @@ void Machine::on_timer() {
   anchor();
   if (asleep_since_ns_ < 0) act_on_deferred();  // what hold() left
   board_.on_timer();
+  run_at_once();
+}
+
+// QEMU's loop looks at the deadlines before it runs the core, whatever has changed them just now.
+void Machine::run_at_once() {
+  if (board_.run().gdb_port == 0) exit_request_.drop();
 }
 
 std::uint32_t Machine::accessing_pc() const {
@@ -267,12 +267,17 @@ void Machine::work_before_sleep() {
 void Machine::sleep() {
   if (!api_.cpu_thread_is_idle(cpu_)) return;  // something was pending: the core did not sleep
   io::EventQueue& events = board_.events();
+  // The core has run: QEMU has done with the reset of its machine.
+  if (board_.run().gdb_port == 0) class_casts_.lighten();
   asleep_since_ns_ = sleep_now_ns_ = api_.qemu_clock_get_ns(kVirtualClock);
-  for (int round = 0; round < kRounds && api_.cpu_thread_is_idle(cpu_); ++round) {
+  bool idle = true;
+  for (int round = 0; round < kRounds && idle; ++round) {
     sleep_now_ns_ = std::max(sleep_now_ns_, events.next_deadline());
     WHIRL_CHECK(sleep_now_ns_ != io::kNever);  // the next boundary is always there
     events.run_until(sleep_now_ns_);
+    if (deferred_.empty() && board_.run().gdb_port == 0) continue;  // nothing has reached the core
     if (!deferred_.empty() && !catch_up()) return hold();
+    idle = api_.cpu_thread_is_idle(cpu_);
   }
   if (!catch_up()) return hold();
   wake();
@@ -282,6 +287,7 @@ void Machine::sleep() {
   } else {
     arm(events.next_deadline());
   }
+  run_at_once();
   if (board_.run().gdb_port != 0) give_way();
 }
 

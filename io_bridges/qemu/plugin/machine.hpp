@@ -21,7 +21,9 @@
 #include <vector>
 
 #include "io_bridges/qemu/board/board.hpp"
+#include "io_bridges/qemu/plugin/class_casts.hpp"
 #include "io_bridges/qemu/plugin/core_clock.hpp"
+#include "io_bridges/qemu/plugin/exit_request.hpp"
 #include "io_bridges/qemu/plugin/qemu_api.hpp"
 #include "io_bridges/qemu/plugin/system_control.hpp"
 
@@ -54,6 +56,7 @@ class Machine final : public board::Emulator {
   // For the instruments.
   CoreClock& clock() { return *clock_; }
   void throw_code_away() { api_.tb_flush(cpu_); }
+  void code_translated(std::uint32_t from, std::uint32_t to);
 
   io::Nanoseconds now() const override {
     return asleep_since_ns_ < 0 ? api_.qemu_clock_get_ns(kVirtualClock) : sleep_now_ns_;
@@ -91,7 +94,8 @@ class Machine final : public board::Emulator {
   bool find_registers();
   MemoryRegion& new_region();
   void map_block(MemoryRegion* parent, const stm32::Region& block, int priority);
-  void map_ram(MemoryRegion* parent, const char* name, const board::MemoryBlock& block);
+  std::uint8_t* map_ram(MemoryRegion* parent, const char* name, const board::MemoryBlock& block);
+  std::uint8_t* sram_at(std::uint32_t address, std::size_t size) const;
   void bar(std::uint32_t from, std::uint32_t to);
   void map_memories();
   void load_image();
@@ -113,6 +117,7 @@ class Machine final : public board::Emulator {
   void queue_reset(stm32::ResetCause cause);
   void init_timers();
   void park_main_loop();
+  void run_at_once();
 
   const Api& api_;
   board::Board board_;
@@ -122,12 +127,16 @@ class Machine final : public board::Emulator {
   std::vector<Irq*> interrupts_;
   std::vector<std::unique_ptr<MemoryRegion>> regions_;
   std::vector<std::unique_ptr<Window>> windows_;
+  std::uint8_t* sram_ = nullptr;
+  std::vector<bool> sram_holds_code_;  // of its pages: QEMU has translated some of it
   std::unique_ptr<SystemControl> system_control_;
   GByteArray* register_text_ = nullptr;
   void* parking_ = nullptr;  // bottom half of the main loop
   Timer timer_;
   Timer jump_;  // under gdb: moves the clock of a core that sleeps
   std::unique_ptr<CoreClock> clock_;
+  ExitRequest exit_request_;
+  ClassCasts class_casts_;
   const std::uint32_t* core_registers_ = nullptr;  // R0..R15 in QEMU's CPU; its env begins there
   io::Nanoseconds slept_ns_ = 0, asleep_since_ns_ = -1, sleep_now_ns_ = 0;
   std::chrono::steady_clock::time_point gave_way_{};  // host's clock: moves nothing in the guest

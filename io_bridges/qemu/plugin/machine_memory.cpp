@@ -13,6 +13,7 @@ namespace {
 // Over the machine (0), under nothing: gaps first, then blocks.
 constexpr int kGaps = 5, kBlocks = 10, kMemories = 10;
 constexpr std::size_t kHostPage = 4096;
+constexpr std::uint32_t kCode_page = 1024;  // a write by DMA moves at most a word
 constexpr int kSp = 13;
 using board::kUntouched;  // RAM is not 0 at power-up; the stack watch counts on it
 
@@ -89,13 +90,54 @@ void Machine::map_block(MemoryRegion* parent, const stm32::Region& block, int pr
   api_.memory_region_add_subregion_overlap(parent, block.base, &region, priority);
 }
 
-void Machine::map_ram(MemoryRegion* parent, const char* name, const board::MemoryBlock& block) {
-  if (block.size == 0) return;
+std::uint8_t* Machine::map_ram(MemoryRegion* parent, const char* name,
+                               const board::MemoryBlock& block) {
+  if (block.size == 0) return nullptr;
   void* memory = std::aligned_alloc(kHostPage, block.size);  // lives as long as the process
   std::memset(memory, kUntouched, block.size);
   MemoryRegion& region = new_region();
   api_.memory_region_init_ram_ptr(&region, nullptr, name, block.size, memory);
   api_.memory_region_add_subregion_overlap(parent, block.base, &region, kMemories);
+  return static_cast<std::uint8_t*>(memory);
+}
+
+// Null: not all of it is SRAM.
+std::uint8_t* Machine::sram_at(std::uint32_t address, std::size_t size) const {
+  const board::MemoryBlock& block = board_.part().sram;
+  const std::uint32_t offset = address - block.base;
+  return offset < block.size && size <= block.size - offset ? sram_ + offset : nullptr;
+}
+
+void Machine::code_translated(std::uint32_t from, std::uint32_t to) {
+  const board::MemoryBlock& block = board_.part().sram;
+  for (std::uint32_t at = from & ~(kCode_page - 1); at < to; at += kCode_page) {
+    if (at - block.base < block.size) sram_holds_code_[(at - block.base) / kCode_page] = true;
+  }
+}
+
+// By QEMU's address spaces each byte that DMA moves would cost more than all else that it takes.
+bool Machine::read_bus(std::uint32_t address, void* to, std::size_t size) {
+  if (const std::uint8_t* memory = sram_at(address, size)) {
+    std::memcpy(to, memory, size);
+    return true;
+  }
+  return api_.address_space_rw(api_.address_space_memory, address, kPrivileged, to, size, false) ==
+         kOk;
+}
+
+// Code that has been translated must be known to be stale: QEMU sees to it.
+bool Machine::write_bus(std::uint32_t address, const void* from, std::size_t size) {
+  std::uint8_t* memory = sram_at(address, size);
+  const auto holds_code = [&](std::uint32_t at) {
+    return sram_holds_code_[(at - board_.part().sram.base) / kCode_page];
+  };
+  if (memory != nullptr && size > 0 && !holds_code(address) &&
+      !holds_code(address + static_cast<std::uint32_t>(size) - 1)) {
+    std::memcpy(memory, from, size);
+    return true;
+  }
+  return api_.address_space_rw(api_.address_space_memory, address, kPrivileged,
+                               const_cast<void*>(from), size, true) == kOk;
 }
 
 // The machine has memory here, the part has not: a bus fault.
@@ -126,7 +168,8 @@ void Machine::map_memories() {
   api_.memory_region_init_rom_device_nomigrate(&rom, nullptr, &kBarred, nullptr, "whirl.system_rom",
                                                part.system_rom.size, nullptr);
   api_.memory_region_add_subregion_overlap(system, part.system_rom.base, &rom, kMemories);
-  map_ram(system, "whirl.sram", part.sram);
+  sram_ = map_ram(system, "whirl.sram", part.sram);
+  sram_holds_code_.assign(part.sram.size / kCode_page + 1, false);
   map_ram(core_memory_, "whirl.ccm", part.ccm);
 
   bar(part.sram.base + part.sram.size, part.machine_sram.base + part.machine_sram.size);

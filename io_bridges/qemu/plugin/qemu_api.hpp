@@ -113,6 +113,7 @@ constexpr unsigned kWord = 2;     // MO_32, little endian
   F(qdev_get_gpio_in, Irq*, (Object*, int))                                                        \
   F(qemu_set_irq, void, (Irq*, int))                                                               \
   F(object_get_class, void*, (void*))                                                              \
+  F(object_class_dynamic_cast, void*, (void*, const char*))                                        \
   F(arm_v7m_cpu_do_interrupt, void, (Cpu*))                                                        \
   F(armv7m_nvic_set_pending, void, (void*, int, bool))                                             \
   F(qemu_clock_get_ns, std::int64_t, (int))                                                        \
@@ -124,6 +125,7 @@ constexpr unsigned kWord = 2;     // MO_32, little endian
   F(qemu_get_cpu, Cpu*, (int))                                                                     \
   F(async_run_on_cpu, void, (Cpu*, void (*)(Cpu*, WorkData), WorkData))                            \
   F(cpu_thread_is_idle, bool, (Cpu*))                                                              \
+  F(cpu_exit, void, (Cpu*))                                                                        \
   F(icount_start_warp_timer, void, (void))                                                         \
   F(runstate_is_running, bool, (void))                                                             \
   F(qemu_bh_new_full, void*, (void (*)(void*), void*, const char*, void* no_guard))                \

@@ -53,9 +53,11 @@ void Dma::connect(int stream, int channel, DmaRequest& request) {
 
 bool Dma::requested(const Stream& s) {
   if (direction(s.cr) == memory_to_memory) return true;
-  const auto& slot = s.requests[(s.cr >> 25) & 7];
-  return std::any_of(slot.begin(), slot.end(),
-                     [](const DmaRequest* r) { return r != nullptr && r->level(); });
+  for (const DmaRequest* request : s.requests[(s.cr >> 25) & 7]) {
+    if (request == nullptr) return false;  // filled from the front
+    if (request->level()) return true;
+  }
+  return false;
 }
 
 void Dma::arm(int n) {

@@ -9,6 +9,15 @@ void DmaBus::map(const std::vector<Region>& regions) {
       if (page < kPages) pages_[page] = region;
     }
   }
+  clocks_.on_change([this] { clocks_changed(); });
+  clocks_changed();
+}
+
+void DmaBus::clocks_changed() {
+  const double hclk_Hz = clocks_.hclk_Hz();
+  cycle_ns_ = hclk_Hz > 0.0 ? 1e9 / hclk_Hz : 0.0;
+  bridge_ns_[0] = 2e9 / clocks_.pclk1_Hz();
+  bridge_ns_[1] = 2e9 / clocks_.pclk2_Hz();
 }
 
 Region* DmaBus::find(std::uint32_t address) {
@@ -18,11 +27,10 @@ Region* DmaBus::find(std::uint32_t address) {
 
 void DmaBus::count(std::uint32_t address) {
   constexpr std::uint32_t kApb2 = kBase + 0x10000, kEnd_of_apb = kBase + 0x18000;
-  const double hclk_Hz = clocks_.hclk_Hz();
-  if (hclk_Hz <= 0.0) return;
-  transfers_ns_ += 1e9 / hclk_Hz;
+  if (cycle_ns_ <= 0.0) return;  // no clock yet
+  transfers_ns_ += cycle_ns_;
   if (address < kBase || address >= kEnd_of_apb) return;
-  transfers_ns_ += 2e9 / (address < kApb2 ? clocks_.pclk1_Hz() : clocks_.pclk2_Hz());
+  transfers_ns_ += bridge_ns_[address < kApb2 ? 0 : 1];
 }
 
 bool DmaBus::read(std::uint32_t address, unsigned size, std::uint32_t& value) {

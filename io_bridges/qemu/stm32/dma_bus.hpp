@@ -14,9 +14,9 @@ namespace whirl::stm32 {
 
 class DmaBus final : public SystemBus {
  public:
-  DmaBus(SystemBus& memory, const Clocks& clocks) : memory_(memory), clocks_(clocks) {}
+  DmaBus(SystemBus& memory, Clocks& clocks) : memory_(memory), clocks_(clocks) {}
 
-  // Blocks between 0x40000000 and 0x40080000, found by their 1 KiB page.
+  // Once. Blocks between 0x40000000 and 0x40080000, found by their 1 KiB page.
   void map(const std::vector<Region>& regions);
   // An address range that this master does not reach (CCM).
   void bar(std::uint32_t base, std::uint32_t size) { barred_ = {base, size, nullptr}; }
@@ -32,9 +32,11 @@ class DmaBus final : public SystemBus {
   bool reachable(std::uint32_t address) const { return address - barred_.base >= barred_.size; }
 
   void count(std::uint32_t address);
+  void clocks_changed();
 
   SystemBus& memory_;
-  const Clocks& clocks_;
+  Clocks& clocks_;
+  double cycle_ns_ = 0.0, bridge_ns_[2] = {};  // of HCLK; two PCLK of APB1, APB2
   double transfers_ns_ = 0.0;
   std::array<Region, kPages> pages_{};
   Region barred_;
