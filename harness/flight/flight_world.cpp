@@ -11,6 +11,7 @@
 namespace whirl::flight {
 namespace {
 
+constexpr float kForce = 21196.0f;  // of MAV_CMD_COMPONENT_ARM_DISARM
 constexpr std::uint16_t kArmDisarm = 400, kLand = 21, kTakeoff = 22;  // MAV_CMD
 constexpr const char *kEsc_stopped = "esc_stopped", *kSupply_dip = "supply_dip",
                      *kCapture_lost = "capture_lost";
@@ -201,7 +202,7 @@ Result<Done> FlightWorld::command(const Command& command, std::int64_t /*now_ns*
 
 void FlightWorld::arm(const request::Arm& command) {
   if (!command.arm) station_.set_target(std::nullopt);
-  station_.command(kArmDisarm, {command.arm ? 1.0f : 0.0f});
+  station_.command(kArmDisarm, {command.arm ? 1.0f : 0.0f, command.force ? kForce : 0.0f});
 }
 
 void FlightWorld::take_off(const request::TakeOff& command) {

@@ -12,9 +12,11 @@ namespace {
 
 constexpr std::int64_t kTick_ns = 1'000'000;
 constexpr double kStanding_s =
-    15e-3;                         // without a crossing, at the terminals of a bridge that is off
-constexpr int kHeld_ms = 161;      // alignment and forced steps, see Start
-constexpr int kStarting_ms = 300;  // a start that has not caught on by then is begun anew
+    15e-3;  // without a crossing, at the terminals of a bridge that is off
+constexpr double kBackward_radps = -20.0;  // slower, it shows nothing for that time
+constexpr int kBrake_ms = 200;             // how much longer it is aligned then, as the image does
+constexpr int kHeld_ms = 161;              // alignment and forced steps, see Start
+constexpr int kStarting_ms = 300;          // a start that has not caught on by then is begun anew
 // The ESC32v2: 12 bits of 3.3 V behind 1.5/11.5 dividers and a shunt of 0.5 mohm with gain 50.9.
 constexpr double kVolts_per_count = 3.3 / 4096.0 * 11.5 / 1.5;
 constexpr double kAmperes_per_count = 3.3 / 4096.0 / (0.5e-3 * 50.9);
@@ -72,10 +74,12 @@ void NativeEsc::follow(bool energised) {
       return enter(Phase::catching);
     case Phase::catching:
       if (crossings_.in_sync()) return enter(Phase::turning);
-      if (crossings_.silent_s() > kStanding_s) enter(Phase::aligning);
+      if (crossings_.silent_s() <= kStanding_s) return;
+      backward_ = last_speed_radps_ < kBackward_radps;
+      enter(Phase::aligning);
       return;
     case Phase::aligning:
-      if (phase_ms_ < kHeld_ms) return;
+      if (phase_ms_ < (backward_ ? kHeld_ms + kBrake_ms : kHeld_ms)) return;
       crossings_.restart();
       return enter(Phase::turning);
     case Phase::turning:
@@ -104,6 +108,7 @@ plant::MotorCommand NativeEsc::step(std::int64_t now_ns, const plant::MotorState
 
   const fw::esc::Drive drive = core_.tick(sensed);
   follow(drive.energised);
+  if (phase_ == Phase::aligning && backward_) return {0.0, plant::Freewheel::synchronous};
   if (phase_ != Phase::turning) return {};
   const double duty = std::clamp(static_cast<double>(drive.duty), 0.0, 1.0);
   return {std::floor(duty * kPwm_counts) / kPwm_counts, plant::Freewheel::diode};

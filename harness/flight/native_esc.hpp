@@ -16,10 +16,9 @@
 //            image has it: 90 % of 2 N 288 to 318 ms after the set-point in 18 starts on its stand, as
 //            the rotor came to rest (harness/tests/native_start_test.cpp holds it to the image)
 //   Backward a rotor that the air turns against its sense shows its crossings in the wrong order, which the
-//            image does not join (firmware/esc/tests/catching_test.cpp): it is held off like one that
-//            stands, still turning, then driven against its back-EMF until it is round
-//   Left out how the alignment's current brakes a rotor that turns, and a start that the image would
-//            lose against one; the 1.5 A that the bus carries while the rotor is aligned; loss of sync other than by
+//            image does not join but aligns for 200 ms more: here its windings are shorted meanwhile, which
+//            brakes it as the alignment's field does in the mean, twice as hard
+//   Left out a start that the image would lose against a rotor that turns; the 1.5 A that the bus carries while the rotor is aligned; loss of sync other than by
 //            standing still; the image's guard of the winding current at the PWM's rate, which droops
 //            beyond 22 A (the core's own bounds act); the amplifier's ripple and its removal
 #pragma once
@@ -67,7 +66,7 @@ class NativeEsc final : public MotorController {
   plant::CurrentShunt shunt_;
   ZeroCrossings crossings_;
   std::uint16_t setpoint_ = 0;
-  bool fresh_ = false, cut_ = false, followed_ = false;
+  bool fresh_ = false, cut_ = false, followed_ = false, backward_ = false;
   Phase phase_ = Phase::off;
   int phase_ms_ = 0;
   double last_speed_radps_ = 0.0;

@@ -212,7 +212,7 @@ Calibrate read_calibrate(const Table& t) {
 }
 
 void read_flying(const Table& t, const ReadFile& read_file, std::vector<Command>& all) {
-  if (t.has("arm")) all.emplace_back(Arm{t.flag_or("arm", true)});
+  if (t.has("arm")) all.emplace_back(Arm{t.flag_or("arm", true), t.flag_or("force", false)});
   if (t.has("takeoff")) {
     all.emplace_back(TakeOff{t.quantity("takeoff", Dimension::length, above(0.0))});
   }
@@ -255,7 +255,7 @@ void read_turning(const Table& t, std::vector<Command>& all) {
   if (t.has("pulses")) all.emplace_back(read_pulses(t.table("pulses")));
   if (t.has("line")) all.emplace_back(Line{typed_line(t)});
   if (t.has("brake")) {
-    all.emplace_back(Brake{t.quantity("brake", Dimension::torque, between(0.0, 10.0))});
+    all.emplace_back(Brake{t.quantity("brake", Dimension::torque, between(-1.0, 10.0))});
   }
 }
 

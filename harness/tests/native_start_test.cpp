@@ -23,25 +23,15 @@ constexpr const char* kStand = R"({ prop = "hk_10x4.5", supply = "16.4 V" })";
 constexpr double kThrust_N = 2.0;
 constexpr std::int64_t kMs = 1'000'000;
 
-// From the set-point's STOP to 90 % of its thrust, of three starts: each from where the rotor came to
-// rest, which decides how far the alignment turns it.
-std::vector<double> starts_of_the_image_s() {
+// What the expectations of that plan measured whose names begin with "start".
+std::vector<double> starts_s(const std::string& lines) {
   const ScratchFolder folder;
   std::ofstream(folder.file("starts.lua")) << R"(plan "starts" {
     image = "esc", board = "esc32v2", timeout = "30 s", stand = )"
                                            << kStand << R"(,
     run = function(t)
       t:within("3 s", function(s) return s.armed == 1 end, "armed")
-      for n = 1, 3 do
-        t:expect(t:value "speed", "at rest"):equal "0 rad/s"
-        local start = t:record("thrust", "1.5 s", function() t:command { thrust = "2 N" } end)
-        t:expect(start:response_time(), "start"):at_most "1.5 s"
-        t:expect(start:final(), "turns"):within("1.95 N", "2.05 N")
-        t:command { stop = true }
-        t:wait "3.013 s"
-      end
-    end
-  })";
+)" << lines << " end }";
   const std::string line = std::string(WHIRL_PROGRAM) + " run --out " + folder.path() + " " +
                            folder.file("starts.lua") + " >/dev/null";
   EXPECT_EQ(WEXITSTATUS(std::system(line.c_str())), 0);
@@ -54,6 +44,29 @@ std::vector<double> starts_of_the_image_s() {
       found.push_back(e["measured"].get<double>());
   }
   return found;
+}
+
+// From the set-point's STOP to 90 % of its thrust, of three starts: each from where the rotor came to
+// rest, which decides how far the alignment turns it.
+std::vector<double> starts_of_the_image_s() {
+  return starts_s(R"(for n = 1, 3 do
+    t:expect(t:value "speed", "at rest"):equal "0 rad/s"
+    local start = t:record("thrust", "1.5 s", function() t:command { thrust = "2 N" } end)
+    t:expect(start:response_time(), "start"):at_most "1.5 s"
+    t:expect(start:final(), "turns"):within("1.95 N", "2.05 N")
+    t:command { stop = true }
+    t:wait "3.013 s"
+  end)");
+}
+
+// The same of a rotor that is driven backward, by as much torque as its friction takes.
+std::vector<double> starts_of_the_image_from_s(int backward_radps) {
+  return starts_s("local speed = " + std::to_string(backward_radps) + R"(
+    t:command { brake = "-20 mN m" }
+    t:within("2 s", function(s) return s.speed_radps < -speed end, "turns backward")
+    t:command { brake = "-10 mN m" }
+    local start = t:record("thrust", "1.5 s", function() t:command { thrust = "2 N" } end)
+    t:expect(start:response_time(), "start"):at_most "1.5 s")");
 }
 
 // The board's part on the stand: bytes in, bridge and shaft out, each millisecond.
@@ -80,7 +93,7 @@ struct NativeBoard {
     double charge_C = 0.0;
     for (int i = 0; i < 8; ++i) {
       charge_C +=
-          motor.step({bus_V, command.duty, diode}, {load.torque_Nm_s2, load.brake_Nm}, 1.25e-4)
+          motor.step({bus_V, command.duty, diode}, {load.torque_Nm_s2, -load.brake_Nm}, 1.25e-4)
               .bus_charge_C;
     }
     state.speed_radps = motor.speed_radps();
@@ -94,7 +107,7 @@ struct NativeBoard {
 };
 
 // Until the thrust is there, or a second is over.
-double start_of_the_native_esc_s() {
+double start_of_the_native_esc_s(double backward_radps = 0.0) {
   const auto table = lua::read_text(std::string("return ") + kStand, "stand.lua");
   auto params =
       catalogue::read_stand(table.value(), std::string(WHIRL_ROOT) + "/test_plans/propellers");
@@ -113,6 +126,10 @@ double start_of_the_native_esc_s() {
     happened = board.step(t_ns, sensed);
     if (t_ns == 999 * kMs) {
       EXPECT_TRUE(board.esc.armed());
+      if (backward_radps > 0.0) {
+        EXPECT_TRUE(world.command(request::Brake{-0.010}, t_ns));
+      }
+      board.motor.set_speed(-backward_radps);
       EXPECT_TRUE(world.command(request::SetPoint{request::SetPointKind::thrust, kThrust_N}, t_ns));
     }
   }
@@ -126,6 +143,17 @@ TEST(NativeStart, TakesAsLongAsTheImagesOnTheStand) {
   const double native_s = start_of_the_native_esc_s();
   for (const double one_s : image_s) {
     EXPECT_TRUE(near(native_s, one_s, stated(0.020, "one period of the set-points")));
+  }
+}
+
+// The image aligns a rotor longer that turns backward, for its field has to brake it first.
+TEST(NativeStart, TurnsABackwardRotorRoundAsTheImageDoes) {
+  for (const int speed_radps : {50, 100, 200}) {
+    const std::vector<double> image_s = starts_of_the_image_from_s(speed_radps);
+    ASSERT_EQ(image_s.size(), 1u);
+    const double native_s = start_of_the_native_esc_s(speed_radps);
+    EXPECT_TRUE(near(native_s, image_s[0], stated(0.020, "one period of the set-points")))
+        << speed_radps;
   }
 }
 

@@ -17,7 +17,8 @@ namespace whirl {
 namespace request {
 
 struct Arm {
-  bool arm = true;  // false: disarm
+  bool arm = true;     // false: disarm
+  bool force = false;  // whatever state it is in
 };
 struct TakeOff {
   double height_m = 0.0;  // above 0
@@ -101,7 +102,7 @@ struct Line {
   std::string text;  // on the serial line, without its end
 };
 struct Brake {
-  double torque_Nm = 0.0;  // 0: lets go
+  double torque_Nm = 0.0;  // 0: lets go; negative: drives backward, as rising air does
 };
 
 struct Wind {  // where the air goes to; frame W

@@ -167,7 +167,7 @@ struct BusyTime {  // of (since_ns, Header::t_ns]
 
 struct ShaftLoad {
   double torque_Nm_s2 = 0.0;  // of the air, over the square of speed
-  double brake_Nm = 0.0;      // holds the shaft once it stands
+  double brake_Nm = 0.0;      // holds the shaft once it stands; negative: drives it backward
   double source_V = 0.0;      // of the supply, behind its resistance
   double source_ohm = 0.0;
 };

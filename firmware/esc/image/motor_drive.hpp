@@ -38,6 +38,7 @@ class MotorDrive {
   Catching catching_;
   WindingGuard guard_;
   Phase phase_ = Phase::off;
+  std::uint16_t align_ms_ = 0;
   std::uint16_t phase_ms_ = 0;     // aligning, or not in sync
   std::uint32_t wanted_duty_ = 0;  // PWM counts, before the guard
   std::uint32_t shunt_sum_ = 0, bus_sum_ = 0, samples_ = 0;

@@ -67,9 +67,22 @@ TEST(Catching, RotorThatStandsIsFoundToStand) {
   EXPECT_TRUE(near(c.ms, 15.0, stated(1.0, "its patience")));
 }
 
-TEST(Catching, RotorThatTurnsBackwardsIsNotCaught) {
-  Coasting c(-300.0);
-  EXPECT_EQ(c.until_found(15), Catching::Found::nothing_yet);
+TEST(Catching, RotorThatTurnsBackwardIsTold) {
+  for (const double speed_radps : {-40.0, -100.0, -300.0}) {
+    Coasting c(speed_radps);
+    const double revolution_ms = 1e3 * 2.0 * std::numbers::pi / (7.0 * -speed_radps);
+    ASSERT_EQ(c.until_found(100), Catching::Found::backward) << speed_radps;
+    EXPECT_TRUE(c.catching.backward());
+    EXPECT_LT(c.ms, 1.5 * revolution_ms + 0.5);
+  }
+}
+
+TEST(Catching, RotorThatStandsOrTurnsForwardIsNotToldAsBackward) {
+  for (const double speed_radps : {0.0, 60.0, 300.0}) {
+    Coasting c(speed_radps);
+    EXPECT_NE(c.until_found(200), Catching::Found::backward) << speed_radps;
+    EXPECT_FALSE(c.catching.backward());
+  }
 }
 
 }  // namespace

@@ -97,9 +97,10 @@ void PowerStage::advance(Nanoseconds now) {
 
 void PowerStage::hold_or_turn() {
   const double speed = motor_.speed_radps();
-  if (load_.brake_Nm > 0.0 && std::abs(speed) < kStands_radps) return motor_.block();
-  motor_.set_load(
-      {.quadratic_Nm_s2 = load_.torque_Nm_s2, .constant_Nm = std::copysign(load_.brake_Nm, speed)});
+  const bool brakes = load_.brake_Nm > 0.0;
+  if (brakes && std::abs(speed) < kStands_radps) return motor_.block();
+  const double constant_Nm = brakes ? std::copysign(load_.brake_Nm, speed) : -load_.brake_Nm;
+  motor_.set_load({.quadratic_Nm_s2 = load_.torque_Nm_s2, .constant_Nm = constant_Nm});
 }
 
 void PowerStage::run(double dt_s) {
