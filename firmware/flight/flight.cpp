@@ -119,6 +119,7 @@ Reason Flight::arm() {
 
 void Flight::begin_armed() {
   emergency_ = false;
+  motors_.forget_failures();
   ground_W_m_ = target_W_m_ = estimator_.p_WB_W_m();  // what was flown to before is forgotten
   target_age_ms_ = kNever;
   enter(FlightState::armed, Reason::commanded);
@@ -160,7 +161,7 @@ void Flight::enter(FlightState state, Reason reason) {
     velocity_control_.reset();
     aim_ = Aim::place;
     lift_ = 0.36f;  // what the rotors carry at idle
-    airborne_ = false;
+    airborne_ = starting_ = catching_ = false;
   }
   state_ = state;
   if (state_ == FlightState::failsafe) {
@@ -197,7 +198,7 @@ void Flight::apply_parameters() {
   estimator_.set_start(parameters_.get(Parameter::est_start_scale),
                        kDegree * parameters_.get(Parameter::est_start_tilt_deg));
   estimator_.set_drag(parameters_.get(Parameter::aero_drag_spm));
-  if (state_ == FlightState::disarmed) keep_drag();
+  if (state_ == FlightState::disarmed && !falling_) keep_drag();
   const float drag_spm = estimator_.drag().drag_spm();
   attitude_control_.set_drag(drag_spm);
   position_control_.set_drag(drag_spm);
@@ -214,16 +215,18 @@ void Flight::keep_drag() {
 
 void Flight::estimate() {
   apply_parameters();
-  const bool resting = state_ == FlightState::disarmed && !motors_.any_turning() && !imu_frozen_;
+  const bool resting =
+      state_ == FlightState::disarmed && !falling_ && !motors_.any_turning() && !imu_frozen_;
   const bool by_drag = state_ == FlightState::flying && aim_ == Aim::velocity;
-  estimator_.step({.in_flight = in_air(),
-                   .airborne = in_air() && airborne_,
+  estimator_.step({.in_flight = in_air() || falling_,
+                   .airborne = (in_air() && airborne_) || falling_,
                    .by_drag = by_drag,
                    .resting = resting});
 }
 
 void Flight::supervise() {
   state_s_ += schedule::kAttitudeStep_s;
+  watch_fall();
   const bool by_attitude = steered_ == PilotMode::attitude && pilot_.link() == PilotLink::ok;
   react(supervisor_.step(conditions(), state_, schedule::kAttitudePeriod, by_attitude));
   if (state_ == FlightState::armed && !steered_by_hand()) follow_target_into_air();
@@ -241,7 +244,7 @@ void Flight::react(const Decision& decision) {
     case Reaction::stop:
       return stop_motors(decision.reason, false);
     case Reaction::cut:
-      return stop_motors(decision.reason, true);
+      return cut(decision.reason);
   }
 }
 

@@ -7,7 +7,8 @@
 //           what is done about what goes wrong: the tables of supervisor.hpp
 //   Files   flight.cpp commands and states; flight_watch.cpp what holds now, and what keeps it from
 //           arming; flight_control.cpp from the reference to set-points; flight_manual.cpp from sticks;
-//           flight_calibration.cpp when sensors are calibrated
+//           flight_calibration.cpp when sensors are calibrated; flight_restart.cpp motors stopped in
+//           the air, and started again
 #pragma once
 #include <array>
 #include <cstdint>
@@ -61,6 +62,9 @@ class Flight {
   // Commands: none if accepted.
   Reason arm();
   Reason disarm();
+  // By force: motors off wherever it is; and, stopped in the air, on again there (restart.hpp).
+  Reason kill();
+  Reason restart();
   Reason take_off(float height_m);
   Reason land();
   // none: what runs is cancelled. Its outcome: calibrator().
@@ -82,6 +86,8 @@ class Flight {
   Reason last_reason() const { return reason_; }
   std::uint32_t reason_count() const { return reason_count_; }  // steps with each new reason
   bool emergency() const { return emergency_; }
+  // Motors were stopped in the air, and it has not come to rest since.
+  bool falling() const { return falling_; }
   Reason ready_to_arm() const;
   const Estimator& estimator() const { return estimator_; }
   Estimator& estimator() { return estimator_; }
@@ -114,6 +120,10 @@ class Flight {
   void run_motor_to_calibrate();
   void enter(FlightState state, Reason reason);
   void stop_motors(Reason reason, bool emergency);
+  void cut(Reason reason);
+  void watch_fall();
+  bool rotors_start();
+  void catch_fall();
   Reason first_esc_problem() const;
   Reason first_sensor_problem() const;
   Fence fence() const;
@@ -159,6 +169,8 @@ class Flight {
   Reason reason_ = Reason::none;
   std::uint32_t reason_count_ = 0;
   bool emergency_ = false;
+  bool falling_ = false, attitude_lost_ = false;  // since they were stopped
+  bool starting_ = false, catching_ = false;      // a restart: the rotors, then the fall
 
   bool imu_frozen_ = false;
   std::uint32_t imu_missing_ms_ = kNever;
@@ -175,7 +187,7 @@ class Flight {
 
   Vector3 ground_W_m_ = Vector3::Zero();
   float lift_ = 0.0f;  // share of the weight that the rotors are asked to carry
-  float contact_s_ = 0.0f, state_s_ = 0.0f, blind_longest_s_ = 0.0f;
+  float contact_s_ = 0.0f, state_s_ = 0.0f, blind_longest_s_ = 0.0f, quiet_s_ = 0.0f;
   bool airborne_ = false, position_was_known_ = false;
   ThrustAndAttitude wanted_;
   std::array<std::uint16_t, 4> setpoints_{};

@@ -33,6 +33,7 @@ void Flight::follow_reference() {
   if (state_ == FlightState::flying) {
     lift_ = std::min(1.0f, lift_ + kPositionStep_s / kLiftTime_s);
     airborne_ = airborne_ || p_W.z() < ground_W_m_.z() - kAirborne_m;
+    catch_fall();
     if (lift_ >= 1.0f) advance_reference();
     if (aim_ == Aim::attitude) return;
   } else {
@@ -138,6 +139,10 @@ void Flight::control() {
     setpoints_.fill(state_ == FlightState::armed ? kIdle : 0);
     if (state_ == FlightState::armed) run_motor_to_calibrate();
     return;
+  }
+  if (rotors_start()) {
+    rotors_.start(config::kThrustMin_N);
+    return setpoints_.fill(kIdle);
   }
   const bool trim = airborne_ && contact_s_ < 0.1f;
   const Vector3 tau_B = attitude_control_.torque(estimator_.q_WB(), estimator_.w_WB_B_radps(),

@@ -68,6 +68,16 @@ const char* text_of(Reason reason) {
       return "a calibration runs";
     case Reason::motors_turn:
       return "motors turn";
+    case Reason::falling:
+      return "motors stopped in the air";
+    case Reason::killed:
+      return "motors stopped by command";
+    case Reason::restarted:
+      return "restarted in the air";
+    case Reason::attitude_lost:
+      return "attitude unknown";
+    case Reason::too_low:
+      return "too low to restart";
   }
   return "";
 }

@@ -40,6 +40,11 @@ enum class Reason : std::uint8_t {  // why a command was refused, or a flight en
   by_drag,
   calibrating,
   motors_turn,
+  falling,
+  killed,
+  restarted,
+  attitude_lost,
+  too_low,
 };
 const char* text_of(Reason reason);
 

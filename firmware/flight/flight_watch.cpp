@@ -17,7 +17,8 @@ Conditions Flight::conditions() const {
   Conditions now;
   now.set(Condition::imu_not_running, imu_missing_ms_ > kImuLost_ms);
   now.set(Condition::imu_frozen, imu_frozen_);
-  now.set(Condition::tipped_over, tilt_cosine(estimator_.q_WB()) < kTipped_cos);
+  // Who has just been restarted rights itself first.
+  now.set(Condition::tipped_over, !catching_ && tilt_cosine(estimator_.q_WB()) < kTipped_cos);
   now.set(Condition::motor_out, motors_.out());
   now.set(Condition::esc_silent, motors_.silent());
   now.set(Condition::no_position, !navigates());
@@ -77,6 +78,7 @@ Reason Flight::first_sensor_problem() const {
 
 Reason Flight::ready_to_arm() const {
   if (calibrator_.running() != Calibration::none) return Reason::calibrating;
+  if (falling_) return Reason::falling;
   if (imu_missing_ms_ > kImuLost_ms) return Reason::imu_not_running;
   if (imu_frozen_) return Reason::imu_frozen;
   if (!estimator_.position_good()) return Reason::no_position;

@@ -17,6 +17,7 @@
 
 namespace fw {
 
+// And by force: restart.hpp.
 enum class Command : std::uint8_t { arm, disarm, take_off, land, calibrate };
 
 constexpr std::uint8_t in(FlightState state) {

@@ -259,7 +259,8 @@ __attribute__((noinline)) void log_task(std::uint32_t tick, std::uint32_t now_us
 
 // The core stalls for each word of flash: never while the motors may turn.
 __attribute__((noinline)) void store_task() {
-  if (flight().state() == FlightState::disarmed) store.step(flight().parameters());
+  if (flight().state() == FlightState::disarmed && !flight().falling())
+    store.step(flight().parameters());
   health.parameters_unsaved = store.gave_up(flight().parameters());
 }
 

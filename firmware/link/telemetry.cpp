@@ -20,6 +20,7 @@ enum Command : std::uint16_t {
   kRequestMessage = 512,
   kRequestCapabilities = 520
 };
+constexpr float kForce = 21196.0f;  // of MAV_CMD_COMPONENT_ARM_DISARM, its second parameter
 enum AckResult : std::uint8_t {
   kAccepted = 0,
   kTemporarilyRejected = 1,
@@ -120,7 +121,7 @@ void Telemetry::on_command(const Frame& frame) {
   Reason reason = Reason::none;
   switch (command) {
     case kArmDisarm:
-      reason = frame.get<float>(0) > 0.5f ? flight_.arm() : flight_.disarm();
+      reason = arm_or_disarm(frame.get<float>(0) > 0.5f, frame.get<float>(4) == kForce);
       break;
     case kNavTakeoff:
       reason = flight_.take_off(frame.get<float>(24));
@@ -155,6 +156,11 @@ void Telemetry::on_calibration(const Frame& frame) {
   if (reason != Reason::none) return refuse(kPreflightCalibration, reason);
   // What runs tells how far it is by itself.
   if (*what == Calibration::none) acknowledge(kPreflightCalibration, kAccepted);
+}
+
+Reason Telemetry::arm_or_disarm(bool arm, bool force) {
+  if (force) return arm ? flight_.restart() : flight_.kill();
+  return arm ? flight_.arm() : flight_.disarm();
 }
 
 // Numbers of messages travel as floats. Those of the slots come by themselves.

@@ -46,6 +46,7 @@ class Telemetry {
   void on_vicon(const mavlink::Frame& frame);
   void on_target(const mavlink::Frame& frame);
   void on_attitude(const mavlink::Frame& frame);
+  Reason arm_or_disarm(bool arm, bool force);
   void on_command(const mavlink::Frame& frame);
 
   mavlink::Message heartbeat() const;

@@ -1,0 +1,92 @@
+// Motors stopped in the air, by command or because nothing could be controlled; and started again there.
+#include "firmware/config/vehicle.hpp"
+#include "firmware/flight/flight.hpp"
+#include "firmware/flight/restart.hpp"
+#include "firmware/flight/schedule.hpp"
+
+namespace fw {
+namespace {
+
+constexpr float kCaught_mps = 1.0f, kLongestCatch_s = 4.0f;
+constexpr float kSteepest_cos = 0.17f;  // 80 degrees: beyond, the rotors would push it down
+
+}  // namespace
+
+// Off wherever it is.
+void Flight::cut(Reason reason) {
+  const bool falls = in_air() && airborne_;
+  if (reason == Reason::motor_out) motors_.keep_failed();
+  stop_motors(reason, true);
+  falling_ = falls;
+  attitude_lost_ = false;
+  quiet_s_ = 0.0f;
+}
+
+Reason Flight::kill() {
+  if (in_air()) {
+    cut(Reason::killed);
+    return Reason::none;
+  }
+  return disarm();
+}
+
+Reason Flight::restart() {
+  if (!falling_) return arm();
+  if (steered_by_hand()) return Reason::by_hand;
+  const Fall fall{
+      .attitude_known = !attitude_lost_,
+      .speed_known = estimator_.position_known() || estimator_.pressure_fresh(),
+      .upright = tilt_cosine(estimator_.q_WB()) > kSteepest_cos,
+      .height_m = height_m(),
+      .sinking_mps = sinking_mps(),
+      .rotors_failed = motors_.failed(),
+      .esc_problem = first_esc_problem(),
+  };
+  if (const Reason why_not = why_not_restart(fall); why_not != Reason::none) return why_not;
+  falling_ = emergency_ = false;
+  motors_.forget_failures();
+  enter(FlightState::flying, Reason::restarted);
+  lift_ = 1.0f;
+  airborne_ = starting_ = catching_ = true;
+  target_age_ms_ = kNever;  // what was flown to before is forgotten
+  stay();
+  return Reason::none;
+}
+
+// While it falls: whether the attitude is still known, and whether it has come to rest. Without any speed
+// nothing tells a steady fall from rest but the time that no fall lasts.
+void Flight::watch_fall() {
+  constexpr float kRest_mps2 = 1.5f, kRest_radps = 0.3f, kRest_mps = 0.5f;
+  constexpr float kRest_s = 1.0f, kNoFall_s = 20.0f;
+  if (!falling_) return;
+  const Conditions now = conditions();
+  attitude_lost_ =
+      attitude_lost_ || now.has(Condition::imu_not_running) || now.has(Condition::imu_frozen);
+  const bool speed_known = estimator_.position_known() || estimator_.pressure_fresh();
+  const float off_mps2 = estimator_.imu().a_B_mps2.norm() - config::kGravity_mps2;
+  const bool quiet = std::abs(off_mps2) < kRest_mps2 &&
+                     estimator_.w_WB_B_radps().norm() < kRest_radps &&
+                     (!speed_known || std::abs(sinking_mps()) < kRest_mps);
+  quiet_s_ = quiet ? quiet_s_ + schedule::kAttitudeStep_s : 0.0f;
+  if (quiet_s_ > (speed_known ? kRest_s : kNoFall_s)) falling_ = false;
+}
+
+// All at once: one that carries before the others tips the vehicle over.
+bool Flight::rotors_start() {
+  constexpr float kStatusSince_s = 0.1f;  // an older word of an ESC may be of before
+  if (!starting_) return false;
+  starting_ =
+      state_ == FlightState::flying && !(state_s_ > kStatusSince_s && motors_.all_turning());
+  return starting_;
+}
+
+// The fall is braked where it is; the place to hold is where it has ended.
+void Flight::catch_fall() {
+  if (!catching_) return;
+  reference_.start(estimator_.p_WB_W_m(), reference_.yaw_rad());
+  stay();
+  catching_ =
+      state_s_ < kLongestCatch_s && (starting_ || estimator_.v_WB_W_mps().norm() > kCaught_mps);
+}
+
+}  // namespace fw

@@ -1,0 +1,135 @@
+// Motors stopped in the air and started again: the rules, and the flight logic around a body that falls.
+#include "firmware/flight/restart.hpp"
+
+#include <gtest/gtest.h>
+
+#include "base/near.hpp"
+#include "firmware/tests/vehicle_model.hpp"
+
+namespace fw::test {
+namespace {
+
+using whirl::near;
+using whirl::stated;
+
+constexpr Fall kGoodFall{.attitude_known = true,
+                         .speed_known = true,
+                         .upright = true,
+                         .height_m = 50.0f,
+                         .sinking_mps = 10.0f};
+
+TEST(RestartRule, AGoodFallMayBeEnded) {
+  EXPECT_EQ(why_not_restart(kGoodFall), Reason::none);
+}
+
+TEST(RestartRule, EachThingThatLacksRefuses) {
+  Fall fall = kGoodFall;
+  fall.attitude_known = false;
+  EXPECT_EQ(why_not_restart(fall), Reason::attitude_lost);
+  fall = kGoodFall;
+  fall.upright = false;
+  EXPECT_EQ(why_not_restart(fall), Reason::tipped_over);
+  fall = kGoodFall;
+  fall.speed_known = false;
+  EXPECT_EQ(why_not_restart(fall), Reason::no_position);
+  fall = kGoodFall;
+  fall.esc_problem = Reason::esc_not_armed;
+  EXPECT_EQ(why_not_restart(fall), Reason::esc_not_armed);
+}
+
+TEST(RestartRule, AllFourMayHaveStoppedButNotSome) {
+  Fall fall = kGoodFall;
+  for (unsigned failed = 0; failed <= 4; ++failed) {
+    fall.rotors_failed = failed;
+    const bool some = failed > 0 && failed < 4;
+    EXPECT_EQ(why_not_restart(fall), some ? Reason::motor_out : Reason::none) << failed;
+  }
+}
+
+// From 10 m/s: 0.6 s at 13 m/s in the mean, then 15.9 m/s braked by 12 m/s^2, and 3 m.
+TEST(RestartRule, HeightIsWhatBrakingTakes) {
+  EXPECT_TRUE(near(restart_height_m(10.0f), 7.77 + 10.5 + 3.0, stated(0.1, "by hand")));
+  EXPECT_LT(restart_height_m(0.0f), 7.0f);
+  EXPECT_EQ(restart_height_m(-5.0f), restart_height_m(0.0f));  // still on its way up
+  Fall fall = kGoodFall;
+  fall.height_m = restart_height_m(fall.sinking_mps) - 0.1f;
+  EXPECT_EQ(why_not_restart(fall), Reason::too_low);
+  fall.height_m = std::nanf("");
+  EXPECT_EQ(why_not_restart(fall), Reason::too_low);
+}
+
+struct High {
+  explicit High(double height_m) : vehicle(Scenario{}) {
+    flight.parameters().set(Parameter::fence_top_m, 40.0f);
+    vehicle.run(flight, 3.0);
+    EXPECT_EQ(flight.arm(), Reason::none) << text_of(flight.ready_to_arm());
+    vehicle.run(flight, 2.0);
+    EXPECT_EQ(flight.take_off(1.1f), Reason::none);
+    const auto z_m = static_cast<float>(-height_m);
+    for (int i = 0; i < 60'000 && -vehicle.p_W_.z() < height_m - 0.1; ++i) {
+      if (i % 100 == 0) flight.on_target({0.0f, 0.0f, z_m}, 0.0f);
+      if (i % 1000 == 0) flight.on_link();
+      vehicle.step(flight);
+    }
+  }
+  Flight flight;
+  VehicleModel vehicle;
+};
+
+TEST(Restart, EndsAFallAndHolds) {
+  High high(20.0);
+  ASSERT_EQ(high.flight.kill(), Reason::none);
+  EXPECT_EQ(high.flight.state(), FlightState::disarmed);
+  EXPECT_EQ(high.flight.last_reason(), Reason::killed);
+  high.vehicle.run(high.flight, 0.6);
+  EXPECT_EQ(high.flight.setpoints(), (std::array<std::uint16_t, 4>{}));
+  EXPECT_GT(high.vehicle.v_W_.z(), 4.0);
+  EXPECT_EQ(high.flight.arm(), Reason::falling);
+  ASSERT_EQ(high.flight.restart(), Reason::none) << text_of(high.flight.last_reason());
+  double lowest_m = 100.0;
+  for (int i = 0; i < 6000; ++i) {
+    if (i % 500 == 0) high.flight.on_link();
+    high.vehicle.step(high.flight);
+    lowest_m = std::min(lowest_m, -high.vehicle.p_W_.z());
+  }
+  EXPECT_GT(lowest_m, 5.0);
+  EXPECT_LT(high.vehicle.v_W_.norm(), 0.5);
+  EXPECT_EQ(high.flight.state(), FlightState::flying);
+}
+
+TEST(Restart, IsRefusedLow) {
+  High high(1.1);
+  ASSERT_EQ(high.flight.kill(), Reason::none);
+  high.vehicle.run(high.flight, 0.1);
+  EXPECT_EQ(high.flight.restart(), Reason::too_low);
+}
+
+TEST(Restart, IsRefusedWithOneMotorLostThoughItsEscIsBack) {
+  High high(10.0);
+  high.vehicle.esc_on_[1] = false;
+  for (int i = 0; i < 900 && high.flight.state() != FlightState::disarmed; ++i) {
+    high.vehicle.step(high.flight);
+  }
+  ASSERT_EQ(high.flight.state(), FlightState::disarmed);
+  high.vehicle.run(high.flight, 0.5);
+  high.vehicle.esc_on_[1] = true;
+  high.vehicle.q_WB_.setIdentity();  // whatever else it did
+  high.vehicle.w_B_.setZero();
+  high.vehicle.run(high.flight, 0.1);
+  EXPECT_EQ(high.flight.restart(), Reason::motor_out);
+  EXPECT_EQ(high.flight.state(), FlightState::disarmed);
+}
+
+TEST(Restart, WhatFellAndLiesStillArmsAsUsual) {
+  High high(1.1);
+  ASSERT_EQ(high.flight.kill(), Reason::none);
+  high.vehicle.run(high.flight, 0.3);
+  EXPECT_TRUE(high.flight.falling());
+  high.vehicle.run(high.flight, 6.0);
+  EXPECT_FALSE(high.flight.falling());
+  EXPECT_EQ(high.flight.restart(), Reason::none) << text_of(high.flight.ready_to_arm());
+  EXPECT_EQ(high.flight.state(), FlightState::armed);  // on the ground force is plain arming
+}
+
+}  // namespace
+}  // namespace fw::test
