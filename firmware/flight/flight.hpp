@@ -124,6 +124,7 @@ class Flight {
   void watch_fall();
   bool rotors_start();
   void catch_fall();
+  void right_itself();
   Reason first_esc_problem() const;
   Reason first_sensor_problem() const;
   Fence fence() const;

@@ -144,6 +144,7 @@ void Flight::control() {
     rotors_.start(config::kThrustMin_N);
     return setpoints_.fill(kIdle);
   }
+  right_itself();
   const bool trim = airborne_ && contact_s_ < 0.1f;
   const Vector3 tau_B = attitude_control_.torque(estimator_.q_WB(), estimator_.w_WB_B_radps(),
                                                  wanted_, kAttitudeStep_s, trim);

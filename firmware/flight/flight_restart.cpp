@@ -89,4 +89,22 @@ void Flight::catch_fall() {
       state_s_ < kLongestCatch_s && (starting_ || estimator_.v_WB_W_mps().norm() > kCaught_mps);
 }
 
+// Far from level the rotors turn it upright first, and at a rate that a set-point each 20 ms can end:
+// 0.4 rad ahead ask for 3.6 rad/s. At the least thrust, which a fall on its side asks for, they could not.
+void Flight::right_itself() {
+  constexpr float kLevel_cos = 0.88f, kAhead_rad = 0.4f;  // 28 degrees
+  constexpr float kThrust_N = 2.0f * (config::kThrustMin_N + config::kThrustUsable_N);
+  const Quaternion& q_WB = estimator_.q_WB();
+  const float level = tilt_cosine(q_WB);
+  if (!catching_ || level > kLevel_cos) return;
+  const Vector3 across_W = (q_WB * Vector3::UnitZ()).cross(Vector3::UnitZ());
+  const float sine = across_W.norm();
+  const Vector3 axis_W = sine > 0.01f ? Vector3(across_W / sine) : Vector3(q_WB * Vector3::UnitX());
+  const float half = 0.5f * std::min(kAhead_rad, std::atan2(sine, level));
+  const Vector3 turn = std::sin(half) * axis_W;
+  wanted_ = {
+      .thrust_N = kThrust_N,
+      .q_WB = (Quaternion(std::cos(half), turn.x(), turn.y(), turn.z()) * q_WB).normalized()};
+}
+
 }  // namespace fw

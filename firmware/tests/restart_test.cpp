@@ -97,6 +97,29 @@ TEST(Restart, EndsAFallAndHolds) {
   EXPECT_EQ(high.flight.state(), FlightState::flying);
 }
 
+// Kicked as it is stopped: by the time of the restart it lies on its side and turns on.
+TEST(Restart, RightsItselfFromItsSide) {
+  for (const double kick_radps : {-1.9, 1.9}) {
+    High high(30.0);
+    ASSERT_EQ(high.flight.kill(), Reason::none);
+    high.vehicle.w_B_.y() = kick_radps;
+    high.vehicle.run(high.flight, 0.6);
+    ASSERT_GT(high.vehicle.tilt_rad(), 1.0);
+    ASSERT_EQ(high.flight.restart(), Reason::none);
+    double fastest_radps = 0.0, lowest_m = 100.0;
+    for (int i = 0; i < 5000; ++i) {
+      if (i % 500 == 0) high.flight.on_link();
+      high.vehicle.step(high.flight);
+      fastest_radps = std::max(fastest_radps, high.vehicle.w_B_.norm());
+      lowest_m = std::min(lowest_m, -high.vehicle.p_W_.z());
+    }
+    EXPECT_LT(fastest_radps, 6.0);
+    EXPECT_GT(lowest_m, 10.0);
+    EXPECT_LT(high.vehicle.tilt_rad(), 0.1);
+    EXPECT_EQ(high.flight.state(), FlightState::flying);
+  }
+}
+
 TEST(Restart, IsRefusedLow) {
   High high(1.1);
   ASSERT_EQ(high.flight.kill(), Reason::none);

@@ -1,0 +1,102 @@
+-- All four motors stopped in the air, the propellers braked by their motors' friction or turned backward by the air,
+-- and started again there: by force (`force`: 21196 in MAV_CMD_COMPONENT_ARM_DISARM), under the rules of
+-- firmware/flight/restart.hpp. What it refuses, it tells: one motor of four lost is a fail-safe, no restart.
+include "include/gps.lua"
+include "include/parameter.lua"
+
+-- From the ground to a hover 60 m above it, outdoors.
+local function to_60_m(t)
+  t:step "up to 60 m"
+  t:within("90 s", function(s) return s.receiver_north_m == s.receiver_north_m end, "the origin of its frame is told")
+  set_parameter(t, "FENCE_HEIGHT", 90)
+  t:wait "4 s"
+  t:command { arm = true }
+  t:within("4 s", function(s) return s.told_armed == 1 end, "armed")
+  t:command { takeoff = "6 m" }
+  t:within("30 s", function(s) return s.told_height_m > 5.8 end, "6 m high")
+  t:command { attitude = { roll = "0 deg", pitch = "0 deg" }, thrust = "60 %" } -- set-points of place climb at 0.5 m/s
+  t:within("40 s", function(s) return s.height_m > 52 end, "52 m high")
+  t:command { position = { height = "60 m" } }
+  t:within("30 s", function(s) return s.height_m > 58.5 and math.abs(s.climb_mps) < 0.7 end, "60 m high")
+  t:wait "2 s"
+end
+
+-- No rotor is driven: at most the current that their status is told with.
+local function falls(t, duration)
+  local currents = { "winding_current_1", "winding_current_2", "winding_current_3", "winding_current_4" }
+  t:wait "300 ms" -- the radio, a set-point, the winding's last current
+  local fall = t:record(currents, duration)
+  for _, current in ipairs(currents) do t:expect(fall:max(current), "falling: " .. current):at_most "0.5 A" end
+end
+
+local function fastest(t)
+  local most = -1e9
+  for motor = 1, 4 do most = math.max(most, t:value("speed_" .. motor, "rad/s")) end
+  return most
+end
+
+-- Asked once: the ground station repeats a command until it is answered, whatever the answer.
+local function restarts(t)
+  t:step "restart"
+  local began = t:value("height", "m")
+  local lowest, tilt = t:always("height"), t:always("tilt")
+  lowest:at_least "10 m"
+  tilt:at_most "90 deg"
+  t:command { arm = true, force = true }
+  -- Beside the command's way: 0.35 s until the rotors carry, and from 16 m/s at 12 m/s2 1.4 s.
+  t:within("4 s", function(s) return s.climb_mps > -0.5 and s.speed_1_radps > 300 end, "the fall is over")
+  t:log(string.format("from %.1f m, over at %.1f m", began, t:value("height", "m")))
+  t:told("3 s", "restarted in the air")
+  t:command { position = { height = string.format("%.1f m", t:value("height", "m")) } }
+  t:within("3 s", function(s) return s.told_state == 2 end, "told as flying")
+  t:wait "4 s"
+  t:step "hover, judged"
+  local hover = t:record({ "height", "climb", "tilt", "receiver_north", "receiver_east" }, "5 s")
+  t:expect(hover:max "climb", "hover: climb"):at_most "0.6 m/s"
+  t:expect(hover:min "climb", "hover: sinking"):at_least "-0.6 m/s"
+  t:expect(hover:max "tilt", "hover: tilt"):at_most "25 deg"
+  t:expect(hover:min "height", "hover regained above"):at_least "10 m"
+  lowest:stop()
+  tilt:stop()
+end
+
+local function plan_at_60_m(name, more, run)
+  plan(name) {
+    image = "flight", board = "px4fmu_v1", vehicle = "hp_quad", vehicle_with = more.vehicle_with,
+    tags = { "flight", "nightly" }, timeout = "400 s",
+    outdoors = true, fence = { radius = "40 m", height = "90 m" },
+    run = function(t)
+      to_60_m(t)
+      run(t)
+    end,
+  }
+end
+
+plan_at_60_m("restart: stopped by command", {}, function(t)
+  t:step "stopped"
+  t:command { arm = false, force = true }
+  falls(t, t:drawn("0.5 s", "1.2 s"))
+  t:told("1 s", "motors stopped by command")
+  t:command { arm = true }
+  t:within("1 s", function(s) return s.command_result == 1 end, "arming without force is refused")
+  t:told("1 s", "motors stopped in the air")
+  restarts(t)
+end)
+
+-- Motors of little friction: the rising air turns the propellers backward.
+plan_at_60_m("restart: windmilling backward", { vehicle_with = { ["motor.no_load_current"] = "0.3 A" } }, function(t)
+  t:step "stopped"
+  t:command { arm = false, force = true }
+  falls(t, t:drawn("1.7 s", "1.9 s"))
+  t:expect(fastest(t), "the fastest propeller, rad/s"):at_most(-5)
+  restarts(t)
+end)
+
+-- The pack's voltage breaks in: all four ESCs stop and disarm.
+plan_at_60_m("restart: all ESCs browned out", {}, function(t)
+  t:step "stopped"
+  t:fault { kind = "supply_dip", value = "9 V", duration = "100 ms" }
+  t:told("2 s", "a motor has stopped")
+  falls(t, "0.7 s") -- an ESC arms again by 25 zeros, half a second
+  restarts(t)
+end)
