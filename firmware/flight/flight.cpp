@@ -135,6 +135,8 @@ Reason Flight::take_off(float height_m) {
   if (!allowed(Command::take_off, state_)) return Reason::wrong_state;
   if (steered_by_hand()) return Reason::by_hand;
   if (calibrator_.running() != Calibration::none) return Reason::calibrating;
+  // Who leads it by attitude leads its height, too.
+  if (state_ == FlightState::flying && aim_ == Aim::attitude) return Reason::wrong_state;
   if (!(height_m > kAboveGround_m && height_m < kHighest_m)) return Reason::height_out_of_range;
   if (state_ == FlightState::armed) {
     target_W_m_ = ground_W_m_;

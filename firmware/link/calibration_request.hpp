@@ -11,6 +11,8 @@
 
 namespace fw {
 
+inline constexpr std::uint16_t kPreflightCalibration = 241;  // MAV_CMD_PREFLIGHT_CALIBRATION
+
 std::optional<Calibration> calibration_asked(const mavlink::Frame& command_long);
 
 }  // namespace fw

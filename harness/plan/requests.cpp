@@ -6,6 +6,7 @@
 #include <limits>
 #include <sstream>
 
+#include "harness/plan/contradictions.hpp"
 #include "harness/plan/waypoint_file.hpp"
 
 namespace whirl::plan {
@@ -323,29 +324,6 @@ Result<Done> placed(const lua::Table& t, Result<Done> done) {
   if (done || done.error().place.empty() || done.error().kind != ErrorKind::bad_input) return done;
   t.refuse(done.error().place, done.error().what, done.error().cure);
   return t.finish();
-}
-
-// Where a vehicle goes, or what a motor turns by: of one command there is one.
-bool leads(const Command& command) {
-  return std::visit(
-      Match{[](const TakeOff&) { return true; }, [](const GoTo&) { return true; },
-            [](const Land&) { return true; }, [](const Figure8&) { return true; },
-            [](const Cruise&) { return true; }, [](const HoldAttitude&) { return true; },
-            [](const Waypoints&) { return true; }, [](const Teleoperation&) { return true; },
-            [](const SetPoint&) { return true; }, [](const auto&) { return false; }},
-      command);
-}
-
-void refuse_contradictions(const Table& t, const std::vector<Command>& all) {
-  const Command* leader = nullptr;
-  for (const Command& command : all) {
-    if (!leads(command)) continue;
-    if (leader != nullptr) {
-      t.refuse(word(command), std::string("contradicts '") + word(*leader) + "' beside it",
-               "one t:command each");
-    }
-    leader = &command;
-  }
 }
 
 }  // namespace
