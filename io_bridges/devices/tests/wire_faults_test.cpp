@@ -218,6 +218,24 @@ TEST(UartFault, LossFlipAndSilenceActOnTheWayToTheMcu) {
   EXPECT_TRUE(book.pending().empty());
 }
 
+// Of one part: the first must not hide the second.
+TEST(FaultBook, TwoAxesMayBeOffAtOnce) {
+  FaultBook book;
+  std::vector<std::uint32_t> applied;
+  book.on_applied([&applied](std::uint32_t number, Nanoseconds) { applied.push_back(number); });
+  book.add({.number = 1, .kind = FaultKind::sensor_offset, .bus = 1, .axis = 0, .value = 0.5});
+  book.add({.number = 2, .kind = FaultKind::sensor_offset, .bus = 1, .axis = 4, .value = 0.25});
+  const auto at = [&book](int axis) {
+    return book.apply(FaultKind::sensor_offset, 1, kAnywhere, 10, axis);
+  };
+  ASSERT_NE(at(0), nullptr);
+  ASSERT_NE(at(4), nullptr);
+  EXPECT_EQ(at(0)->value, 0.5);
+  EXPECT_EQ(at(4)->value, 0.25);
+  EXPECT_EQ(at(1), nullptr);
+  EXPECT_EQ(applied, (std::vector<std::uint32_t>{1, 2}));
+}
+
 TEST(FaultBook, EveryKindHasANameThatLeadsBack) {
   for (std::uint32_t k = 1; k <= static_cast<std::uint32_t>(FaultKind::esc_stopped); ++k) {
     const auto kind = static_cast<FaultKind>(k);
