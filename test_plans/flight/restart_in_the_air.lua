@@ -2,6 +2,7 @@
 -- and started again there: by force (`force`: 21196 in MAV_CMD_COMPONENT_ARM_DISARM), under the rules of
 -- firmware/flight/restart.hpp. What it refuses, it tells: one motor of four lost is a fail-safe, no restart.
 include "include/gps.lua"
+include "include/hover.lua"
 include "include/parameter.lua"
 
 -- From the ground to a hover 60 m above it, outdoors.
@@ -99,4 +100,52 @@ plan_at_60_m("restart: all ESCs browned out", {}, function(t)
   t:told("2 s", "a motor has stopped")
   falls(t, "0.7 s") -- an ESC arms again by 25 zeros, half a second
   restarts(t)
+end)
+
+-- What is refused, and told; the rotors stay off and it comes down as it does.
+local function refused(name, words, stop)
+  plan("restart refused: " .. name) {
+    image = "flight", board = "px4fmu_v1", vehicle = "hp_quad",
+    tags = { "flight", "fail_safe" }, timeout = "60 s",
+    run = function(t)
+      hover(t)
+      stop(t)
+      local off = t:always("no rotor is driven", function(s)
+        for motor = 1, 4 do
+          if s["winding_current_" .. motor .. "_A"] > 0.5 then return false end
+        end
+        return true
+      end)
+      t:command { arm = true, force = true }
+      t:within("400 ms", function(s) return s.command_result == 1 end, "refused for the time being")
+      t:told("1.5 s", words)
+      t:within("3 s", function(s) return s.told_armed == 0 and s.on_ground == 1 end, "on the ground, disarmed")
+      off:stop()
+    end,
+  }
+end
+
+local function all_off(t)
+  t:within("300 ms", function(s)
+    for motor = 1, 4 do
+      if s["winding_current_" .. motor .. "_A"] > 0.1 then return false end
+    end
+    return true
+  end, "no rotor is driven")
+end
+
+refused("too low", "too low to restart", function(t)
+  t:command { arm = false, force = true }
+  all_off(t)
+end)
+
+-- Its ESC is well again by the time of the question, and all four say that they are armed.
+refused("one motor lost", "a motor has stopped", function(t)
+  t:fault { kind = "esc_stopped", motor = 2, duration = "80 ms" }
+  all_off(t)
+end)
+
+refused("attitude lost", "attitude unknown", function(t)
+  t:fault { kind = "sensor_frozen", device = "imu", duration = "80 ms" }
+  all_off(t)
 end)
