@@ -125,6 +125,8 @@ void FlightWorld::name_telemetry_signals() {
   add_signal("told_load", D::ratio, "processor load", [=] { return reported().load; });
   add_signal("told_logging", D::none, "1: SYS_STATUS says that it logs, or can",
              [=] { return reported().logging; });
+  add_signal("told_ready", D::none, "1: its heartbeat says that it can be armed",
+             [=] { return reported().ready; });
   add_signal("heartbeat_age", D::time, "", [=] { return reported().heartbeat_age_s; });
   add_signal("command_result", D::none, "of the last COMMAND_ACK; -1 waiting for it, -2 never came",
              [this] { return static_cast<double>(station_.last_result()); });

@@ -214,6 +214,7 @@ void Station::hear(const io::MavlinkFrame& frame) {
   if (const auto beat = io::unpack<io::Heartbeat>(frame)) {
     telemetry_.state = beat->custom_mode;
     telemetry_.armed = (beat->base_mode & 0x80) != 0 ? 1.0 : 0.0;
+    telemetry_.ready = beat->system_status == 3 ? 1.0 : 0.0;  // MAV_STATE_STANDBY
     heartbeat_ns_ = heard_ns_;
   } else if (const auto ack = io::unpack<io::CommandAck>(frame)) {
     acknowledged(*ack);
@@ -243,7 +244,7 @@ Telemetry Station::telemetry(std::int64_t now_ns) const {
   if (heartbeat_ns_ >= 0)
     known.heartbeat_age_s = static_cast<double>(now_ns - heartbeat_ns_) * 1e-9;
   // Three heartbeats missed: what the last one said is no news, and meets no limit.
-  if (known.heartbeat_age_s > kOldNews_s) known.state = known.armed = std::nan("");
+  if (known.heartbeat_age_s > kOldNews_s) known.state = known.armed = known.ready = std::nan("");
   return known;
 }
 

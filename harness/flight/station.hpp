@@ -39,6 +39,7 @@ using Guide = std::function<SetPoint(std::int64_t t_ns)>;
 struct Telemetry {
   double state = std::nan("");  // HEARTBEAT custom_mode
   double armed = std::nan("");
+  double ready = std::nan("");  // HEARTBEAT system_status: 1 standby, thus ready to arm
   double heartbeat_age_s = std::nan("");
   double height_m = std::nan(""), north_m = std::nan(""), east_m = std::nan("");
   double tilt_rad = std::nan("");

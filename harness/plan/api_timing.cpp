@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "harness/metrics/timing.hpp"
+#include "harness/plan/budget_shares.hpp"
 #include "harness/plan/needs.hpp"
 #include "harness/plan/raise.hpp"
 #include "harness/plan/values.hpp"
@@ -61,6 +62,7 @@ struct Budget {
   double margin = 0.0;  // of each limit, to be left
   std::size_t node = 0;
   int number = -1;  // of the function on its board
+  BudgetShares shares;
 };
 
 Limit less_margin(const Limit& limit, double margin) {
@@ -165,7 +167,9 @@ int read_budget(lua_State* L) {
   Script& self = Script::of(L);
   must_offer(L, self, "budget");
   const lua::Table given = check_table(L, 1);
-  Budget b{lua_tostring(L, lua_upvalueindex(1)), place_of(L), {}, {}, {}, {}, {}, {}, 0.0};
+  Budget b;
+  b.function = lua_tostring(L, lua_upvalueindex(1));
+  b.place = place_of(L);
   b.period = optional_limit(given, "period", Dimension::time);
   b.jitter = optional_limit(given, "jitter", Dimension::time);
   b.execution = optional_limit(given, "execution", Dimension::time);
@@ -173,13 +177,15 @@ int read_budget(lua_State* L) {
   b.latency = optional_limit(given, "latency", Dimension::time);
   b.busy = optional_limit(given, "busy", Dimension::ratio);
   b.margin = given.quantity_or("margin", Dimension::ratio, 0.0, lua::between(0.0, 0.9));
+  const NodePlace at = node_at(L, self, b.function);
+  b.shares = read_budget_shares(given, self.stage().nodes[at.node].board);
   const std::int64_t end = window_end(self, given);
   check_finish(L, given);
-  const bool calls = b.jitter || b.execution || b.response || b.latency;
+  const bool calls = b.shares.asked() || b.jitter || b.execution || b.response || b.latency;
   if (b.period.has_value() != b.jitter.has_value()) raise(L, "period and jitter go together");
   if (!calls && !b.busy)
-    raise(L, "a budget of nothing", "give jitter, execution, response, latency or busy");
-  const NodePlace at = node_at(L, self, b.function);
+    raise(L, "a budget of nothing",
+          "give jitter, execution, response, latency, share, rate or busy");
   b.node = at.node;
   b.number = self.stage().nodes[at.node].board.watch_number(at.rest);
   if (b.busy && at.rest != "cpu") {
@@ -192,6 +198,8 @@ int read_budget(lua_State* L) {
   self.add_window(end, [b, calls](Script& script, std::int64_t from, std::int64_t to) {
     if (calls) judge_calls(script, b, from, to);
     if (b.busy) judge_busy(script, b, from, to);
+    const BudgetWindow window{b.function, b.place, b.node, b.number, from, to};
+    if (b.shares.asked()) judge_budget_shares(script, b.shares, window);
   });
   return 0;
 }

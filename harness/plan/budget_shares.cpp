@@ -1,0 +1,75 @@
+#include "harness/plan/budget_shares.hpp"
+
+#include <cmath>
+#include <cstdio>
+#include <span>
+#include <vector>
+
+namespace whirl::plan {
+namespace {
+
+constexpr double kNs = 1e-9;
+
+Limit limit_of(const lua::Table& given, const char* key) {
+  return {given.quantity(key, Dimension::ratio, lua::above(0.0)), unit_symbol(given.text(key))};
+}
+
+// NaN of fewer than two.
+double mean_period_s(std::span<const std::int64_t> times_ns) {
+  if (times_ns.size() < 2) return std::nan("");
+  const auto all_ns = static_cast<double>(times_ns.back() - times_ns.front());
+  return kNs * all_ns / static_cast<double>(times_ns.size() - 1);
+}
+
+}  // namespace
+
+BudgetShares read_budget_shares(const lua::Table& given, const BoardDescription& board) {
+  BudgetShares shares;
+  if (given.has("share")) shares.share = limit_of(given, "share");
+  if (!given.has("rate")) return shares;
+  shares.rate = limit_of(given, "rate");
+  shares.every = given.integer_or("every", 1, 1, 1'000'000);
+  shares.sensor = board.number(given.text("of"));
+  if (shares.sensor < 0) given.refuse("of", "no device of " + board.name);
+  return shares;
+}
+
+void judge_budget_shares(Script& script, const BudgetShares& shares, const BudgetWindow& w) {
+  const results::EventLog& log = script.stage().logs[w.node];
+  const double accuracy = script.stage().nodes[w.node].board.timing_accuracy();
+  std::vector<std::int64_t> entries_ns, ready_ns;
+  double execution_s = 0.0;
+  const auto calls = log.calls.find(static_cast<std::uint16_t>(w.number));
+  if (calls != log.calls.end()) {
+    for (const auto& call : calls->second) {
+      if (call.entry_ns < w.from_ns || call.return_ns > w.to_ns) continue;
+      entries_ns.push_back(call.entry_ns);
+      execution_s += kNs * static_cast<double>(call.execution_ns);
+    }
+  }
+  const double window_s = kNs * static_cast<double>(w.to_ns - w.from_ns);
+  char note[96] = "";
+  if (shares.share) {
+    std::snprintf(note, sizeof note, "%zu calls", entries_ns.size());
+    const double share = entries_ns.empty() ? std::nan("") : execution_s / window_s;
+    script.judge_in_window({share, Dimension::ratio, w.function + " share of time"},
+                           Script::Figure::of_all, *shares.share, w.place,
+                           kNs * static_cast<double>(w.to_ns), note, accuracy);
+  }
+  if (!shares.rate) return;
+  const auto ready = log.data_ready_ns.find(static_cast<std::uint16_t>(shares.sensor));
+  if (ready != log.data_ready_ns.end()) {
+    for (const std::int64_t at_ns : ready->second) {
+      if (at_ns >= w.from_ns && at_ns <= w.to_ns) ready_ns.push_back(at_ns);
+    }
+  }
+  const double own_s = static_cast<double>(shares.every) * mean_period_s(ready_ns);
+  const double mean_s = mean_period_s(entries_ns);
+  std::snprintf(note, sizeof note, "every %.6g ms, the sensor's own %.6g ms", 1e3 * mean_s,
+                1e3 * own_s);
+  script.judge_in_window(
+      {std::abs(mean_s / own_s - 1.0), Dimension::ratio, w.function + " rate error"},
+      Script::Figure::of_all, *shares.rate, w.place, kNs * static_cast<double>(w.to_ns), note);
+}
+
+}  // namespace whirl::plan
