@@ -49,7 +49,10 @@ TEST(Commands, NoneTurnsMotorsOffInTheAir) {
        {FlightState::flying, FlightState::landing, FlightState::failsafe}) {
     EXPECT_FALSE(allowed(Command::disarm, state));
     EXPECT_FALSE(allowed(Command::arm, state));
+    EXPECT_FALSE(allowed(Command::calibrate, state));
   }
+  EXPECT_TRUE(allowed(Command::calibrate, FlightState::disarmed));
+  EXPECT_FALSE(allowed(Command::calibrate, FlightState::armed));
   EXPECT_TRUE(allowed(Command::arm, FlightState::disarmed));
   EXPECT_FALSE(allowed(Command::take_off, FlightState::disarmed));
   EXPECT_FALSE(allowed(Command::take_off, FlightState::failsafe));
