@@ -50,7 +50,9 @@ volatile bool sticks_came = false;
 using Card = SdCard<hal::SpiMaster<hal::CardBus>>;
 constinit Card card(hal::spi3);
 // 16 MiB hold ten minutes, more than a battery does; what is not used is given back.
-constinit LogVolume<Card> volume(card, {.file_bytes = 16u << 20, .least_bytes = 1u << 20});
+constinit std::array<std::uint8_t, 16384> log_ring{};
+constinit LogVolume<Card> volume(card, log_ring,
+                                 {.file_bytes = 16u << 20, .least_bytes = 1u << 20});
 volatile std::uint32_t ticks_due = 0;
 volatile bool sample_ready = false;
 volatile std::uint32_t data_ready_us = 0;

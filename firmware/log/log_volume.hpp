@@ -53,7 +53,7 @@ enum class LogState : std::uint8_t {
   refused,  // no FAT32 volume, no room, or its root directory is full
 };
 
-template <BlockCard Card, std::size_t kBuffer_bytes = 16384>
+template <BlockCard Card>
 class LogVolume {
  public:
   static constexpr std::uint32_t kFlush_us = 1'000'000;
@@ -63,13 +63,16 @@ class LogVolume {
     std::uint32_t file_bytes = 32u << 20, least_bytes = 1u << 20;
   };
 
-  explicit constexpr LogVolume(Card& card, Sizes sizes = {}) : card_(card), sizes_(sizes) {}
+  // ring: holds what is appended until the card takes it. Not in here, where it would lie in flash as so
+  // many zeros beside what is none.
+  constexpr LogVolume(Card& card, std::span<std::uint8_t> ring, Sizes sizes = {})
+      : card_(card), ring_(ring), sizes_(sizes) {}
 
   void tick(std::uint32_t now_us);
   // False: dropped and counted; it is not logging, or the buffer is full.
   bool append(std::span<const std::uint8_t> record);
   // Bytes that append() would take now.
-  std::size_t room() const { return state() == LogState::logging ? kBuffer_bytes - held_ : 0; }
+  std::size_t room() const { return state() == LogState::logging ? ring_.size() - held_ : 0; }
   void close() { close_wanted_ = true; }
   void open() { close_wanted_ = false; }                           // again, in a new file
   void set_time(std::uint16_t fat_date, std::uint16_t fat_time) {  // of files begun from now on
@@ -143,6 +146,7 @@ class LogVolume {
   }
 
   Card& card_;
+  std::span<std::uint8_t> ring_;
   Sizes sizes_;
   Step step_ = Step::no_card;
   bool waiting_ = false;  // for the card
@@ -163,7 +167,6 @@ class LogVolume {
   std::uint32_t tail_ = 0;     // bytes of the block after them that a flush has put there
   std::uint32_t flushed_us_ = 0;
 
-  std::array<std::uint8_t, kBuffer_bytes> ring_{};
   std::size_t read_at_ = 0, held_ = 0;
 };
 

@@ -4,8 +4,8 @@
 
 namespace fw {
 
-template <BlockCard Card, std::size_t kBuffer_bytes>
-LogState LogVolume<Card, kBuffer_bytes>::state() const {
+template <BlockCard Card>
+LogState LogVolume<Card>::state() const {
   if (step_ == Step::no_card) return LogState::no_card;
   if (step_ <= Step::slot_put) return LogState::opening;
   if (step_ <= Step::flushed) return LogState::logging;
@@ -13,28 +13,28 @@ LogState LogVolume<Card, kBuffer_bytes>::state() const {
   return step_ == Step::closed ? LogState::closed : LogState::refused;
 }
 
-template <BlockCard Card, std::size_t kBuffer_bytes>
-bool LogVolume<Card, kBuffer_bytes>::append(std::span<const std::uint8_t> record) {
-  if (state() != LogState::logging || held_ + record.size() > kBuffer_bytes) {
+template <BlockCard Card>
+bool LogVolume<Card>::append(std::span<const std::uint8_t> record) {
+  if (state() != LogState::logging || held_ + record.size() > ring_.size()) {
     dropped_ += static_cast<std::uint32_t>(record.size());
     return false;
   }
-  for (const std::uint8_t byte : record) ring_[(read_at_ + held_++) % kBuffer_bytes] = byte;
+  for (const std::uint8_t byte : record) ring_[(read_at_ + held_++) % ring_.size()] = byte;
   return true;
 }
 
 // ---- The card
 
-template <BlockCard Card, std::size_t kBuffer_bytes>
-void LogVolume<Card, kBuffer_bytes>::start_over() {
+template <BlockCard Card>
+void LogVolume<Card>::start_over() {
   step_ = Step::no_card;
   waiting_ = false;
   dropped_ += static_cast<std::uint32_t>(held_);
   held_ = read_at_ = 0;
 }
 
-template <BlockCard Card, std::size_t kBuffer_bytes>
-void LogVolume<Card, kBuffer_bytes>::tick(std::uint32_t now_us) {
+template <BlockCard Card>
+void LogVolume<Card>::tick(std::uint32_t now_us) {
   const bool lost = step_ != Step::no_card && (!card_.ready() || card_.starts() != card_starts_);
   if (lost) {
     ++failures_;
@@ -47,8 +47,8 @@ void LogVolume<Card, kBuffer_bytes>::tick(std::uint32_t now_us) {
   }
 }
 
-template <BlockCard Card, std::size_t kBuffer_bytes>
-bool LogVolume<Card, kBuffer_bytes>::wait(Status begun, Step then) {
+template <BlockCard Card>
+bool LogVolume<Card>::wait(Status begun, Step then) {
   if (begun == Status::bad_data) return refuse();  // beyond the card's end
   if (begun != Status::ok) return false;           // tried again at the next tick
   waiting_ = true;
@@ -56,19 +56,19 @@ bool LogVolume<Card, kBuffer_bytes>::wait(Status begun, Step then) {
   return false;
 }
 
-template <BlockCard Card, std::size_t kBuffer_bytes>
-bool LogVolume<Card, kBuffer_bytes>::ask(std::uint32_t block, Step then) {
+template <BlockCard Card>
+bool LogVolume<Card>::ask(std::uint32_t block, Step then) {
   return wait(card_.read(block, sector_), then);
 }
 
-template <BlockCard Card, std::size_t kBuffer_bytes>
-bool LogVolume<Card, kBuffer_bytes>::put(std::uint32_t block, Step then) {
+template <BlockCard Card>
+bool LogVolume<Card>::put(std::uint32_t block, Step then) {
   return wait(card_.write(block, sector_), then);
 }
 
 // True: go on at once; false: the card works, or there is nothing to do.
-template <BlockCard Card, std::size_t kBuffer_bytes>
-bool LogVolume<Card, kBuffer_bytes>::advance(std::uint32_t now_us) {
+template <BlockCard Card>
+bool LogVolume<Card>::advance(std::uint32_t now_us) {
   if (step_ == Step::slot_put) return begin_logging(now_us);
   if (step_ < Step::slot_put) return advance_opening();
   if (step_ <= Step::flushed) return advance_logging(now_us);
@@ -77,8 +77,8 @@ bool LogVolume<Card, kBuffer_bytes>::advance(std::uint32_t now_us) {
 
 // ---- Opening
 
-template <BlockCard Card, std::size_t kBuffer_bytes>
-bool LogVolume<Card, kBuffer_bytes>::advance_opening() {
+template <BlockCard Card>
+bool LogVolume<Card>::advance_opening() {
   using namespace fat32;
   switch (step_) {
     case Step::no_card:
@@ -144,8 +144,8 @@ bool LogVolume<Card, kBuffer_bytes>::advance_opening() {
   }
 }
 
-template <BlockCard Card, std::size_t kBuffer_bytes>
-bool LogVolume<Card, kBuffer_bytes>::scan_root() {
+template <BlockCard Card>
+bool LogVolume<Card>::scan_root() {
   for (std::uint32_t slot = 0; slot < fat32::kSlots_per_sector; ++slot) {
     const std::uint8_t first = sector_[32 * slot];
     if ((first == 0x00 || first == 0xE5) && slot_block_ == 0) {
@@ -161,16 +161,16 @@ bool LogVolume<Card, kBuffer_bytes>::scan_root() {
   return next_root_sector();
 }
 
-template <BlockCard Card, std::size_t kBuffer_bytes>
-bool LogVolume<Card, kBuffer_bytes>::next_root_sector() {
+template <BlockCard Card>
+bool LogVolume<Card>::next_root_sector() {
   if (++sector_in_cluster_ < volume_.sectors_per_cluster) {
     return ask(volume_.block_of(cluster_) + sector_in_cluster_, Step::root);
   }
   return ask(volume_.fat + fat_sector_of(cluster_), Step::root_chain);
 }
 
-template <BlockCard Card, std::size_t kBuffer_bytes>
-void LogVolume<Card, kBuffer_bytes>::begin_search() {
+template <BlockCard Card>
+void LogVolume<Card>::begin_search() {
   wanted_clusters_ = std::max<std::uint32_t>(1, sizes_.file_bytes / cluster_bytes());
   run_clusters_ = free_clusters_ = fat_sector_ = 0;
   fat_copy_ = 1;  // nothing read yet
@@ -179,8 +179,8 @@ void LogVolume<Card, kBuffer_bytes>::begin_search() {
 
 // One sector of the FAT after another, until there is a run of free clusters of that length; at the end
 // of the FAT the longest that was met, if it is worth a file.
-template <BlockCard Card, std::size_t kBuffer_bytes>
-bool LogVolume<Card, kBuffer_bytes>::search() {
+template <BlockCard Card>
+bool LogVolume<Card>::search() {
   if (fat_copy_ == 1) {
     fat_copy_ = 0;
     return ask(volume_.fat + fat_sector_, Step::search);
@@ -205,8 +205,8 @@ bool LogVolume<Card, kBuffer_bytes>::search() {
   return run_clusters_ > 0 && run_bytes() >= sizes_.least_bytes ? found() : refuse();
 }
 
-template <BlockCard Card, std::size_t kBuffer_bytes>
-bool LogVolume<Card, kBuffer_bytes>::found() {
+template <BlockCard Card>
+bool LogVolume<Card>::found() {
   run_last_ = run_first_ + run_clusters_ - 1;
   if (volume_.info != 0) return ask(volume_.info, Step::info);
   step_ = Step::info_put;
@@ -214,14 +214,14 @@ bool LogVolume<Card, kBuffer_bytes>::found() {
 }
 
 // What the FAT says of a cluster of the run: the next one, the end after run_last_, free beyond.
-template <BlockCard Card, std::size_t kBuffer_bytes>
-std::uint32_t LogVolume<Card, kBuffer_bytes>::chain_value(std::uint32_t cluster) const {
+template <BlockCard Card>
+std::uint32_t LogVolume<Card>::chain_value(std::uint32_t cluster) const {
   if (cluster == run_last_) return fat32::kEnd;
   return cluster < run_last_ ? cluster + 1 : 0;
 }
 
-template <BlockCard Card, std::size_t kBuffer_bytes>
-bool LogVolume<Card, kBuffer_bytes>::chain_sector(Step then) {
+template <BlockCard Card>
+bool LogVolume<Card>::chain_sector(Step then) {
   const std::uint32_t first = fat_sector_ * fat32::kEntries_per_sector;
   const std::uint32_t end =
       std::min(first + fat32::kEntries_per_sector, run_first_ + run_clusters_);
@@ -231,8 +231,8 @@ bool LogVolume<Card, kBuffer_bytes>::chain_sector(Step then) {
   return put(volume_.fat + fat_copy_ * volume_.fat_sectors + fat_sector_, then);
 }
 
-template <BlockCard Card, std::size_t kBuffer_bytes>
-bool LogVolume<Card, kBuffer_bytes>::begin_logging(std::uint32_t now_us) {
+template <BlockCard Card>
+bool LogVolume<Card>::begin_logging(std::uint32_t now_us) {
   written_ = tail_ = 0;
   held_ = read_at_ = 0;
   flushed_us_ = now_us;
@@ -243,11 +243,11 @@ bool LogVolume<Card, kBuffer_bytes>::begin_logging(std::uint32_t now_us) {
 
 // ---- Logging
 
-template <BlockCard Card, std::size_t kBuffer_bytes>
-bool LogVolume<Card, kBuffer_bytes>::advance_logging(std::uint32_t now_us) {
+template <BlockCard Card>
+bool LogVolume<Card>::advance_logging(std::uint32_t now_us) {
   if (step_ == Step::block_put) {
     const std::size_t taken = fat32::kSector_bytes;
-    read_at_ = (read_at_ + taken) % kBuffer_bytes;
+    read_at_ = (read_at_ + taken) % ring_.size();
     held_ -= taken;
     written_ += static_cast<std::uint32_t>(taken);
     tail_ = 0;
@@ -267,7 +267,7 @@ bool LogVolume<Card, kBuffer_bytes>::advance_logging(std::uint32_t now_us) {
     return wait(card_.finish(), Step::flushed);
   }
   sector_.fill(0);
-  for (std::uint32_t i = 0; i < count; ++i) sector_[i] = ring_[(read_at_ + i) % kBuffer_bytes];
+  for (std::uint32_t i = 0; i < count; ++i) sector_[i] = ring_[(read_at_ + i) % ring_.size()];
   if (count == fat32::kSector_bytes) return put(log_block(), Step::block_put);
   put(log_block(), Step::partial_put);
   tail_ = count;
@@ -277,8 +277,8 @@ bool LogVolume<Card, kBuffer_bytes>::advance_logging(std::uint32_t now_us) {
 
 // ---- Closing
 
-template <BlockCard Card, std::size_t kBuffer_bytes>
-bool LogVolume<Card, kBuffer_bytes>::advance_closing() {
+template <BlockCard Card>
+bool LogVolume<Card>::advance_closing() {
   switch (step_) {
     case Step::size_begin:
       if (written_ + tail_ == run_bytes()) {  // full: the directory says so already

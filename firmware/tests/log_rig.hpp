@@ -80,7 +80,7 @@ struct LogRig {
          Volume::Sizes sizes = {1u << 20, 1u << 18})
       : image_path(folder.file("card.img")),
         rig(params, contents(folder.file(image), image_path)),
-        log(rig.card, sizes) {}
+        log(rig.card, ring, sizes) {}
 
   static io::MemoryFile contents(const std::string& image, const std::string& path) {
     auto file = io::MemoryFile::create(path, 64 << 20);
@@ -112,6 +112,7 @@ struct LogRig {
 
   std::string image_path;
   CardRig rig;
+  std::array<std::uint8_t, 16384> ring{};
   Volume log;
   io::Nanoseconds next_ns = 0;
   int records_per_ms = 2;
