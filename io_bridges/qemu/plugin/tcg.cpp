@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <span>
 
 #include "base/check.hpp"
 #include "io_bridges/qemu/plugin/qemu_api.hpp"
@@ -14,7 +15,7 @@ namespace {
 
 struct Definition {  // TCGOpDef
   const char* name;
-  std::uint8_t counts[4], flags;
+  std::uint8_t counts[4], flags;  // of outputs, inputs, constants, all arguments
   void* constraints;
 };
 struct HelperInfo {  // TCGHelperInfo
@@ -96,6 +97,17 @@ int number_of(const char* name) {
     if (std::strcmp(functions.tcg_op_defs[n].name, name) == 0) return n;
   }
   return -1;
+}
+
+// Those that it has: behind them stands what an earlier operation has left in the same place.
+std::span<const Argument> arguments_of(const Operation& operation) {
+  constexpr unsigned kFunction_and_info = 2;
+  const bool call = static_cast<int>(operation.number) == known.call;
+  const unsigned count =
+      call ? (operation.counts & 0xF) + ((operation.counts >> 4) & 0xF) + kFunction_and_info
+           : functions.tcg_op_defs[operation.number].counts[3];
+  return std::span(operation.arguments)
+      .first(std::min<std::size_t>(count, std::size(operation.arguments)));
 }
 
 }  // namespace
@@ -180,7 +192,7 @@ int size_log2(const Operation& access) {
 Spare::Spare(const std::vector<Operation*>& block)
     : context_(reinterpret_cast<Argument>(context())) {
   for (const Operation* operation : block) {
-    for (const Argument argument : operation->arguments) {
+    for (const Argument argument : arguments_of(*operation)) {
       if (place_of(argument) < kWords) used_.set(place_of(argument));
     }
   }
