@@ -15,6 +15,11 @@ using tcg::Argument;
 using tcg::Operation;
 
 constexpr std::uint32_t kCount_flags = 0x1FF;  // CF_COUNT_MASK
+// As cpu_io_recompile() has it: CF_LAST_IO, CF_MEMI_ONLY, one instruction.
+constexpr std::uint32_t kDone_again = 0x18001;
+constexpr std::int32_t kFirst_register = 0x40000000;  // from there on there is no memory
+constexpr int kPc = 15;
+constexpr Argument kMost_temporaries = 512, kRoom_for_exit = 256;  // TCG_MAX_TEMPS
 constexpr std::string_view kLazy_save = "v7m_preserve_fp_state";
 constexpr std::string_view kUdiv = "udiv", kSdiv = "sdiv";
 
@@ -54,6 +59,7 @@ class CostInjection::Writer {
     // Inside an IT block the translator clears its state in memory at the block's start.
     it_state_ = first == operations_.end() ? 0 : static_cast<std::int32_t>((*first)->arguments[1]);
     std::size_t begun = 0;
+    std::size_t mark = 0;  // of the instruction whose operations follow
     for (std::size_t k = 0; k < operations_.size(); ++k) {
       Operation& o = *operations_[k];
       const int number = static_cast<int>(o.number);
@@ -70,10 +76,13 @@ class CostInjection::Writer {
       } else if (number == op.instruction) {
         if (begun > 0) owe(*operations_[k + 1], places_[begun]);
         ++begun;
+        mark = k;
       } else if (begun > 0 && (number == op.load32 || number == op.load64)) {
         pay_by_address(o, true, cost_.kinds[begun - 1]);
+        expect_register(mark, begun - 1);
       } else if (begun > 0 && number == op.store32) {
         pay_by_address(o, false, cost_.kinds[begun - 1]);
+        expect_register(mark, begun - 1);
       } else if (begun > 0 && cost_.kinds[begun - 1].long_multiply &&
                  (number == op.multiply_long || number == op.multiply_long_signed)) {
         pay_for_product(o, number == op.multiply_long_signed);
@@ -87,6 +96,7 @@ class CostInjection::Writer {
         leave(o);
       }
     }
+    add_exit();
   }
 
  private:
@@ -170,6 +180,7 @@ class CostInjection::Writer {
   void take_off_budget(Operation& store) {
     const tcg::Numbers& op = tcg::numbers();
     owner_.find_budget(static_cast<std::intptr_t>(store.arguments[2]));
+    environment_ = store.arguments[1];
     tcg::Ahead ahead(&store, spare_);
     const Argument where = debt_place(), flag = tcg::address(&owner_.state_.entered);
     const Argument debt =
@@ -222,6 +233,75 @@ class CostInjection::Writer {
              it_store_->arguments[2]);
   }
 
+  // QEMU leaves a block where it comes to a register and has that instruction done again by itself, so
+  // that the clock may be read there. It finds out late; where it is to be expected, the block is left
+  // as QEMU would leave it, but ahead of the instruction. Not within an IT block, whose state would
+  // have to be put back. Behind the first such place a block hardly ever goes on.
+  void expect_register(std::size_t mark, std::size_t n) {
+    if (n == 0 || exit_.n != 0 || cost_.kinds[n].leads_to_register < 0) return;
+    if (!stored_ || it_state_ != 0 || operations_[mark]->arguments[1] != 0) return;
+    const Argument pc = global(kPc);
+    for (std::size_t k = 0; k < mark; ++k) {
+      if (tcg::writes(*operations_[k], pc)) return;
+    }
+    exit_ = {n, behind_callbacks(mark)};
+  }
+
+  Argument global(int core_register) const {
+    return tcg::global_at(environment_, core_register * 4);
+  }
+
+  // The first operation of an instruction's own.
+  std::size_t behind_callbacks(std::size_t mark) const {
+    const auto is = [this](std::size_t k, int number) {
+      return static_cast<int>(operations_[k]->number) == number;
+    };
+    std::size_t k = mark + 1;
+    while (is(k, tcg::numbers().callback)) {
+      while (!is(k, tcg::numbers().callback_end)) ++k;
+      ++k;
+    }
+    return k;
+  }
+
+  // A block of too many temporaries would be translated in parts, and its time be another.
+  bool has_room_for_exit() const {
+    const Argument first = global(0), size = global(1) - first;
+    if (first == 0 || global(kPc) == 0) return false;
+    const Argument end = environment_ + kMost_temporaries * size;
+    Argument last = 0;
+    for (const Operation* operation : tcg::operations()) {
+      for (const Argument argument : tcg::arguments_of(*operation)) {
+        if (argument >= environment_ && argument < end) last = std::max(last, argument);
+      }
+    }
+    return last + kRoom_for_exit * size < end;
+  }
+
+  void add_exit() {
+    if (exit_.n == 0 || !has_room_for_exit()) return;
+    const tcg::Numbers& op = tcg::numbers();
+    const std::uint32_t flags = owner_.api_.curr_cflags(owner_.api_.qemu_get_cpu(0)) | kDone_again;
+    const Argument again = tcg::number32(static_cast<std::int32_t>(flags));
+    const Argument base = global(cost_.kinds[exit_.n].leads_to_register), pc = global(kPc);
+    tcg::Label* const out = tcg::Ahead(operations_[exit_.place], spare_)
+                                .branch_if_not_below(base, tcg::number32(kFirst_register));
+    Operation* const end = tcg::add_instruction_mark();
+    {
+      tcg::Ahead ahead(end, spare_);
+      ahead.here(out);
+      const Argument low = tcg::address(owner_.count_.low());
+      const auto undone = static_cast<std::int32_t>(cost_.each.size() - exit_.n);
+      const Argument left =
+          ahead.op32(op.add32, ahead.op32(op.load_half32, low), tcg::number32(undone));
+      ahead.put(op.st16, left, low);
+      ahead.put(op.st32, again, tcg::address(owner_.count_.next_flags()));
+      ahead.put(op.add32, pc, pc, tcg::number32(static_cast<std::int32_t>(cost_.offsets[exit_.n])));
+      ahead.put(op.exit_block, 0);
+    }
+    tcg::remove(end);
+  }
+
   // The first way out behind the last instruction is that of a taken branch, or of running on.
   void leave(Operation& place) {
     left_ = true;
@@ -231,6 +311,11 @@ class CostInjection::Writer {
     tcg::Ahead(&place, spare_)
         .put(tcg::numbers().st64, tcg::number64(-1), tcg::address(&owner_.state_.entered));
   }
+
+  struct Exit {
+    std::size_t n = 0;      // instruction that is to be done by itself; 0: none
+    std::size_t place = 0;  // operation ahead of which the block is left
+  };
 
   CostInjection& owner_;
   qemu_plugin_tb* block_;
@@ -244,6 +329,8 @@ class CostInjection::Writer {
   const Operation* it_store_ = nullptr;  // where the translator clears it: behind that of can_do_io
   int stores_ = 0;
   tcg::Label* enough_ = nullptr;
+  Exit exit_;
+  Argument environment_ = 0;  // points to the CPU's: R0 to R15 are its first words
   bool stored_ = false, placed_ = false, left_ = false;
 };
 

@@ -16,6 +16,8 @@
 //   Operands  are paid for ahead of what computes with them (operand_cost.hpp)
 //   Addresses ahead of the access: data in flash, and what is unaligned (access_cost.hpp)
 //   Lines     of the F405's cache (fetch_model.hpp) are looked up in line, without a branch
+//   Repeats   an instruction that has been seen to reach registers is not begun in the middle of a block
+//             if it does so again: the block is left ahead of it, as QEMU would leave it halfway
 //   Unit      2^-16 ns
 #pragma once
 #include <cstdint>
@@ -48,12 +50,14 @@ struct BlockCost {
   std::int64_t flash_wait = 0;  // when data comes from flash; with its cache: when it is not held
   bool data_cache = false;
   struct Kind {
-    bool memory;         // loads or stores
-    bool reads_flash;    // may, and `each` has not counted it
-    bool unaligned;      // may be
-    bool long_multiply;  // whose cycles go by its operands
+    bool memory;            // loads or stores
+    int leads_to_register;  // core register that has led it to registers of the part; -1: none
+    bool reads_flash;       // may, and `each` has not counted it
+    bool unaligned;         // may be
+    bool long_multiply;     // whose cycles go by its operands
   };
-  std::vector<Kind> kinds;  // of each instruction
+  std::vector<Kind> kinds;             // of each instruction
+  std::vector<std::uint32_t> offsets;  // of each from the block's start, bytes
   bool ends_in_branch = false;
 };
 

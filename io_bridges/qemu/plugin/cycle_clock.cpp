@@ -2,6 +2,7 @@
 #include "io_bridges/qemu/plugin/cycle_clock.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace whirl::qemu {
@@ -14,6 +15,12 @@ cycles::Instruction read_instruction(const qemu_plugin_insn* insn) {
   const Code code = code_of(insn);
   return cycles::decode(static_cast<std::uint32_t>(qemu_plugin_insn_vaddr(insn)), code.first,
                         code.second, code.wide);
+}
+
+// The one core register that its address comes from, but for an offset in the instruction; -1: another way.
+int base_of(const cycles::Instruction& i) {
+  if (i.literal || std::popcount(i.address_from) != 1) return -1;
+  return std::countr_zero(i.address_from);
 }
 
 }  // namespace
@@ -29,6 +36,7 @@ BlockCost::Kind CycleClock::kind_of(const cycles::Instruction& i) const {
   const bool single = i.kind == cycles::Class::load || i.kind == cycles::Class::store;
   return {
       .memory = i.accesses_memory(),
+      .leads_to_register = register_sites_.reaches(i.address) ? base_of(i) : -1,
       .reads_flash = !on_stack && !(i.literal && !timing_.flash.data_cache),
       .unaligned = single && !i.literal && !(on_stack && i.bytes == 2),
       .long_multiply = core_ == cycles::Core::cortex_m3 && i.kind == cycles::Class::long_multiply};
@@ -43,6 +51,7 @@ BlockCost CycleClock::cost_of(const std::vector<cycles::Instruction>& run) const
     const double then = until + core[n] + fetch.stalls[n];
     cost.each.push_back(units(then) - units(until));
     cost.kinds.push_back(kind_of(run[n]));
+    cost.offsets.push_back(run[n].address - run.front().address);
     until = then;
   }
   const cycles::Instruction& last = run.back();

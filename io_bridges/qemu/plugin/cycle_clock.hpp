@@ -21,6 +21,7 @@
 #include "io_bridges/qemu/cycles/core_model.hpp"
 #include "io_bridges/qemu/plugin/core_clock.hpp"
 #include "io_bridges/qemu/plugin/cost_injection.hpp"
+#include "io_bridges/qemu/plugin/register_sites.hpp"
 
 namespace whirl::qemu {
 
@@ -32,7 +33,11 @@ class CycleClock final : public CoreClock {
   Result<Done> find_qemu() override { return code_.find_qemu(); }
   std::vector<std::int64_t> translated(qemu_plugin_tb* block,
                                        const std::vector<std::uint32_t>& sites) override;
-  void code_thrown_away() override { code_.code_thrown_away(); }
+  void code_thrown_away() override {
+    code_.code_thrown_away();
+    register_sites_.code_thrown_away();
+  }
+  bool reached_register(std::uint32_t pc) override { return register_sites_.reached(pc); }
   Moment at(std::int64_t site) const override;
   void anchor(Nanoseconds now) override;
   Nanoseconds core_now() const override;
@@ -57,6 +62,7 @@ class CycleClock final : public CoreClock {
   const cycles::Core core_;
   std::function<void()> refuse_;
   CostInjection code_;
+  RegisterSites register_sites_;
   board::CoreTiming timing_;
   double units_per_cycle_ = 0.0;
   Nanoseconds anchor_ns_ = 0;

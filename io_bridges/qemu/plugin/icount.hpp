@@ -33,6 +33,8 @@ class InstructionCount {
     budget_[1] = 0;
     *low_ = static_cast<std::uint16_t>(left);
   }
+  std::uint16_t* low() const { return low_; }
+  std::uint32_t* next_flags() const { return next_flags_; }
   // The next block has that many instructions, whatever is in the cache.
   void limit_next_block(std::uint32_t flags) { *next_flags_ = flags; }
 

@@ -14,7 +14,7 @@ namespace {
 constexpr int kGaps = 5, kBlocks = 10, kMemories = 10;
 constexpr std::size_t kHostPage = 4096;
 constexpr std::uint32_t kCode_page = 1024;  // a write by DMA moves at most a word
-constexpr int kSp = 13;
+constexpr int kSp = 13, kPc = 15;
 using board::kUntouched;  // RAM is not 0 at power-up; the stack watch counts on it
 
 bool nobody_answers(void*, hwaddr, unsigned, bool, Attributes) {
@@ -57,6 +57,7 @@ void Machine::accessed(std::uint32_t address) {
     core_stopped(board::StoppedCore::frame_among_registers);
   }
   anchor();
+  if (clock_->reached_register(core_registers_[kPc])) throw_code_away();
 }
 
 std::uint64_t Machine::read_window(void* window, hwaddr offset, unsigned size) {

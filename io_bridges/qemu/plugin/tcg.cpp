@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <span>
 
 #include "base/check.hpp"
 #include "io_bridges/qemu/plugin/qemu_api.hpp"
@@ -24,7 +23,7 @@ struct HelperInfo {  // TCGHelperInfo
 };
 constexpr int kMost_operations = 256;
 constexpr int kWord = 0, kDoubleword = 1;                  // TCGType
-constexpr Argument kSigned_at_least = 3;                   // TCG_COND_GE
+constexpr Argument kSigned_at_least = 3, kNot_below = 5;   // TCG_COND_GE, TCG_COND_GEU
 constexpr std::uint32_t kOne_reference = (1u << 16) | 1u;  // TCGLabel: present, refs
 
 struct Functions {
@@ -84,7 +83,8 @@ constexpr Wanted kWanted[] = {{&Numbers::st32, "st_i32"},
                               {&Numbers::load64, "qemu_ld_i64"},
                               {&Numbers::store32, "qemu_st_i32"},
                               {&Numbers::multiply_long, "mulu2_i32"},
-                              {&Numbers::multiply_long_signed, "muls2_i32"}};
+                              {&Numbers::multiply_long_signed, "muls2_i32"},
+                              {&Numbers::load_half32, "ld16u_i32"}};
 
 whirl::Error lacking(const std::string& what) {
   return {ErrorKind::host, "QEMU", "its translator has no " + what,
@@ -99,15 +99,9 @@ int number_of(const char* name) {
   return -1;
 }
 
-// Those that it has: behind them stands what an earlier operation has left in the same place.
-std::span<const Argument> arguments_of(const Operation& operation) {
-  constexpr unsigned kFunction_and_info = 2;
+unsigned outputs_of(const Operation& operation) {
   const bool call = static_cast<int>(operation.number) == known.call;
-  const unsigned count =
-      call ? (operation.counts & 0xF) + ((operation.counts >> 4) & 0xF) + kFunction_and_info
-           : functions.tcg_op_defs[operation.number].counts[3];
-  return std::span(operation.arguments)
-      .first(std::min<std::size_t>(count, std::size(operation.arguments)));
+  return call ? operation.counts & 0xF : functions.tcg_op_defs[operation.number].counts[0];
 }
 
 }  // namespace
@@ -138,6 +132,14 @@ const Numbers& numbers() {
   return known;
 }
 
+Operation* add_instruction_mark() {
+  return functions.tcg_emit_op(known.instruction);
+}
+
+void remove(Operation* operation) {
+  functions.tcg_op_remove(context(), operation);
+}
+
 // The list has a head that we cannot name: from an operation emitted at its end we walk back.
 std::vector<Operation*> operations() {
   struct Link {
@@ -145,14 +147,14 @@ std::vector<Operation*> operations() {
     Link* previous;
   };
   std::vector<Operation*> list;
-  Operation* end = functions.tcg_emit_op(known.instruction);
+  Operation* end = add_instruction_mark();
   for (Operation* at = end;;) {
     const Link* link = reinterpret_cast<const Link*>(at->links);
     at = static_cast<Operation*>(link->previous->previous->next);
     if (at == nullptr) break;
     list.push_back(at);
   }
-  functions.tcg_op_remove(context(), end);
+  remove(end);
   std::reverse(list.begin(), list.end());
   return list;
 }
@@ -187,6 +189,35 @@ LastInputs last_inputs(const Operation& call) {
 // MemOpIdx: four bits of MMU index, then MemOp, whose lowest three bits are the size.
 int size_log2(const Operation& access) {
   return static_cast<int>((access.arguments[2] >> 4) & 7);
+}
+
+std::span<const Argument> arguments_of(const Operation& operation) {
+  constexpr unsigned kFunction_and_info = 2;
+  const bool call = static_cast<int>(operation.number) == known.call;
+  const unsigned count =
+      call ? (operation.counts & 0xF) + ((operation.counts >> 4) & 0xF) + kFunction_and_info
+           : functions.tcg_op_defs[operation.number].counts[3];
+  return std::span(operation.arguments)
+      .first(std::min<std::size_t>(count, std::size(operation.arguments)));
+}
+
+// TCGTemp: four words, the third (mem_base) and the fourth (mem_offset) of which say where a global lives. The
+// environment's pointer is the first of all temporaries, the globals follow.
+Argument global_at(Argument environment, std::intptr_t offset) {
+  constexpr int kSearched = 512, kBase = 2, kOffset = 3;
+  const auto* words = reinterpret_cast<const std::intptr_t*>(environment);
+  for (int at = 0; at < kSearched; ++at) {
+    if (words[at + kBase] == static_cast<std::intptr_t>(environment) &&
+        words[at + kOffset] == offset) {
+      return reinterpret_cast<Argument>(words + at);
+    }
+  }
+  return 0;
+}
+
+bool writes(const Operation& operation, Argument temporary) {
+  const auto outputs = arguments_of(operation).first(outputs_of(operation));
+  return std::find(outputs.begin(), outputs.end(), temporary) != outputs.end();
 }
 
 Spare::Spare(const std::vector<Operation*>& block)
@@ -228,12 +259,20 @@ void Ahead::put(int number, Argument a, Argument b, Argument c) {
 }
 
 Label* Ahead::branch_if_at_least(Argument a, Argument b) {
+  return branch_if(kSigned_at_least, a, b);
+}
+
+Label* Ahead::branch_if_not_below(Argument a, Argument b) {
+  return branch_if(kNot_below, a, b);
+}
+
+Label* Ahead::branch_if(Argument condition, Argument a, Argument b) {
   Label* label = functions.gen_new_label();
   *reinterpret_cast<std::uint32_t*>(label) += kOne_reference;
   Operation* branch = functions.tcg_op_insert_before(context(), place_, known.branch32);
   branch->arguments[0] = a;
   branch->arguments[1] = b;
-  branch->arguments[2] = kSigned_at_least;
+  branch->arguments[2] = condition;
   branch->arguments[3] = reinterpret_cast<Argument>(label);
   return label;
 }

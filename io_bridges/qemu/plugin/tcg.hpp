@@ -11,6 +11,7 @@
 #include <array>
 #include <bitset>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -36,7 +37,7 @@ struct Numbers {
       exit_block = -1, goto_pointer = -1, callback = -1, callback_end = -1, call = -1,
       leading_zeros32 = -1, xor32 = -1, multiply64 = -1, widen_unsigned = -1, shr32 = -1,
       shr64 = -1, load32 = -1, load64 = -1, store32 = -1, multiply_long = -1,
-      multiply_long_signed = -1;
+      multiply_long_signed = -1, load_half32 = -1;
 };
 
 // Finds all of it, once; refused where this QEMU lacks something.
@@ -44,6 +45,9 @@ Result<Done> find();
 const Numbers& numbers();
 
 std::vector<Operation*> operations();
+// A new one behind all others, with no arguments yet: what is put ahead of it is behind all others too.
+Operation* add_instruction_mark();
+void remove(Operation* operation);
 Argument number32(std::int32_t value);
 Argument number64(std::int64_t value);
 Argument address(const void* where);
@@ -57,6 +61,14 @@ LastInputs last_inputs(const Operation& call);
 
 // Of the guest's memory that such an operation accesses, log2 of the bytes.
 int size_log2(const Operation& access);
+
+// Those that it has: behind them stands what an earlier operation has left in the same place.
+std::span<const Argument> arguments_of(const Operation& operation);
+// The translator's name for a word of the CPU's environment that it keeps in registers, by the offset of
+// that word; 0: it has none. `environment` is the temporary that points there.
+Argument global_at(Argument environment, std::intptr_t offset);
+// Does the operation put a new value into it?
+bool writes(const Operation& operation, Argument temporary);
 
 // Temporaries of our own. The translator has given all of its own back by then, so that a new one may be
 // one that it still uses: only those that no operation of the block names are taken.
@@ -86,13 +98,16 @@ class Ahead {
   ~Ahead() { spare_.give_back(since_); }
   Ahead(const Ahead&) = delete;
   Ahead& operator=(const Ahead&) = delete;
-  Argument op32(int number, Argument a, Argument b);  // a new 32-bit temporary holds the result
+  Argument op32(int number, Argument a, Argument b = 0);  // a new 32-bit temporary holds the result
   Argument op64(int number, Argument a, Argument b = 0);
   void put(int number, Argument a, Argument b = 0, Argument c = 0);
-  Label* branch_if_at_least(Argument a, Argument b);  // signed, 32 bits
+  Label* branch_if_at_least(Argument a, Argument b);   // signed, 32 bits
+  Label* branch_if_not_below(Argument a, Argument b);  // unsigned
   void here(Label* label);
 
  private:
+  Label* branch_if(Argument condition, Argument a, Argument b);
+
   Operation* place_;
   Spare& spare_;
   const Spare::Taken since_;
