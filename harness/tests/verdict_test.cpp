@@ -76,11 +76,15 @@ TEST(Verdict, WhatWasNotShownIsNoPass) {
        "flight", 3, "only 100 ms of 100000 ms"},
       {R"(t:budget("cpu") { busy = "60 %", during = "100 s" }  t:wait "500 ms")", "flight", 3,
        "only 500 ms"},
+      {R"(t:budget("fw::imu_task") { share = "99 %", during = "100 s" }  t:wait "100 ms")",
+       "flight", 3, "only 100 ms of 100000 ms"},
       {R"(t:bus { device = "esc1", nacks = 3, during = "9 s" }  t:wait "100 ms")", "flight", 3,
        "only 100 ms"},
       // What was seen to be broken is a fail, however short the time.
       {R"(t:budget("fw::imu_task") { execution = "1 us", during = "100 s" }  t:wait "100 ms")",
        "flight", 1, "execution time"},
+      {R"(t:budget("fw::imu_task") { share = "0.0001 %", during = "100 ms" }  t:wait "200 ms")",
+       "flight", 1, "share of time"},
       {R"(t:always("thrust", "1 s"):at_most "1 N"  t:wait "100 ms")", "flight", 1,
        "thrust, always"},
       // The last step of a window belongs to it.
@@ -125,6 +129,12 @@ TEST(Verdict, AnExpectationWithoutAFigureIsNoPass) {
       {R"(t:budget("fw::imu_task") { period = "2 s", jitter = "1 s" }  t:wait "1 s")", "asleep", 1,
        "nothing to measure"},
       {R"(t:budget("cpu") { busy = "100 %" }  t:wait "1 s")", "asleep", 1, "nothing to measure"},
+      {R"(t:budget("fw::imu_task") { share = "99 %" }  t:wait "1 s")", "asleep", 1,
+       "share of time: nothing"},
+      {R"(t:budget("fw::imu_task") { rate = "99 %", of = "imu" }  t:wait "1 s")", "asleep", 1,
+       "rate error: nothing"},
+      {R"(t:budget("fw::imu_task") { rate = "1 %", of = "nobody" }  t:wait "1 s")", "flight", 2,
+       "no device of"},
       {R"(t:bus { device = "esc1", nacks = 99 }  t:wait "1 s")", "asleep", 1, "0 transactions"},
       {R"(t:latency { from = "imu", through = { "fw::imu_task" }, to = "esc", at_most = "9 s" }
           t:wait "1 s")",
