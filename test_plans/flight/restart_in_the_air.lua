@@ -1,6 +1,9 @@
 -- All four motors stopped in the air, the propellers braked by their motors' friction or turned backward by the air,
 -- and started again there: by force (`force`: 21196 in MAV_CMD_COMPONENT_ARM_DISARM), under the rules of
 -- firmware/flight/restart.hpp. What it refuses, it tells: one motor of four lost is a fail-safe, no restart.
+-- Not held on every seed: what turns as its motors stop turns on, and beyond 80 degrees a restart is refused as tipped over.
+-- Stopped by command: seeds 1 and 2 hold, 3 is refused. The other two: 1 holds, 3 is refused; 2 is caught, but its
+-- propellers stand where they should windmill, and browned out it tilts by 91.5 degrees.
 include "include/gps.lua"
 include "include/hover.lua"
 include "include/parameter.lua"
