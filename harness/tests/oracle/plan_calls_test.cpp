@@ -83,7 +83,7 @@ TEST(PlanCalls, RefuseWhatTheyCannotUse) {
       {"t:fault { kind = 'code_hangs', ['function'] = 'fw::nobody' }",
        "'fw::nobody' is not watched"},
       {"t:command { brake = '10.05 N m' }", "brake"},
-      {"t:command { brake = '-0.005 N m' }", "brake"},
+      {"t:command { brake = '-10.05 N m' }", "brake"},
       {"t:command { pulses = { width = '1 ms', period = '20 ms', glitch = '1 us', glitch_after = "
        "'21 ms' } }",
        "glitch_after: beyond the period"},
