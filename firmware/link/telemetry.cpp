@@ -40,7 +40,6 @@ std::span<const std::uint8_t> Telemetry::next(std::uint32_t time_ms, const Fault
   if (slot == 6) return send(heartbeat());
   if (slot == 106) return send(sys_status(faults, health));
   if (slot == 46 && flight_.estimator().gps_frame().known()) return send(gps_origin());
-  if (slot == 46 && flight_.estimator().gps_frame().known()) return send(gps_origin());
   // While capture comes up, the radio has no more room.
   const bool gps_due = second % kGpsSecondsByCapture == 0 || !flight_.estimator().fix_fresh();
   if (slot == 146 && gps_due) return send(gps_raw(time_ms));
