@@ -110,6 +110,7 @@ void Flight::on_attitude(const Quaternion& q_WB, float yaw_rate_radps, float thr
 
 Reason Flight::arm() {
   if (!allowed(Command::arm, state_)) return Reason::wrong_state;
+  if (calibrator_.running() != Calibration::none) return Reason::calibrating;
   if (state_ == FlightState::armed) return Reason::none;
   if (steered_by_hand()) return Reason::by_hand;
   if (const Reason why_not = ready_to_arm(); why_not != Reason::none) return why_not;

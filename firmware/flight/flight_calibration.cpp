@@ -31,6 +31,7 @@ Reason Flight::calibrate(Calibration what) {
     return Reason::none;
   }
   if (!allowed(Command::calibrate, state_)) return Reason::wrong_state;
+  if (falling_) return Reason::falling;
   if (running != Calibration::none) return Reason::calibrating;
   if (imu_missing_ms_ > kImuLost_ms) return Reason::imu_not_running;
   if (imu_frozen_) return Reason::imu_frozen;

@@ -4,6 +4,8 @@
 //   Refused   attitude lost on the way (samples missing or frozen, tipped beyond 80 degrees); the fall's speed
 //             not known; one to three rotors failed, for what is left cannot fly; an ESC not ready; too low to
 //             brake above the ground
+//   Blind     to where it is: one that was stopped less than a second ago above its take-off's ground, and
+//             already lies on a roof or in a hand, is started too
 //   Height    v t + g t^2 / 2 until the rotors carry, then (v + g t)^2 / 2 a, then what is left over. An
 //             ESC takes 0.32 s from a standing rotor to 90 % of 2 N, 0.52 s from one that windmills backward,
 //             its status 0.05 s; four rotors of 6 N brake

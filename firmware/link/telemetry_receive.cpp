@@ -51,7 +51,8 @@ void Telemetry::receive(std::span<const std::uint8_t> bytes) {
     flight_.on_link();
     requests_.on_frame(frame);
     if (const auto command = requests_.take_command_int()) acknowledge(*command, kUnsupported);
-    parameters_.on_frame(frame, flight_.parameters(), flight_.state() != FlightState::disarmed);
+    const bool in_use = flight_.state() != FlightState::disarmed || flight_.falling();
+    parameters_.on_frame(frame, flight_.parameters(), in_use);
   }
 }
 

@@ -155,6 +155,7 @@ TEST(Calibrator, DisarmedOnTheWayTheMotorsStop) {
   Ground ground;
   ASSERT_EQ(ground.flight.calibrate(Calibration::motor_fields), Reason::none);
   ground.run(4.5);
+  EXPECT_EQ(ground.flight.arm(), Reason::calibrating);  // it is, but not to fly
   ASSERT_EQ(ground.flight.disarm(), Reason::none);
   ground.run(0.1);
   EXPECT_EQ(ground.result(), CalibrationAnswer::failed);

@@ -85,6 +85,7 @@ TEST(Restart, EndsAFallAndHolds) {
   EXPECT_EQ(high.flight.setpoints(), (std::array<std::uint16_t, 4>{}));
   EXPECT_GT(high.vehicle.v_W_.z(), 4.0);
   EXPECT_EQ(high.flight.arm(), Reason::falling);
+  EXPECT_EQ(high.flight.calibrate(Calibration::gyro), Reason::falling);
   ASSERT_EQ(high.flight.restart(), Reason::none) << text_of(high.flight.last_reason());
   double lowest_m = 100.0;
   for (int i = 0; i < 6000; ++i) {

@@ -131,17 +131,7 @@ Eigen::Quaterniond read_attitude(const Table& t) {
 }
 
 bool stands_free(const plant::VehicleParams& v, const flight::Start& start) {
-  const auto& q = start.q_WB;
-  if (plant::clearance_m(v.airframe, v.obstacles, start.p_WB_W_m, q) < -kSettled_m) return false;
-  std::vector<plant::Obstacle> all = v.obstacles;
-  all.push_back(plant::slope(0.0, 0.0, 0.0, 0.0));  // the floor
-  for (const plant::RotorMount& rotor : v.airframe.rotors) {
-    const Vector3d hub_W_m = start.p_WB_W_m + q * rotor.p_BP_B_m;
-    for (const plant::Obstacle& o : all) {
-      if (plant::disc_enters(o, hub_W_m, q * Vector3d::UnitZ(), rotor.radius_m)) return false;
-    }
-  }
-  return true;
+  return plant::stands_free(v.airframe, v.obstacles, start.p_WB_W_m, start.q_WB, kSettled_m);
 }
 
 // What the vehicle does by itself: on its gear at W's origin.
@@ -195,7 +185,14 @@ Result<Done> read_surroundings(const Table& plan, flight::FlightParams& params) 
   }
   if (plan.has("field")) params.place.magnetic_field_W_T = read_field(plan.table("field"));
   if (plan.has("air")) read_air(plan.table("air"), params.vehicle.air);
-  if (plan.has("load")) params.vehicle.load = read_load(plan.table("load"));
+  if (plan.has("load")) {
+    const Table load = plan.table("load");
+    params.vehicle.load = read_load(load);
+    const double standing_m = -standing(params.vehicle).p_WB_W_m.z();
+    if (params.vehicle.load->attach_B_m.z() > standing_m) {
+      load.refuse("below", "the line would begin below the floor where the vehicle stands");
+    }
+  }
   // A start is looked at only where all before it is sound.
   if (const auto good = plan.finish_except({"start"}); !good) return good.error();
   if (plan.has("start")) {

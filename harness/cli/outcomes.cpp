@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <map>
+#include <set>
 #include <utility>
 
 #include "harness/cli/console.hpp"
@@ -89,9 +90,15 @@ void Outcomes::file_spreads() {
   for (const results::SeedRun& run : runs_) {
     if (!run.report.digest.empty()) plans[{run.report.file, run.report.plan}].push_back(&run);
   }
+  std::set<std::string> taken;
   for (const auto& [plan, runs] : plans) {
     if (runs.size() < 2) continue;
-    const auto filed = results::file_spread(results_ + "/seeds", runs);
+    // Of two plans whose names are one in the names of files, the second has a number.
+    std::string name = results::file_name(plan.second);
+    if (name.starts_with('.')) name.front() = '_';
+    std::string own = name;
+    for (int n = 2; !taken.insert(own).second; ++n) own = name + "-" + std::to_string(n);
+    const auto filed = results::file_spread(results_ + "/seeds", own, runs);
     if (!filed) {
       tally_.worsen(complain(filed.error()));
     } else if (!json_) {

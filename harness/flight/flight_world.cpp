@@ -41,6 +41,7 @@ FlightWorld::FlightWorld(const FlightParams& params, plant::RotorSet rotors, std
       ears_(params.ears),
       vehicle_(params.vehicle, std::move(rotors), seed),
       airframe_(params.vehicle.airframe),
+      obstacles_(params.vehicle.obstacles),
       seed_(seed),
       capture_(params.capture, seed),
       drag_truth_(params.vehicle.airframe) {

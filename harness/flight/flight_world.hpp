@@ -86,6 +86,7 @@ class FlightWorld : public World {
   Result<Done> release(const request::Release& wanted, std::int64_t now_ns);
   void carry(std::int64_t t_ns);
   double standing_m() const;
+  bool free_of_obstacles(const Grip& at, double within_m) const;
   Target present_target() const;  // as commanded; where it is, if nothing was
   Result<Done> blow(const request::Wind& wind, std::int64_t now_ns);
   Result<Done> add_jet(const request::Jet& wanted);
@@ -99,6 +100,7 @@ class FlightWorld : public World {
   std::vector<std::unique_ptr<MotorController>> controllers_;  // index: motor number - 1
   std::vector<double> unbalance_m_;                            // likewise, over the vehicle's mass
   const plant::AirframeParams airframe_;
+  const std::vector<plant::Obstacle> obstacles_;
   std::uint64_t seed_;
   std::optional<Hand> hand_;
   Capture capture_;

@@ -16,7 +16,7 @@ bool leads(const Command& command) {
   return std::visit(
       []<typename Request>(const Request&) {
         return is_one_of<Request, TakeOff, GoTo, Land, Figure8, Cruise, HoldAttitude,
-                         request::Waypoints, Teleoperation, SetPoint>;
+                         request::Waypoints, Teleoperation, SetPoint, request::Calibrate>;
       },
       command);
 }

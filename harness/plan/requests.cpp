@@ -295,13 +295,15 @@ Magnet read_magnet(const Table& t) {
 
 // { roll = "90 deg", height = "1 m", over = "2 s" }: level, nose north, where nothing is said.
 Hold read_hold(const Table& t) {
+  constexpr double kTurns_rad = 100.0, kFar_m = 1000.0;
+  const lua::Range turn = between(-kTurns_rad, kTurns_rad), place = between(-kFar_m, kFar_m);
   Hold hold;
-  hold.roll_rad = t.quantity_or("roll", Dimension::angle, 0.0);
-  hold.pitch_rad = t.quantity_or("pitch", Dimension::angle, 0.0);
-  hold.yaw_rad = t.quantity_or("yaw", Dimension::angle, 0.0);
-  hold.height_m = maybe(t, "height", Dimension::length, above(0.0));
-  hold.north_m = maybe(t, "north", Dimension::length);
-  hold.east_m = maybe(t, "east", Dimension::length);
+  hold.roll_rad = t.quantity_or("roll", Dimension::angle, 0.0, turn);
+  hold.pitch_rad = t.quantity_or("pitch", Dimension::angle, 0.0, turn);
+  hold.yaw_rad = t.quantity_or("yaw", Dimension::angle, 0.0, turn);
+  hold.height_m = maybe(t, "height", Dimension::length, between(1e-3, kFar_m));
+  hold.north_m = maybe(t, "north", Dimension::length, place);
+  hold.east_m = maybe(t, "east", Dimension::length, place);
   hold.over_s = t.quantity_or("over", Dimension::time, hold.over_s, between(0.2, 60.0));
   return hold;
 }

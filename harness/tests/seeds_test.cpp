@@ -57,6 +57,16 @@ TEST(Seeds, OneThatFailsFailsTheCommandAndIsNamed) {
   EXPECT_NE(table.find(",pass"), std::string::npos) << table;
 }
 
+// One that a later plan of that name had replaced would be lost, and with it a failure.
+TEST(Seeds, PlansOfOneNameHaveFilesOfTheirOwn) {
+  FakeRoot root;
+  root.write("test_plans/a.lua", plan_text(kDrawn));
+  root.write("test_plans/b.lua", plan_text(kDrawn));
+  EXPECT_EQ(whirl(root, {"run", "--seeds", "1..2"}).code, 0);
+  EXPECT_NE(root.read("results/seeds/p.csv"), "");
+  EXPECT_NE(root.read("results/seeds/p-2.csv"), "");
+}
+
 TEST(Seeds, AreSaidOnce) {
   FakeRoot root;
   root.write("test_plans/a.lua", plan_text(kDrawn));

@@ -145,6 +145,21 @@ double clearance_m(const AirframeParams& params, std::span<const Obstacle> obsta
   return least;
 }
 
+bool stands_free(const AirframeParams& params, std::span<const Obstacle> obstacles,
+                 const Vector3d& p_WB_W_m, const Eigen::Quaterniond& q_WB, double within_m) {
+  if (clearance_m(params, obstacles, p_WB_W_m, q_WB) < -within_m) return false;
+  const Obstacle floor = slope(0.0, 0.0, 0.0, 0.0);
+  const Vector3d axis_W = q_WB * Vector3d::UnitZ();
+  for (const RotorMount& rotor : params.rotors) {
+    const Vector3d hub_W_m = p_WB_W_m + q_WB * rotor.p_BP_B_m;
+    const auto is_in = [&](const Obstacle& o) {
+      return disc_enters(o, hub_W_m, axis_W, rotor.radius_m);
+    };
+    if (is_in(floor) || std::any_of(obstacles.begin(), obstacles.end(), is_in)) return false;
+  }
+  return true;
+}
+
 bool ContactWorld::in_reach(const BodyState& s, double dt_s) const {
   const Eigen::Matrix3d R_WB = s.q_WB.toRotationMatrix();
   double lowest = -1e300;

@@ -18,6 +18,11 @@ namespace whirl::plant {
 double clearance_m(const AirframeParams& params, std::span<const Obstacle> obstacles,
                    const Eigen::Vector3d& p_WB_W_m, const Eigen::Quaterniond& q_WB);
 
+// Nothing of it in the floor or in an obstacle: feet and hubs by clearance_m(), propellers by their discs.
+// within_m: how far feet may be in what they stand on; negative: how far from all they must be.
+bool stands_free(const AirframeParams& params, std::span<const Obstacle> obstacles,
+                 const Eigen::Vector3d& p_WB_W_m, const Eigen::Quaterniond& q_WB, double within_m);
+
 struct Touch {  // impulses of a step
   double sum_Ns = 0.0;
   double from_below_Ns = 0.0;  // of contacts whose normal is within 60 deg of straight up

@@ -3,12 +3,11 @@
 #include <filesystem>
 
 #include "base/output_file.hpp"
-#include "results/folder.hpp"
 #include "results/spread/overlay.hpp"
 
 namespace whirl::results {
 
-Result<std::string> file_spread(const std::string& folder,
+Result<std::string> file_spread(const std::string& folder, const std::string& name,
                                 const std::vector<const SeedRun*>& runs) {
   std::error_code status;
   std::filesystem::create_directories(folder, status);
@@ -16,7 +15,7 @@ Result<std::string> file_spread(const std::string& folder,
     return Error{ErrorKind::host, folder, "no folder for the spread: " + status.message(), ""};
   }
   const Spread spread = spread_of(runs);
-  const std::string stem = folder + "/" + file_name(spread.plan);
+  const std::string stem = folder + "/" + name;
   if (const auto csv = write_text(stem + ".csv", spread_csv(runs)); !csv) return csv.error();
   const auto charts = overlays(runs);
   if (!charts) return charts.error();

@@ -66,8 +66,9 @@ std::string quoted(const std::string& text) {
   return out + "\"";
 }
 
-std::string met(const SpreadRow& row) {
-  return std::to_string(row.met) + "/" + std::to_string(row.runs);
+// Of all runs: one that did not come so far did not meet it.
+std::string met(const SpreadRow& row, const Spread& spread) {
+  return std::to_string(row.met) + "/" + std::to_string(spread.runs);
 }
 
 std::string with_seed(double x, std::uint64_t seed) {
@@ -111,10 +112,11 @@ std::string spread_text(const Spread& spread) {
                 "mean", "sigma", "lowest (seed)", "highest (seed)", "margin (seed)", "wanted");
   text += line;
   for (const SpreadRow& row : spread.rows) {
-    if (!row.numbers && row.met == row.runs) continue;
+    if (!row.numbers && row.met == spread.runs) continue;
     std::snprintf(line, sizeof line, "  %-5s %-52.52s %10s %9s  %-16s %-16s %-18s ",
-                  met(row).c_str(), printable_line(row.name).c_str(), number(row.mean).c_str(),
-                  number(row.sigma, "%.3g").c_str(), with_seed(row.lowest, row.lowest_seed).c_str(),
+                  met(row, spread).c_str(), printable_line(row.name).c_str(),
+                  number(row.mean).c_str(), number(row.sigma, "%.3g").c_str(),
+                  with_seed(row.lowest, row.lowest_seed).c_str(),
                   with_seed(row.highest, row.highest_seed).c_str(),
                   with_seed(row.least_margin, row.least_margin_seed).c_str());
     text += line + printable_line(row.limit) + "\n";
@@ -127,7 +129,7 @@ std::string spread_csv(const std::vector<const SeedRun*>& runs) {
   for (const SeedRun* run : by_seed(runs)) {
     SameExpectation names;
     for (const Expectation& e : run->report.expectations) {
-      const auto value = [](double x) { return std::isnan(x) ? "" : number(x, "%.9g"); };
+      const auto value = [](double x) { return std::isfinite(x) ? number(x, "%.9g") : ""; };
       text += quoted(names.name(e)) + "," + std::to_string(run->report.seed) + "," +
               value(e.measured) + "," + quoted(e.unit) + "," + quoted(e.limit_text()) + "," +
               value(e.margin) + "," + name(e.verdict) + "\n";
@@ -148,7 +150,7 @@ std::string spread_html(const Spread& spread, const std::vector<Chart>& charts) 
                     {"wanted", false}},
                    {}};
   for (const SpreadRow& row : spread.rows) {
-    table.rows.push_back({row.name, met(row), number(row.mean), number(row.sigma, "%.3g"),
+    table.rows.push_back({row.name, met(row, spread), number(row.mean), number(row.sigma, "%.3g"),
                           with_seed(row.lowest, row.lowest_seed),
                           with_seed(row.highest, row.highest_seed),
                           with_seed(row.least_margin, row.least_margin_seed), row.limit});
