@@ -98,12 +98,12 @@ void Outcomes::file_spreads() {
     if (name.starts_with('.')) name.front() = '_';
     std::string own = name;
     for (int n = 2; !taken.insert(own).second; ++n) own = name + "-" + std::to_string(n);
-    const auto filed = results::file_spread(results_ + "/seeds", own, runs);
+    const results::Spread spread = results::spread_of(runs);
+    const auto filed = results::file_spread(results_ + "/seeds", own, spread, runs);
     if (!filed) {
       tally_.worsen(complain(filed.error()));
     } else if (!json_) {
-      print(results::spread_text(results::spread_of(runs)) + "  " + shown_path(filed.value()) +
-            "\n");
+      print(results::spread_text(spread) + "  " + shown_path(filed.value()) + "\n");
     }
   }
 }

@@ -91,7 +91,6 @@ void Estimates::await_calibration() {
 }
 
 void Estimates::on_ack(const io::CommandAck& ack) {
-  constexpr std::uint16_t kPreflightCalibration = 241;  // MAV_CMD
   if (ack.command != kPreflightCalibration) return;
   told_.calibration_result = ack.result;
   told_.calibration_progress = 0.01 * ack.progress;

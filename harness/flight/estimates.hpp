@@ -20,6 +20,8 @@
 
 namespace whirl::flight {
 
+inline constexpr std::uint16_t kPreflightCalibration = 241;  // MAV_CMD
+
 struct Told {
   static constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
   double attitude_error_rad = kNothing;                        // of what is flown by

@@ -14,14 +14,9 @@ constexpr double kLifted_m = 1.0;     // where no height is said and it stands
 constexpr double kPutDown_m = 0.005;  // it falls the rest
 constexpr double kFastest_mps = 5.0, kFastest_radps = 15.0;  // of a course, at its middle
 constexpr double kCatchable_mps = 0.5, kCatchable_radps = 1.0;
-constexpr std::uint16_t kPreflightCalibration = 241;  // MAV_CMD
 
 double seconds(std::int64_t t_ns) {
   return static_cast<double>(t_ns) * 1e-9;
-}
-
-Error refusal(const char* key, const char* what, const char* cure = "") {
-  return {ErrorKind::bad_input, key, what, cure};
 }
 
 // A course of minimum jerk is in its middle 15/8 as fast as in the mean.

@@ -24,10 +24,6 @@ void copy(const Eigen::Vector3d& from, double (&to)[3]) {
   for (int i = 0; i < 3; ++i) to[i] = from[i];
 }
 
-Error refusal(const char* key, const char* what, const char* cure = "") {
-  return {ErrorKind::bad_input, key, what, cure};
-}
-
 }  // namespace
 
 FlightWorld::FlightWorld(const FlightParams& params, std::uint64_t seed)

@@ -45,10 +45,6 @@ std::int64_t ns_of(double seconds) {
   return std::llround(seconds * 1e9);
 }
 
-Error refusal(const char* key, const std::string& what, const char* cure = "") {
-  return {ErrorKind::bad_input, key, what, cure};
-}
-
 }  // namespace
 
 double StandWorld::Flow::at(std::int64_t t_ns) const {

@@ -40,7 +40,11 @@ const char* word(const Disturbance& disturbance) {
 }
 
 Error not_understood(const std::string& world, const char* word) {
-  return {ErrorKind::bad_input, word, "means nothing to " + world, ""};
+  return refusal(word, "means nothing to " + world);
+}
+
+Error refusal(const char* key, const std::string& what, const char* cure) {
+  return {ErrorKind::bad_input, key, what, cure};
 }
 
 }  // namespace whirl

@@ -156,6 +156,7 @@ const char* word(const Disturbance& disturbance);  // "jet"
 // The refusal of one that this world ("a flight") has no use for. The place of this and of every other
 // refusal is the key that it is about; who has read the request adds file and line.
 Error not_understood(const std::string& world, const char* word);
+Error refusal(const char* key, const std::string& what, const char* cure = "");
 
 // An overload set for std::visit out of lambdas.
 template <typename... Cases>

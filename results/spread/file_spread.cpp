@@ -8,13 +8,12 @@
 namespace whirl::results {
 
 Result<std::string> file_spread(const std::string& folder, const std::string& name,
-                                const std::vector<const SeedRun*>& runs) {
+                                const Spread& spread, const std::vector<const SeedRun*>& runs) {
   std::error_code status;
   std::filesystem::create_directories(folder, status);
   if (status) {
     return Error{ErrorKind::host, folder, "no folder for the spread: " + status.message(), ""};
   }
-  const Spread spread = spread_of(runs);
   const std::string stem = folder + "/" + name;
   if (const auto csv = write_text(stem + ".csv", spread_csv(runs)); !csv) return csv.error();
   const auto charts = overlays(runs);

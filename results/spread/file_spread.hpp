@@ -8,9 +8,9 @@
 
 namespace whirl::results {
 
-// name: of the files, without ending. Returns the page's path.
+// name: of the files, without ending; spread: of these runs. Returns the page's path.
 // Errors  host: the folder or a file cannot be written; bad_input: a run's messages cannot be read
 Result<std::string> file_spread(const std::string& folder, const std::string& name,
-                                const std::vector<const SeedRun*>& runs);
+                                const Spread& spread, const std::vector<const SeedRun*>& runs);
 
 }  // namespace whirl::results

@@ -153,8 +153,8 @@ Chart chart_of(const Window& window, std::vector<Recorded> runs) {
   return chart;
 }
 
-Result<Done> gather(const SeedRun& run, std::map<std::string, std::vector<Recorded>>& all) {
-  const std::vector<Window> windows = windows_of(run.report);
+Result<Done> gather(const SeedRun& run, const std::vector<Window>& windows,
+                    std::map<std::string, std::vector<Recorded>>& all) {
   const std::string messages = run.folder + "/messages.whirl";
   const auto reader = MessageReader::open(messages);
   if (!reader) return reader.error();
@@ -172,8 +172,9 @@ Result<std::vector<Chart>> overlays(const std::vector<const SeedRun*>& runs) {
   std::vector<Window> windows;
   for (const SeedRun* run : runs) {
     if (run->folder.empty()) continue;
-    if (const auto read = gather(*run, recorded); !read) return read.error();
-    for (Window& window : windows_of(run->report)) {
+    std::vector<Window> of_run = windows_of(run->report);
+    if (const auto read = gather(*run, of_run, recorded); !read) return read.error();
+    for (Window& window : of_run) {
       const bool known = std::any_of(windows.begin(), windows.end(),
                                      [&](const Window& w) { return w.key == window.key; });
       if (!known && windows.size() < kMost_overlays) windows.push_back(std::move(window));

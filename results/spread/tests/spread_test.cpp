@@ -140,7 +140,7 @@ TEST(Overlay, SaysWhichMessagesCannotBeRead) {
 TEST(Spread, IsFiledAsPageAndTable) {
   const ScratchFolder one, two, out;
   const std::vector<SeedRun> runs{recorded(one.path(), 1), recorded(two.path(), 2)};
-  const auto page = file_spread(out.path() + "/seeds", "hover", all(runs));
+  const auto page = file_spread(out.path() + "/seeds", "hover", spread_of(all(runs)), all(runs));
   ASSERT_TRUE(page.ok()) << page.error().message();
   const auto html = read_whole_file(page.value());
   ASSERT_TRUE(html.ok());
