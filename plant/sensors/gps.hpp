@@ -1,11 +1,14 @@
 // A GPS receiver's fixes: few, late, with errors that wander.
 //
 //   Frame   W (the receiver's own datum is the protocol's matter)
-//   Method  every period a fix is taken; it comes out after the latency. Position error: exponentially
-//           correlated wander + white; velocity error white. Dropouts by window or by chance.
+//   Method  every period a fix is taken; it comes out after the latency. Position error: wander of second
+//           order + white; velocity error white. Dropouts by window or by chance.
 //   Level   2.12 m per axis: half of all fixes lie within 2.5 m (CEP = 1.1774 sigma), as data sheets of
 //           single-frequency receivers state. Down: 4.5 m, a VDOP of 1.5 times the HDOP. Velocity: 0.1 m/s
 //           for half of all fixes is 0.085 m/s per axis
+//   Rate    a receiver's own filter carries its place along by the Doppler shifts, so place and velocity
+//           agree: the wander's rate, 2 level / time = 0.071 m/s per axis, is of the velocity's error. Of
+//           first order it would leap by 0.17 m a fix, a velocity of 0.9 m/s that no receiver shows
 //   Error   CEP within 5 % over seeds (tests/slow_sensors_test.cpp)
 #pragma once
 #include <cstdint>
@@ -52,7 +55,7 @@ class Gps {
 
  private:
   GpsParams params_;
-  std::vector<GaussMarkov> wander_;
+  std::vector<SmoothWander> wander_;
   std::vector<RandomStream> white_, velocity_;
   RandomStream chance_;
   std::vector<Outage> outages_;

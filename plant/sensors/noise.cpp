@@ -1,5 +1,6 @@
 #include "plant/sensors/noise.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace whirl::plant {
@@ -28,6 +29,30 @@ double GaussMarkov::step(double dt_s) {
   if (deviation_ == 0.0) return 0.0;
   const double fade = std::exp(-dt_s / time_s_);
   value_ = fade * value_ + deviation_ * std::sqrt(1.0 - fade * fade) * stream_.normal();
+  return value_;
+}
+
+// Behind the first lag the variance is 2 deviation^2, behind the second deviation^2, which is the
+// covariance of the two as well.
+SmoothWander::SmoothWander(double deviation, double time_s, std::uint64_t seed,
+                           const std::string& name)
+    : deviation_(deviation), lag_s_(0.5 * time_s), stream_(seed, name) {
+  value_ = deviation_ * stream_.normal();
+  driver_ = value_ + deviation_ * stream_.normal();
+}
+
+double SmoothWander::step(double dt_s) {
+  if (deviation_ == 0.0) return 0.0;
+  const double d = dt_s / lag_s_, fade = std::exp(-d), fade2 = fade * fade;
+  // What the step adds: the stationary covariances less what is left of them.
+  const double driver_variance = 2.0 * (1.0 - fade2), shared = 1.0 - fade2 * (1.0 + 2.0 * d),
+               variance = 1.0 - fade2 * (1.0 + 2.0 * d * (1.0 + d));
+  if (!(driver_variance > 0.0)) return value_;
+  const double first = deviation_ * stream_.normal(), second = deviation_ * stream_.normal();
+  const double by_first = shared / std::sqrt(driver_variance);
+  value_ = fade * (value_ + d * driver_) + by_first * first +
+           std::sqrt(std::max(0.0, variance - by_first * by_first)) * second;
+  driver_ = fade * driver_ + std::sqrt(driver_variance) * first;
   return value_;
 }
 

@@ -36,6 +36,19 @@ class GaussMarkov {  // exponentially correlated, stationary from the start
   double value_;
 };
 
+// Of second order: two lags of time_s / 2 behind white noise, so its rate has a deviation too,
+// 2 deviation / time_s; stationary from the start. time_s is the integral of its autocorrelation.
+class SmoothWander {
+ public:
+  SmoothWander(double deviation, double time_s, std::uint64_t seed, const std::string& name);
+  double step(double dt_s);  // exact for any dt_s
+
+ private:
+  double deviation_, lag_s_;
+  RandomStream stream_;
+  double driver_, value_;  // behind the first lag and behind both
+};
+
 class Flicker {  // 1/f noise between about 0.3 mHz and 0.3 Hz, as Gauss-Markov terms by decades
  public:
   Flicker(double instability, std::uint64_t seed, const std::string& name);

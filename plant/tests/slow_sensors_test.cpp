@@ -127,7 +127,40 @@ TEST(Gps, PositionErrorWandersWithItsTimeConstant) {
   }
   const double n = static_cast<double>(x.size() - lag);
   EXPECT_TRUE(near(std::sqrt(variance / n), 1.0, stated(0.1, "1300 independent values")));
-  EXPECT_TRUE(near(at_one_time / variance, std::exp(-1.0), stated(0.06, "statistics")));
+  // (1 + 2) e^-2, of two lags of 30 s.
+  EXPECT_TRUE(near(at_one_time / variance, 3.0 * std::exp(-2.0), stated(0.06, "statistics")));
+}
+
+// A receiver's places and its velocities agree: from fix to fix the place moves as slowly as its velocity
+// is wrong, and the further apart two fixes are, the less do they know of each other.
+TEST(Gps, PositionErrorMovesNoFasterThanTheVelocityIsWrong) {
+  GpsParams p;
+  p.white_level_m = 0.0;
+  Gps gps(p, 5);
+  std::optional<double> last_m;
+  double squares = 0.0;
+  int moves = 0;
+  for (int k = 0; k < 200000; ++k) {
+    const auto fix = gps.step(k * 0.2, {});
+    if (!fix) continue;
+    const double x_m = fix->p_WB_W_m.x();
+    if (last_m) squares += std::pow((x_m - *last_m) / 0.2, 2), ++moves;
+    last_m = x_m;
+  }
+  EXPECT_TRUE(near(std::sqrt(squares / moves), 2.0 * 2.12 / 60.0, stated(0.007, "statistics")));
+  EXPECT_LT(std::sqrt(squares / moves), p.velocity_level_mps);
+}
+
+TEST(Gps, PositionErrorIsTheSameProcessHoweverSeldomItIsAsked) {
+  for (const double dt_s : {0.01, 5.0, 300.0}) {
+    SmoothWander wander(1.0, 60.0, 11, "wander");
+    const double most = std::min(1e6, 60.0 * 4000.0 / dt_s);
+    double squares = 0.0;
+    const int n = static_cast<int>(std::max(4000.0, most));
+    for (int k = 0; k < n; ++k) squares += std::pow(wander.step(dt_s), 2);
+    EXPECT_TRUE(near(std::sqrt(squares / n), 1.0, stated(0.15, "166 independent values at least")))
+        << dt_s;
+  }
 }
 
 // The data sheet: 50 % of the fixes within 2.5 m. One fix each of 4000 receivers, which are independent.
