@@ -4,9 +4,8 @@
 //             the end of each transfer, both may come from interrupts
 //   Output    the newest burst (acceleration, temperature, rate), as it came off the wire, with its
 //             time; decode() scales it. Axes of the sensor: the mounting belongs to the caller
-//   Settings  +-2000 deg/s, +-16 g, 188 Hz low-pass, 1 kHz; written, read back, and one of them
-//   read
-//             again after each sample while flying (at the slow clock: the part's limit is 1 MHz)
+//   Settings  +-2000 deg/s, +-16 g, 188 Hz low-pass, 1 kHz; written, read back, and one of
+//             them read again after each sample while flying (at the slow clock: the part's limit is 1 MHz)
 //   Silence   10 ms without a sample while running: it is set up anew, for a part that has lost its
 //             supply sleeps
 //   Source    RM-MPU-6000A-00 rev 4.2 register map; PS-MPU-6000A-00 rev 3.4 for timing and scales
@@ -117,7 +116,6 @@ class Mpu6000 {
   }};
   static constexpr std::uint8_t kExpectedId = 0x68;
   static constexpr std::uint8_t kRead = 0x80;
-  static constexpr std::uint32_t kCheckEvery = 10;  // all nine settings in 90 ms
   static constexpr unsigned kPowerUp_ms = 30, kSettle_ms = 100;
   static constexpr std::uint32_t kSilent_ms = 10;
 
@@ -158,7 +156,7 @@ class Mpu6000 {
   unsigned wait_ms_ = 0;
   unsigned next_ = 0;
   std::uint8_t answer_ = 0;
-  std::uint32_t reconfigured_ = 0, samples_ = 0;
+  std::uint32_t reconfigured_ = 0;
   std::uint32_t started_us_ = 0, burst_time_us_ = 0;
   ImuBurst burst_;
 };

@@ -58,19 +58,21 @@ constexpr std::uint32_t kGap_us = 12;       // STOP, and bus free time 1.3 us
 constexpr std::uint32_t kHalfClock_us = 5;  // 100 kHz while recovering
 constexpr std::uint8_t kRecoveryClocks = 9;
 
+// Of a timer that has run out: by OPM it has then stopped at 0. (One that still runs its gap goes on
+// from there, which ends the delay early by less than the gap.)
 template <typename T>
-void arm_timer(std::uint32_t delay_us) {
-  T::CR1::write(T::URS);
-  T::CNT::write(0);
+void start_timer(std::uint32_t delay_us) {
   T::ARR::write(delay_us - 1);
-  T::SR::write(0);
   T::CR1::write(T::URS | T::OPM | T::CEN);
 }
 
+// Of one that may still run.
 template <typename T>
-void stop_timer() {
+void restart_timer(std::uint32_t delay_us) {
   T::CR1::write(T::URS);
+  T::CNT::write(0);
   T::SR::write(0);
+  start_timer<T>(delay_us);
 }
 
 template <typename Bus>
@@ -79,17 +81,24 @@ void give_pins_to_block() {
   Bus::Sda::alternate(kAfI2c, true, Pull::up);
 }
 
+template <typename I2C>
+constexpr std::uint32_t kEvents = kPclk1_MHz | I2C::ITEVTEN | I2C::ITERREN;
+
 template <typename Bus>
-void receive_by_dma(std::span<const std::uint8_t> buffer, std::uint32_t length) {
+void receive_by_dma(std::uint32_t length) {
   using Dma = typename Bus::Dma;
   using I2C = typename Bus::Block;
   Dma::IFCR::write(Dma::all_flags);
-  Dma::PAR::write(I2C::DR::address);
-  Dma::M0AR::write(std::bit_cast<std::uint32_t>(buffer.data()));
   Dma::NDTR::write(length);
   Dma::CR::write(Dma::channel(Bus::kDmaChannel) | Dma::priority(1) | Dma::MINC | Dma::TCIE |
                  Dma::EN);
-  I2C::CR2::write(kPclk1_MHz | I2C::ITEVTEN | I2C::ITERREN | I2C::DMAEN | I2C::LAST);
+  I2C::CR2::write(kEvents<I2C> | I2C::DMAEN | I2C::LAST);
+}
+
+// ACK as it was; PE and it are all else that is up then.
+template <typename I2C>
+void stop_bus() {
+  I2C::CR1::write(I2C::PE | I2C::ACK | I2C::STOP);
 }
 
 }  // namespace
@@ -103,6 +112,8 @@ void I2cMaster<Bus>::init() {
   Timer::EGR::write(Timer::UG);
   Timer::SR::write(0);
   Timer::DIER::write(Timer::UIE);
+  Bus::Dma::PAR::write(Bus::Block::DR::address);
+  Bus::Dma::M0AR::write(std::bit_cast<std::uint32_t>(received_.data()));
   give_pins_to_block<Bus>();
   configure();
   Nvic<Bus::kTimer>::enable(kPriorityI2c);
@@ -145,9 +156,9 @@ void I2cMaster<Bus>::start_next() {
   state_ = State::running;
   sent_ = 0;
   I2C::SR1::write(0);
-  I2C::CR2::write(kPclk1_MHz | I2C::ITEVTEN | I2C::ITERREN);
+  I2C::CR2::write(kEvents<I2C>);
   I2C::CR1::write(I2C::PE | I2C::ACK | I2C::START);
-  arm_timer<typename Bus::Timer>(kTimeout_us);
+  start_timer<typename Bus::Timer>(kTimeout_us);
 }
 
 template <typename Bus>
@@ -162,11 +173,11 @@ void I2cMaster<Bus>::on_event() {
     begin_data();
   } else if (!job.read && sent_ == job.length && (flags & I2C::BTF) != 0) {
     I2C::CR2::write(kPclk1_MHz);  // BTF stays up until the STOP is out
-    I2C::CR1::set(I2C::STOP);
+    stop_bus<I2C>();
     finish(Status::ok);
   } else if (!job.read && sent_ < job.length && (flags & I2C::TXE) != 0) {
     I2C::DR::write(job.bytes[sent_++]);
-    if (sent_ == job.length) I2C::CR2::clear(I2C::ITBUFEN);
+    if (sent_ == job.length) I2C::CR2::write(kEvents<I2C>);
   }
 }
 
@@ -176,9 +187,9 @@ void I2cMaster<Bus>::begin_data() {
   using I2C = typename Bus::Block;
   const I2cJob& job = queue_[head_];
   if (job.read) {
-    receive_by_dma<Bus>(received_, job.length);
+    receive_by_dma<Bus>(job.length);
   } else {
-    I2C::CR2::set(I2C::ITBUFEN);
+    I2C::CR2::write(kEvents<I2C> | I2C::ITBUFEN);
   }
   static_cast<void>(I2C::SR2::read());
 }
@@ -190,7 +201,7 @@ void I2cMaster<Bus>::on_received() {
   Dma::IFCR::write(Dma::all_flags);
   if (state_ != State::running) return;
   I2C::CR2::write(kPclk1_MHz);
-  I2C::CR1::set(I2C::STOP);
+  stop_bus<I2C>();
   std::copy(received_.begin(), received_.end(), queue_[head_].bytes.begin());
   finish(Status::ok);
 }
@@ -207,7 +218,7 @@ void I2cMaster<Bus>::on_error() {
     return recover();
   }
   ++counters_.not_acknowledged;
-  I2C::CR1::set(I2C::STOP);
+  stop_bus<I2C>();
   retry_or_finish(Status::no_answer);
 }
 
@@ -217,7 +228,7 @@ void I2cMaster<Bus>::retry_or_finish(Status status) {
   if (job.retries == 0) return finish(status);
   --job.retries;
   state_ = State::gap;
-  arm_timer<typename Bus::Timer>(kGap_us);
+  restart_timer<typename Bus::Timer>(kGap_us);
 }
 
 template <typename Bus>
@@ -226,13 +237,13 @@ void I2cMaster<Bus>::finish(Status status) {
   head_ = (head_ + 1) % kQueue;
   --count_;
   state_ = State::gap;
-  arm_timer<typename Bus::Timer>(kGap_us);
+  restart_timer<typename Bus::Timer>(kGap_us);
   Bus::done(done, status);
 }
 
 template <typename Bus>
 void I2cMaster<Bus>::on_timer() {
-  stop_timer<typename Bus::Timer>();
+  Bus::Timer::SR::write(0);
   switch (state_) {
     case State::idle:
       return;
@@ -259,13 +270,13 @@ void I2cMaster<Bus>::recover() {
   Dma::CR::write(0);
   Bus::Scl::output(true, true);
   Bus::Sda::output(true, true);
-  arm_timer<typename Bus::Timer>(kHalfClock_us);
+  restart_timer<typename Bus::Timer>(kHalfClock_us);
 }
 
 template <typename Bus>
 void I2cMaster<Bus>::recovery_step() {
   constexpr std::uint8_t kStopFrom = 2 * kRecoveryClocks;
-  arm_timer<typename Bus::Timer>(kHalfClock_us);
+  restart_timer<typename Bus::Timer>(kHalfClock_us);
   if (step_ < kStopFrom && step_ % 2 == 0 && Bus::Sda::level()) step_ = kStopFrom;
   switch (step_) {
     case kStopFrom:

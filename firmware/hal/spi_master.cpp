@@ -55,6 +55,14 @@ constinit SpiMaster<ImuBus> spi1;
 constinit SpiMaster<CardBus> spi3;
 constinit ImuLink imu_link;
 
+namespace {
+
+template <typename Bus>
+constexpr std::uint32_t kControl =
+    Bus::Block::SSM | Bus::Block::SSI | Bus::Block::MSTR | Bus::kMode;
+
+}  // namespace
+
 template <typename Bus>
 void SpiMaster<Bus>::init() {
   using Block = typename Bus::Block;
@@ -63,7 +71,7 @@ void SpiMaster<Bus>::init() {
   Bus::Sck::alternate(Bus::kAlternate, false, Pull::none);
   Bus::Miso::alternate(Bus::kAlternate, false, Bus::kMisoPull);
   Bus::Mosi::alternate(Bus::kAlternate, false, Pull::none);
-  Block::CR1::write(Block::SSM | Block::SSI | Block::MSTR | Bus::kMode | Bus::kSlow);
+  Block::CR1::write(kControl<Bus> | Bus::kSlow);
   Block::CR2::write(Block::RXDMAEN | Block::TXDMAEN);
   Bus::RxDma::PAR::write(Block::DR::address);
   Bus::TxDma::PAR::write(Block::DR::address);
@@ -75,8 +83,21 @@ void SpiMaster<Bus>::select(bool on) {
 }
 
 template <typename Bus>
-bool SpiMaster<Bus>::done() const {
-  return !Bus::RxDma::CR::has(Bus::RxDma::EN);  // cleared by the hardware with the last byte
+bool SpiMaster<Bus>::done() {
+  const bool over = running_ && !Bus::RxDma::CR::has(Bus::RxDma::EN);  // off with the last byte
+  if (over) finish();
+  return !running_;
+}
+
+// A stream whose flags are up must not start: they go down here. One write where both share a register.
+template <typename Bus>
+void SpiMaster<Bus>::finish() {
+  using Rx = typename Bus::RxDma;
+  using Tx = typename Bus::TxDma;
+  constexpr bool kShared = Rx::IFCR::address == Tx::IFCR::address;
+  Rx::IFCR::write(Rx::all_flags | (kShared ? Tx::all_flags : 0));
+  if constexpr (!kShared) Tx::IFCR::write(Tx::all_flags);
+  running_ = false;
 }
 
 template <typename Bus>
@@ -85,11 +106,14 @@ Status SpiMaster<Bus>::start(std::span<std::uint8_t> bytes, bool fast) {
   using Rx = typename Bus::RxDma;
   using Tx = typename Bus::TxDma;
   if (!done()) return Status::busy;
-  Block::CR1::replace(Block::BR_Msk | Block::SPE, fast ? Bus::kFast : Bus::kSlow);
-  Rx::IFCR::write(Rx::all_flags);
-  Tx::IFCR::write(Tx::all_flags);
-  Rx::M0AR::write(std::bit_cast<std::uint32_t>(bytes.data()));
-  Tx::M0AR::write(std::bit_cast<std::uint32_t>(bytes.data()));
+  running_ = true;
+  const std::uint32_t control = kControl<Bus> | (fast ? Bus::kFast : Bus::kSlow);
+  Block::CR1::write(control);  // off while the clock changes
+  if (bytes.data() != memory_) {
+    memory_ = bytes.data();
+    Rx::M0AR::write(std::bit_cast<std::uint32_t>(memory_));
+    Tx::M0AR::write(std::bit_cast<std::uint32_t>(memory_));
+  }
   Rx::NDTR::write(bytes.size());
   Tx::NDTR::write(bytes.size());
   Rx::CR::write(Rx::channel(Bus::kDmaChannel) | Rx::priority(Bus::kRxPriority) | Rx::MINC |
@@ -97,7 +121,7 @@ Status SpiMaster<Bus>::start(std::span<std::uint8_t> bytes, bool fast) {
   Tx::CR::write(Tx::channel(Bus::kDmaChannel) | Tx::priority(Bus::kTxPriority) | Tx::MINC |
                 Tx::DIR_M2P | Tx::EN);
   __asm volatile("dsb" ::: "memory");  // the buffer is in memory before the first byte leaves it
-  Block::CR1::set(Block::SPE);
+  Block::CR1::write(control | Block::SPE);
   return Status::ok;
 }
 
@@ -137,6 +161,7 @@ Status ImuLink::start(std::span<const std::uint8_t> out, bool fast) {
 }
 
 void ImuLink::finish() {
+  spi1.finish();
   spi1.select(false);
   running_ = false;
 }
@@ -144,7 +169,6 @@ void ImuLink::finish() {
 }  // namespace fw::hal
 
 extern "C" void dma2_stream0_handler() {
-  fw::hw::Spi1RxDma::IFCR::write(fw::hw::Spi1RxDma::all_flags);
   fw::hal::imu_link.finish();
   fw::imu_transfer_done();
 }

@@ -22,7 +22,12 @@ class SpiMaster {
   void init();
   void select(bool on);                                    // chip select; true: low
   Status start(std::span<std::uint8_t> bytes, bool fast);  // busy: one is running
-  bool done() const;
+  bool done();
+  void finish();  // from the interrupt at the end, of a bus that has one
+
+ private:
+  const std::uint8_t* memory_ = nullptr;  // where the streams exchange
+  volatile bool running_ = false;
 };
 
 struct ImuBus;
