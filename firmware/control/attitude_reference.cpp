@@ -53,6 +53,7 @@ void AttitudeReference::Angle::step(float demand_rad) {
 
 void AttitudeReference::start(const Quaternion& q_WB) {
   const AttitudeDemand there = demand_of(q_WB, 0.0f);
+  demand_ = there;
   roll_.start(there.roll_rad);
   pitch_.start(there.pitch_rad);
   yaw_rad_ = *there.yaw_rad;
@@ -61,12 +62,13 @@ void AttitudeReference::start(const Quaternion& q_WB) {
   points_.fill({.q_WB = from_euler(roll_.rad, pitch_.rad, yaw_rad_)});
 }
 
-void AttitudeReference::step(const AttitudeDemand& demand) {
-  roll_.step(demand.roll_rad);
-  pitch_.step(demand.pitch_rad);
-  const float back = demand.yaw_rad ? kHeading_ps * wrap_pi(*demand.yaw_rad - yaw_rad_) : 0.0f;
+void AttitudeReference::step(const AttitudeDemand& demand, bool takes_it) {
+  if (takes_it) demand_ = demand;
+  roll_.step(demand_.roll_rad);
+  pitch_.step(demand_.pitch_rad);
+  const float back = demand_.yaw_rad ? kHeading_ps * wrap_pi(*demand_.yaw_rad - yaw_rad_) : 0.0f;
   const float yaw_rate =
-      std::clamp(demand.yaw_rate_radps + back, -kYawRateLimit_radps, kYawRateLimit_radps);
+      std::clamp(demand_.yaw_rate_radps + back, -kYawRateLimit_radps, kYawRateLimit_radps);
   limited_yaw_rate_radps_ =
       towards(limited_yaw_rate_radps_, yaw_rate, kYawAcceleration_radps2 * kStep_s);
   const Vector3 rates(roll_.rate_radps, pitch_.rate_radps,

@@ -51,7 +51,9 @@ class AttitudeReference {
   static constexpr float kYawRateLimit_radps = 120.0f * kPi / 180.0f;
 
   void start(const Quaternion& q_WB);  // at rest there
-  void step(const AttitudeDemand& demand);
+  // takes_it: else what it was told before goes on. Taken always at the same step of a hold, a demand has
+  // the same shape for the rotors whenever it comes.
+  void step(const AttitudeDemand& demand, bool takes_it);
 
   // For the attitude controller; its thrust and velocity are left as they are.
   void put(ThrustAndAttitude& wanted) const;
@@ -75,6 +77,7 @@ class AttitudeReference {
     void step(float demand_rad);
   };
 
+  AttitudeDemand demand_;
   Angle roll_, pitch_;
   float yaw_rad_ = 0.0f, limited_yaw_rate_radps_ = 0.0f;
   MovingMean<kSecond> mean_yaw_rate_;

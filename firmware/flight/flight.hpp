@@ -182,6 +182,7 @@ class Flight {
   TrajectoryPoint point_;
   Vector3 jerk_W_mps3_ = Vector3::Zero(), target_v_W_mps_ = Vector3::Zero();
   AttitudeDemand attitude_;
+  unsigned hold_steps_ = 0;  // attitude steps since set-points went out
   float thrust_share_ = 0.0f;
   std::uint32_t target_age_ms_ = kNever;
   std::uint32_t link_age_ms_ = kNever;

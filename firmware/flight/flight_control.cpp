@@ -8,7 +8,11 @@ namespace {
 using schedule::kAttitudeStep_s, schedule::kPositionStep_s;
 constexpr float kLiftTime_s = 0.8f, kAirborne_m = 0.06f;
 constexpr float kTargetDelay_s = 0.014f;  // 65 bytes at 57600 baud, and half a poll
-constexpr std::uint16_t kIdle = 1;        // the lowest set-point that turns a rotor
+// Of the four attitude steps from set-point to set-point: the one by which the steepest pieces of a step fall
+// into holds such that the rotors can follow (10 to 90 % of 20 degrees in 90 ms with 2 % of overshoot; taken at
+// the others 84 to 106 ms, and up to 17 %).
+constexpr unsigned kDemandTaken = 1;
+constexpr std::uint16_t kIdle = 1;  // the lowest set-point that turns a rotor
 
 }  // namespace
 
@@ -115,12 +119,13 @@ void Flight::detect_touchdown() {
 
 std::array<std::uint16_t, 4> Flight::send_setpoints() {
   rotors_.sent(setpoints_N_);
+  hold_steps_ = 0;
   return setpoints_;
 }
 
 void Flight::follow_attitude() {
   if (aim_ != Aim::attitude || state_ != FlightState::flying) return;
-  attitude_reference_.step(attitude_);
+  attitude_reference_.step(attitude_, hold_steps_ == kDemandTaken);
   attitude_reference_.put(wanted_);
   wanted_.thrust_N = collective_N(thrust_share_, position_control_.hover_thrust_N());
   wanted_.v_B_mps = wanted_.q_WB.conjugate() * estimator_.v_WB_W_mps();
@@ -134,6 +139,7 @@ void Flight::run_motor_to_calibrate() {
 
 void Flight::control() {
   follow_attitude();
+  ++hold_steps_;
   motors_.ask(state_ != FlightState::disarmed);
   if (!in_air()) {
     setpoints_.fill(state_ == FlightState::armed ? kIdle : 0);

@@ -23,7 +23,7 @@ TEST(AttitudeReference, AStepIsAnSThatEndsWhereItWasAskedWithin250ms) {
   float last = 0.0f, last_alpha = 0.0f, largest_change = 0.0f, t10 = 0.0f, t90 = 0.0f;
   ThrustAndAttitude wanted;
   for (int i = 1; i <= 50; ++i) {
-    reference.step({.roll_rad = 20.0f * kDegree});
+    reference.step({.roll_rad = 20.0f * kDegree}, true);
     const float rate_before = wanted.w_B_radps.x();
     reference.put(wanted);
     const float roll = roll_of(wanted.q_WB);
@@ -49,7 +49,7 @@ TEST(AttitudeReference, TheHeldAccelerationsIntegrateToTheProfile) {
   ThrustAndAttitude wanted;
   float held = 0.0f, rate = 0.0f, roll = 0.0f, worst = 0.0f;
   for (int i = 0; i < 60; ++i) {
-    reference.step({.roll_rad = 10.0f * kDegree});
+    reference.step({.roll_rad = 10.0f * kDegree}, true);
     reference.put(wanted);
     worst = std::max(worst, std::abs(roll - roll_of(wanted.q_WB)));
     if (i % 4 == 0) held = wanted.w_dot_B_radps2.x();
@@ -61,13 +61,27 @@ TEST(AttitudeReference, TheHeldAccelerationsIntegrateToTheProfile) {
   EXPECT_LT(worst, 1.5f * kDegree);
 }
 
+TEST(AttitudeReference, ADemandWaitsUntilItIsTaken) {
+  AttitudeReference reference;
+  reference.start(Quaternion::Identity());
+  ThrustAndAttitude wanted;
+  for (int i = 0; i < 100; ++i) reference.step({.roll_rad = 20.0f * kDegree}, false);
+  reference.put(wanted);
+  EXPECT_TRUE(near(wanted.q_WB.w(), 1.0, stated(1e-6, "single floats")));
+  reference.step({.roll_rad = 20.0f * kDegree}, true);
+  for (int i = 0; i < 100; ++i) reference.step({}, false);
+  reference.put(wanted);
+  EXPECT_TRUE(
+      near(2.0 * std::asin(wanted.q_WB.x()), 20.0 * kDegree, stated(1e-4, "single floats")));
+}
+
 TEST(AttitudeReference, StaysWithinItsLimits) {
   AttitudeReference reference;
   reference.start(Quaternion::Identity());
   ThrustAndAttitude wanted;
   float fastest_yaw = 0.0f;
   for (int i = 0; i < 400; ++i) {
-    reference.step({.roll_rad = 3.0f, .yaw_rate_radps = 10.0f});
+    reference.step({.roll_rad = 3.0f, .yaw_rate_radps = 10.0f}, true);
     reference.put(wanted);
     fastest_yaw = std::max(fastest_yaw, wanted.w_B_radps.norm());
   }
@@ -80,7 +94,7 @@ TEST(AttitudeReference, StaysWithinItsLimits) {
 TEST(AttitudeReference, TurnsToTheHeadingThatIsAskedForAndStays) {
   AttitudeReference reference;
   reference.start(from_euler(0.0f, 0.0f, 3.0f));
-  for (int i = 0; i < 1000; ++i) reference.step({.yaw_rad = -3.0f});
+  for (int i = 0; i < 1000; ++i) reference.step({.yaw_rad = -3.0f}, true);
   EXPECT_TRUE(near(wrap_pi(reference.yaw_rad() + 3.0f), 0.0, stated(0.01, "5 s of exp(-1.5 t)")));
 }
 

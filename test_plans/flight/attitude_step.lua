@@ -22,7 +22,7 @@ plan "attitude_step" {
         local rise = angle > 0 and r:rise_time(axis) or r:fall_time(axis)
         t:expect(rise, name .. ": 10 to 90 %"):at_most "100 ms"
         t:expect(r:response_time(axis), name .. ": command on the wire to 90 %"):at_most "250 ms"
-        t:expect(r:overshoot(axis), name .. ": overshoot"):at_most "20 %"  -- by the command's phase in the set-points' 20 ms
+        t:expect(r:overshoot(axis), name .. ": overshoot"):at_most "10 %"
         local band = string.format("%g deg", math.abs(angle) / 10)
         t:expect(r:settled(band, { [axis] = angle .. " deg" }), name .. ": within " .. band):at_most "400 ms"
         t:expect(r:max_error { height = "1.1 m" }, name .. ": height"):at_most "40 cm"
