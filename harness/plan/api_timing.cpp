@@ -5,6 +5,7 @@
 
 #include "harness/metrics/timing.hpp"
 #include "harness/plan/budget_shares.hpp"
+#include "harness/plan/budget_stack.hpp"
 #include "harness/plan/needs.hpp"
 #include "harness/plan/raise.hpp"
 #include "harness/plan/values.hpp"
@@ -144,15 +145,9 @@ void judge_calls(Script& self, const Budget& b, std::int64_t from, std::int64_t 
     judge_code_time(self, deviations(entries, from, to, b.period->value_SI), b, *b.jitter,
                     "period jitter", to);
   }
-  if (b.execution) {
-    judge_code_time(self, execution, b, *b.execution, "execution time", to);
-  }
-  if (b.response) {
-    judge_code_time(self, response, b, *b.response, "response time", to);
-  }
-  if (b.latency) {
-    judge_code_time(self, latency, b, *b.latency, "interrupt latency", to);
-  }
+  if (b.execution) judge_code_time(self, execution, b, *b.execution, "execution time", to);
+  if (b.response) judge_code_time(self, response, b, *b.response, "response time", to);
+  if (b.latency) judge_code_time(self, latency, b, *b.latency, "interrupt latency", to);
 }
 
 void judge_busy(Script& self, const Budget& b, std::int64_t from, std::int64_t to) {
@@ -179,25 +174,31 @@ int read_budget(lua_State* L) {
   b.margin = given.quantity_or("margin", Dimension::ratio, 0.0, lua::between(0.0, 0.9));
   const NodePlace at = node_at(L, self, b.function);
   b.shares = read_budget_shares(given, self.stage().nodes[at.node].board);
+  const StackBudget stack = read_stack_budget(given, at.node, b.function, b.place);
   const std::int64_t end = window_end(self, given);
   check_finish(L, given);
   const bool calls = b.shares.asked() || b.jitter || b.execution || b.response || b.latency;
   if (b.period.has_value() != b.jitter.has_value()) raise(L, "period and jitter go together");
-  if (!calls && !b.busy)
+  if (!calls && !b.busy && !stack.depth)
     raise(L, "a budget of nothing",
-          "give jitter, execution, response, latency, share, rate or busy");
+          "give jitter, execution, response, latency, share, rate, busy or depth");
   b.node = at.node;
   b.number = self.stage().nodes[at.node].board.watch_number(at.rest);
   if (b.busy && at.rest != "cpu") {
     raise(L, "busy is of the core, not of '" + at.rest + "'", "t:budget(\"cpu\") { busy = ... }");
   }
+  if (stack.depth && at.rest != "stack") {
+    raise(L, "depth is of the stack, not of '" + at.rest + "'",
+          "t:budget(\"stack\") { depth = ... }");
+  }
   if (calls && b.number < 0) {
     raise(L, "'" + b.function + "' is not watched",
           "add it to the watch list of the plan or board");
   }
-  self.add_window(end, [b, calls](Script& script, std::int64_t from, std::int64_t to) {
+  self.add_window(end, [b, calls, stack](Script& script, std::int64_t from, std::int64_t to) {
     if (calls) judge_calls(script, b, from, to);
     if (b.busy) judge_busy(script, b, from, to);
+    if (stack.depth) judge_stack(script, stack, to);
     const BudgetWindow window{b.function, b.place, b.node, b.number, from, to};
     if (b.shares.asked()) judge_budget_shares(script, b.shares, window);
   });
@@ -205,7 +206,7 @@ int read_budget(lua_State* L) {
 }
 
 int budget(lua_State* L) {
-  check_text(L, 2, "a function's name, or \"cpu\"");
+  check_text(L, 2, "a function's name, \"cpu\" or \"stack\"");
   lua_pushvalue(L, 2);
   lua_pushcclosure(L, read_budget, 1);
   return 1;

@@ -7,7 +7,7 @@ namespace whirl {
 
 enum class Offer : std::uint8_t {
   virtual_time = 1,  // it waits for the harness, whatever that does; digests repeat
-  watches = 2,       // functions and the core's load are timed
+  watches = 2,       // functions and the core's load are timed, the depth of stacks is told
   wire_faults = 4,   // buses and devices can be spoilt
   bus_log = 8,       // each transaction is told, with its times
 };
@@ -36,7 +36,7 @@ inline const char* name(Offer offer) {
     case Offer::virtual_time:
       return "virtual time";
     case Offer::watches:
-      return "watches of functions and of the core's load";
+      return "watches of functions, of stacks and of the core's load";
     case Offer::wire_faults:
       return "faults on wires and devices";
     case Offer::bus_log:

@@ -31,6 +31,7 @@ plan "budgets" {
     t:budget("fw::Estimator::step_aided") { execution = "19.5 us", share = "0.386 %", during = "5 s" } -- 15.0 us, 0.297 %
     t:budget("fw::Estimator::step_explicit") { execution = "4.6 us", share = "0.091 %", during = "5 s" } -- 3.54 us, 0.0698 %
     t:budget("cpu") { busy = "6.4 %", during = "5 s" } -- 4.93 %
+    t:budget("stack") { depth = "3772 B" } -- 2902 B, on each seed; 16 KiB are set aside for it
     local hover = t:record({ "height", "offset" }, "5.1 s")
     t:expect(hover:rms_error("height", "1.1 m"), "hover: height RMS error"):at_most "5 cm"
   end,

@@ -78,6 +78,49 @@ TEST(Judging, ALimitThatIsMetByLessThanTheClockIsAccurateIsMarginal) {
   EXPECT_EQ(judged("execution = '106 us', margin = '10 %'").verdict, results::Verdict::pass);
 }
 
+// A board that ends with these words.
+results::Expectation stack(const std::string& budget, const std::string& words) {
+  Scenario s = playing("t:budget 'stack' { " + budget + " } t:wait '20 ms'");
+  s.last_words = [words](io::Batch& rest) {
+    rest.add(io::Kind::statistics, 0, 20 * kMs, words.data(),
+             static_cast<std::uint32_t>(words.size()));
+  };
+  return only(s);
+}
+
+constexpr const char* kStacks = R"({"stack_used_bytes": 1536, "task_stacks": [
+    {"stack": "idle_stack", "top": "0x1", "used_bytes": 64}]})";
+
+TEST(Judging, AStackIsHeldToItsDepthAndToTheMarginThatIsAsked) {
+  const auto at_limit = stack("depth = '1.5 KiB'", kStacks);
+  EXPECT_EQ(at_limit.verdict, results::Verdict::pass);
+  EXPECT_EQ(at_limit.name, "stack depth");
+  EXPECT_EQ(at_limit.measured, 1.5);
+  EXPECT_EQ(at_limit.note, "1536 B; 0 % of the limit left");
+  EXPECT_EQ(stack("depth = '1535 B'", kStacks).verdict, results::Verdict::fail);
+  EXPECT_EQ(stack("depth = '2 KiB', margin = '25 %'", kStacks).verdict, results::Verdict::pass);
+  EXPECT_EQ(stack("depth = '2 KiB', margin = '26 %'", kStacks).verdict, results::Verdict::fail);
+}
+
+TEST(Judging, ATasksStackIsNamedByItsArray) {
+  const auto idle = stack("depth = '64 B', of = 'idle_stack'", kStacks);
+  EXPECT_EQ(idle.verdict, results::Verdict::pass);
+  EXPECT_EQ(idle.name, "stack of idle_stack depth");
+  EXPECT_EQ(stack("depth = '63 B', of = 'idle_stack'", kStacks).verdict, results::Verdict::fail);
+}
+
+TEST(Judging, AStackThatNoBoardToldOfIsNeverAPass) {
+  for (const char* words : {"", "[]", "{}", R"({"stack_used_bytes": 0})",
+                            R"({"stack_used_bytes": "9"})", R"({"stack_used_bytes": -1})"}) {
+    const auto unknown = stack("depth = '1 MiB'", words);
+    EXPECT_EQ(unknown.verdict, results::Verdict::fail) << words;
+    EXPECT_NE(unknown.note.find("the board did not tell"), std::string::npos) << unknown.note;
+  }
+  const auto nobody = stack("depth = '1 MiB', of = 'x'", kStacks);
+  EXPECT_EQ(nobody.verdict, results::Verdict::fail);
+  EXPECT_EQ(nobody.note, "no task was seen to run on a stack 'x'");
+}
+
 TEST(Judging, AnAnswerThatComesAtTheLimitIsInTime) {
   for (int limit : {43, 55, 60}) {
     Scenario s = playing("t:wait '65 ms' t:ask('hello', nil, '" + std::to_string(limit) +
