@@ -75,6 +75,51 @@ TEST(AttitudeReference, ADemandWaitsUntilItIsTaken) {
       near(2.0 * std::asin(wanted.q_WB.x()), 20.0 * kDegree, stated(1e-4, "single floats")));
 }
 
+// The same about the vertical: the rate that the held accelerations add up to is the one that was
+// asked for, and so is the heading.
+TEST(AttitudeReference, TheHeldAccelerationsOfAYawIntegrateToTheProfile) {
+  AttitudeReference reference;
+  reference.start(Quaternion::Identity());
+  ThrustAndAttitude wanted;
+  float held = 0.0f, rate = 0.0f, yaw = 0.0f, worst = 0.0f, worst_rate = 0.0f;
+  for (int i = 0; i < 400; ++i) {
+    reference.step({.yaw_rate_radps = i < 200 ? 1.0f : 0.0f}, true);
+    reference.put(wanted);
+    worst = std::max(worst, std::abs(wrap_pi(yaw - yaw_of(wanted.q_WB))));
+    worst_rate = std::max(worst_rate, std::abs(rate - wanted.w_B_radps.z()));
+    if (i % 4 == 0) held = wanted.w_dot_B_radps2.z();
+    yaw += kStep_s * (rate + 0.5f * kStep_s * held);
+    rate += kStep_s * held;
+    if (i != 199) continue;
+    EXPECT_TRUE(near(rate, 1.0, stated(0.01, "1 % of the rate")));
+  }
+  EXPECT_TRUE(near(rate, 0.0, stated(0.01, "1 % of the rate")));
+  // On and off for the same time: a second at 1 rad/s, whatever the ramps.
+  EXPECT_TRUE(near(yaw, 1.0, stated(0.02, "2 %: steps of a hold")));
+  EXPECT_LT(worst, 1.5f * kDegree);
+  EXPECT_LT(worst_rate, 0.06f);  // a hold of 20 ms at 2.5 rad/s2
+}
+
+// Four rotors of 2.2 N in hover, each 0.8 N at least: two that go down to that while the other two rise by the
+// same make 4 x 1.4 N times 0.0175 m, 0.098 N m about the vertical. No more may be asked for, and not much less:
+// a heading that takes twice as long as the rotors could is not flown well either.
+TEST(AttitudeReference, AYawAsksForTheTorqueThatTheRotorsHaveAndUsesHalfOfIt) {
+  const double most_Nm = 4.0 * (2.2 - 0.8) * 0.0175, inertia_kgm2 = 0.0235;
+  AttitudeReference reference;
+  reference.start(Quaternion::Identity());
+  ThrustAndAttitude wanted;
+  double largest_Nm = 0.0;
+  for (int i = 0; i < 300; ++i) {
+    reference.step({.yaw_rate_radps = 2.0f}, true);
+    reference.put(wanted);
+    largest_Nm = std::max(largest_Nm,
+                          inertia_kgm2 * std::abs(static_cast<double>(wanted.w_dot_B_radps2.z())));
+  }
+  EXPECT_LT(largest_Nm, most_Nm);
+  EXPECT_GT(largest_Nm, 0.5 * most_Nm);
+  EXPECT_TRUE(near(wanted.w_B_radps.z(), 2.0, stated(1e-3, "float round-off")));
+}
+
 TEST(AttitudeReference, StaysWithinItsLimits) {
   AttitudeReference reference;
   reference.start(Quaternion::Identity());

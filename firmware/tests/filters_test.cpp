@@ -165,6 +165,34 @@ TEST(CoupledFilters, FindTheWindAndFollowItsChange) {
   EXPECT_LT((inertial.wind_W_mps() - m.wind_W.cast<float>()).head<2>().norm(), 0.3f);
 }
 
+// Each filter alone with what the other knows: no fix, no field, no drag of its own, level and at rest. Half a
+// minute, or a minute for the bias, is enough for all but a tenth of what it is off.
+TEST(CoupledFilters, Filter1IsDrawnToWhatFilter2Knows) {
+  const Vector3 bias(0.1f, -0.08f, 0.0f), v(1.5f, -0.8f, 0.0f);
+  const Quaternion heading = from_euler(0.0f, 0.0f, 0.5f);
+  BodyFilter filter;
+  for (int i = 0; i < 200 * 60; ++i) {
+    filter.step(Vector3::Zero(), bias - kG * Vector3::UnitZ(), filter.v_AB_B_mps(),
+                {true, heading, heading * v, bias}, kStep_s);
+  }
+  EXPECT_LT(apart_rad(filter.q_WB(), heading), 0.1 * 0.5);
+  EXPECT_LT((filter.v_AB_B_mps() - v).norm(), 0.1f * v.norm());
+  EXPECT_LT((filter.accel_bias_B_mps2() - bias).norm(), 0.1f * bias.norm());
+}
+
+TEST(CoupledFilters, Filter2IsDrawnToWhatFilter1Knows) {
+  const Vector3 bias(0.1f, -0.08f, 0.0f), v(1.5f, -0.8f, 0.0f);
+  const Quaternion heading = from_euler(0.0f, 0.0f, 0.5f);
+  InertialFilter filter;
+  for (int i = 0; i < 200 * 60; ++i) {
+    filter.predict(Vector3::Zero(), bias - kG * Vector3::UnitZ(), {heading, v, bias, true},
+                   kStep_s);
+  }
+  EXPECT_LT(apart_rad(filter.q_WB(), heading), 0.1 * 0.5);
+  EXPECT_LT((filter.v_WB_W_mps() - v).norm(), 0.1f * v.norm());
+  EXPECT_LT((filter.accel_bias_B_mps2() - bias).norm(), 0.1f * bias.norm());
+}
+
 TEST(InertialFilter, ComparesALateFixWithWhatItHadThen) {
   Motion m;
   InertialFilter prompt, late;
@@ -257,6 +285,27 @@ TEST(DesiredAttitude, ItsRateIsThatOfTheAttitudeAlongTheTrajectory) {
         (wanted(t + dt / 2).w_B_radps - wanted(t - dt / 2).w_B_radps) / static_cast<float>(dt);
     EXPECT_TRUE(near(now.w_dot_B_radps2.x(), change.x(), stated(0.03, "w x w, of 2nd order")));
     EXPECT_TRUE(near(now.w_dot_B_radps2.y(), change.y(), stated(0.03, "w x w, of 2nd order")));
+  }
+}
+
+// 22 degrees are asked of it. What is left of a force that leans further points where that did, and the thrust
+// is the one whose part along the vertical still carries the weight.
+TEST(DesiredAttitude, AtTheLimitOfTiltItStillCarriesTheWeightAndPointsTheSameWay) {
+  const ThrustAndAttitude level = resolve({{0, 0, kG}}, Quaternion::Identity(), 0.0f);
+  for (const double azimuth : {0.4, 1.9, -2.6}) {
+    const Vector3 along(static_cast<float>(std::cos(azimuth)),
+                        static_cast<float>(std::sin(azimuth)), 0.0f);
+    for (const float sideways : {3.0f, 5.0f, 10.0f, 100.0f}) {
+      const WantedForce force{.f_W_mps2 = sideways * along + kG * Vector3::UnitZ()};
+      const Quaternion q_WB = resolve(force, Quaternion::Identity(), 0.3f).q_WB;
+      const Vector3 down_W = q_WB * Vector3::UnitZ();
+      const double tilt = std::acos(down_W.z()), free = std::atan2(sideways, kG);
+      EXPECT_TRUE(
+          near(tilt, std::min(free, 22.0 * kDegree), stated(0.3 * kDegree, "of 22 degrees")));
+      EXPECT_TRUE(near(std::atan2(down_W.y(), down_W.x()), azimuth, stated(1e-3, "float")));
+      const float thrust_N = resolve(force, q_WB, 0.3f).thrust_N;
+      EXPECT_TRUE(near(thrust_N * down_W.z(), level.thrust_N, stated(1e-3, "float")));
+    }
   }
 }
 
