@@ -36,6 +36,7 @@ enum class Dimension {
   power,
   energy,
   temperature,
+  temperature_gradient,  // over height
   density,
   data,
   baud,

@@ -42,6 +42,8 @@ Result<Done> validate(const VehicleParams& params, const std::string& place) {
   b.within("avionics_current_A", params.avionics_current_A, 0.0, 50.0);
   b.within("ground_height_m", params.air.ground_height_m, -500.0, 9000.0);
   b.within("ground_temperature_offset_K", params.air.ground_temperature_offset_K, -80.0, 60.0);
+  b.within("temperature_gradient_Kpm", params.air.temperature_gradient_Kpm.value_or(0.0), -0.2,
+           0.2);
   b.within("wind_at_6m_mps", params.air.dryden.wind_at_6m_mps, 0.0, 40.0);
   b.within("steady_wind_W_mps", params.air.steady_wind_W_mps.norm(), 0.0, 60.0);
   return b.result();

@@ -104,6 +104,10 @@ void read_air(const Table& t, plant::AirParams& air) {
   air.dryden.wind_at_6m_mps =
       t.quantity_or("turbulence", Dimension::speed, 0.0, between(0.0, 50.0));
   air.ground_height_m = t.quantity_or("above_sea", Dimension::length, 0.0, between(-500.0, 9000.0));
+  if (t.has("temperature_gradient")) {
+    air.temperature_gradient_Kpm =
+        t.quantity("temperature_gradient", Dimension::temperature_gradient, between(-0.2, 0.2));
+  }
   if (!t.has("temperature")) return;
   const double standard_K = plant::standard_atmosphere(air.ground_height_m).temperature_K;
   const double wanted_K =

@@ -69,8 +69,11 @@ Vector3d Air::wind_W_mps(const Vector3d& p_W_m) const {
 }
 
 Atmosphere Air::at(const Vector3d& p_W_m) const {
-  return standard_atmosphere(params_.ground_height_m - p_W_m.z(),
-                             params_.ground_temperature_offset_K);
+  const double warmer_K = params_.ground_temperature_offset_K;
+  if (!params_.temperature_gradient_Kpm)
+    return standard_atmosphere(params_.ground_height_m - p_W_m.z(), warmer_K);
+  const Atmosphere ground = standard_atmosphere(params_.ground_height_m, warmer_K);
+  return layered_atmosphere(ground, *params_.temperature_gradient_Kpm, -p_W_m.z());
 }
 
 }  // namespace whirl::plant

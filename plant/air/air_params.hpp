@@ -3,6 +3,7 @@
 //   Frame   W. Wind is the velocity of the air: (0, 2, 0) blows towards the east.
 #pragma once
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 namespace whirl::plant {
@@ -27,6 +28,7 @@ struct DrydenParams {  // MIL-F-8785C, low altitude; strength by the wind at 6 m
 struct AirParams {
   double ground_temperature_offset_K = 0.0;                     // from the standard atmosphere
   double ground_height_m = 0.0;                                 // of W's origin above sea level
+  std::optional<double> temperature_gradient_Kpm;               // upwards; none: the standard's
   Eigen::Vector3d steady_wind_W_mps = Eigen::Vector3d::Zero();  // at shear_height_m and above
   double shear_height_m = 0.0;  // logarithmic profile below it; 0: no shear
   double roughness_length_m = 0.03;

@@ -112,6 +112,12 @@ TEST(Surroundings, FieldAndAirAreThoseOfThePlace) {
            308.15, round_off(4, 308.0)));
 }
 
+TEST(Surroundings, AirMayGrowWarmerUpwards) {
+  EXPECT_FALSE(sound("air = { temperature = '5 degC' }").vehicle.air.temperature_gradient_Kpm);
+  const auto p = sound("air = { temperature = '5 degC', temperature_gradient = '20 K/km' }");
+  EXPECT_TRUE(near(p.vehicle.air.temperature_gradient_Kpm.value(), 0.02, round_off(2, 1)));
+}
+
 TEST(Surroundings, AirMayBlowSteadilyAndInGusts) {
   const auto p =
       sound("air = { wind_north = '-1 m/s', wind_east = '3 m/s', turbulence = '2 m/s' }");
@@ -160,6 +166,8 @@ TEST(Surroundings, EachMistakeIsOneSentenceWithItsPlace) {
       {"field = { strength = '50 uT', inclination = '100 deg', declination = '0 deg' }",
        "field.inclination"},
       {"air = { temperature = '100 degC' }", "air.temperature"},
+      {"air = { temperature_gradient = '1 K/m' }", "air.temperature_gradient"},
+      {"air = { temperature_gradient = '1 K' }", "air.temperature_gradient"},
       {"air = { turbulence = '-1 m/s' }", "air.turbulence"},
       {"load = { mass = '200 g' }", "load.line"},
       {"load = { mass = '0 g', line = '1 m' }", "load.mass"},
