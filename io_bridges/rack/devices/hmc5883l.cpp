@@ -3,7 +3,9 @@
 //
 //   Currents  what each motor's bus current and the pack's add, per ampere, means over a millisecond
 //             (plant/sensors/magnetometer.hpp)
-//   Left out  soft iron; the currents' ripple
+//   Soft iron what the frame makes of the earth's field: (1 + E) x field, E symmetric, in the body's axes. It
+//             bends neither the currents' fields nor its own hard iron
+//   Left out  the currents' ripple
 #include "io_bridges/devices/hmc5883l.hpp"
 
 #include "io_bridges/rack/devices/table.hpp"
@@ -14,6 +16,7 @@ namespace whirl::rack {
 namespace {
 
 constexpr double kMost_T = 1e-3;  // beyond its largest range
+constexpr double kMost_soft = 0.3;
 
 std::string motor_field(std::size_t number) {
   return "params.motor_field_" + std::to_string(number);
@@ -35,12 +38,22 @@ io::Hmc5883l::Params part_of(DeviceSlot& slot) {
   return params;
 }
 
+Eigen::Matrix3d soft_iron_of(DeviceSlot& slot) {
+  const auto scale = slot.triple("params.soft_iron"), cross = slot.triple("params.soft_iron_cross");
+  Eigen::Matrix3d soft;
+  soft << 1.0 + scale[0], cross[0], cross[1],  //
+      cross[0], 1.0 + scale[1], cross[2],      //
+      cross[1], cross[2], 1.0 + scale[2];
+  return soft;
+}
+
 class Hmc5883lDevice final : public RackDevice {
  public:
   explicit Hmc5883lDevice(DeviceSlot& slot)
       : mounting_(mounting_of(slot.axes("axes"))),
         hard_iron_B_T_(slot.triple("params.hard_iron").data()),
         pack_per_ampere_T_(slot.triple("params.pack_field").data()),
+        soft_iron_(soft_iron_of(slot)),
         part_(
             slot.rack().events(), part_of(slot),
             [this](Nanoseconds) { return turned(mounting_, field_B_T_ + hard_iron_B_T_); },
@@ -60,8 +73,8 @@ class Hmc5883lDevice final : public RackDevice {
   std::vector<Intake> intakes() const override { return {{io::Kind::body_motion}}; }
   void on_message(const io::Reader& message) override {
     const auto motion = message.as<io::BodyMotion>();
-    field_B_T_ =
-        Eigen::Vector3d(motion.magnetic_field_B_T) + pack_per_ampere_T_ * motion.battery_current_A;
+    field_B_T_ = soft_iron_ * Eigen::Vector3d(motion.magnetic_field_B_T) +
+                 pack_per_ampere_T_ * motion.battery_current_A;
     for (std::size_t i = 0; i < per_ampere_T_.size(); ++i) {
       field_B_T_ += per_ampere_T_[i] * motion.rotor_bus_current_A[i];
     }
@@ -70,6 +83,7 @@ class Hmc5883lDevice final : public RackDevice {
  private:
   Mounting mounting_;
   Eigen::Vector3d hard_iron_B_T_, pack_per_ampere_T_;
+  Eigen::Matrix3d soft_iron_;
   std::array<Eigen::Vector3d, io::kMostMotors> per_ampere_T_;  // index: motor number - 1
   Eigen::Vector3d field_B_T_ = Eigen::Vector3d::Zero();
   io::Hmc5883l part_;
@@ -90,6 +104,12 @@ DeviceType hmc5883l_type() {
           .with(io::Hmc5883l::Params{}.noise_T),
       triple_key("params.hard_iron", Dimension::magnetic_field, "uT", {-kMost_T, kMost_T},
                  "that the frame adds, along x, y, z of the body")
+          .with(std::vector<double>{0.0, 0.0, 0.0}),
+      triple_key("params.soft_iron", Dimension::ratio, "%", {-kMost_soft, kMost_soft},
+                 "of the earth's field, that the frame adds to its part along x, y, z of the body")
+          .with(std::vector<double>{0.0, 0.0, 0.0}),
+      triple_key("params.soft_iron_cross", Dimension::ratio, "%", {-kMost_soft, kMost_soft},
+                 "that it turns from x to y and back, x to z, y to z")
           .with(std::vector<double>{0.0, 0.0, 0.0}),
       per_ampere_key("params.pack_field", Eigen::Vector3d::Zero(),
                      "that each ampere out of the pack adds")};

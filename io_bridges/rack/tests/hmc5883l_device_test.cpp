@@ -55,6 +55,22 @@ TEST(Hmc5883lDevice, TheFramesFieldIsAddedInTheBody) {
   EXPECT_EQ(measure(rack), (Counts{-218, 327, 109 + 1090}));
 }
 
+// 10 % more along the nose, and a fifth of each turned to the other between y and z; however it is soldered. What
+// a current or the frame itself adds is not bent.
+TEST(Hmc5883lDevice, SoftIronBendsTheEarthsFieldInTheBody) {
+  for (const bool is_turned : {false, true}) {
+    BenchRack rack;
+    BoardDevice device = is_turned ? compass({"-y", "+x", "+z"}) : compass({"+x", "+y", "+z"});
+    device.set("params.soft_iron", std::vector<double>{0.1, 0.0, 0.0});
+    device.set("params.soft_iron_cross", std::vector<double>{0.0, 0.0, 0.2});
+    device.set("params.hard_iron", std::vector<double>{1e-4, 0.0, 0.0});
+    ASSERT_NE(rack.add(device), nullptr) << rack.error;
+    send_field(rack);
+    // x 109 + 10.9 + 1090, y 218 + 65.4, z 327 + 43.6
+    EXPECT_EQ(measure(rack), is_turned ? (Counts{-283, 371, 1210}) : (Counts{1210, 371, 283}));
+  }
+}
+
 // 10 A of motor 3 and 20 A of the pack; of the others nothing flows.
 TEST(Hmc5883lDevice, CurrentsAddTheirFieldPerAmpere) {
   BenchRack rack;
