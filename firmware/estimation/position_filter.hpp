@@ -5,10 +5,10 @@
 //           with capture of a triple pole
 //   Fixes   are late (capture, radio): each is compared with where the filter was kFixDelay_s ago
 //   GPS     place and velocity as they were delay_s ago. The place counts 5 /s, so at 5 Hz in full: the
-//           vehicle goes where its receiver's error goes, 4 /s2 of it go to the
-//           velocity, which the receiver's own draws by 3 /s. A place that leaps by 20 cm a solution costs
-//           7 degrees of tilt. Its height counts nothing here (Estimator::on_gps); without a
-//           barometer the height goes on by the velocity downwards
+//           vehicle goes where its receiver's error goes; 4 /s2 of it go to the velocity, which the
+//           receiver's own draws by 3 /s. A place that leaps by 20 cm a solution costs 7 degrees of tilt.
+//           Its height counts nothing here (Estimator::on_gps); without a barometer the height goes on by
+//           the velocity downwards
 //   Source  p' = v - k(p - p_meas) [Bangura 2017, 6.3]; gains from the pole
 #pragma once
 #include <array>

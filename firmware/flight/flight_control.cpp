@@ -9,7 +9,7 @@ using schedule::kAttitudeStep_s, schedule::kPositionStep_s;
 constexpr float kLiftTime_s = 0.8f, kAirborne_m = 0.06f;
 constexpr float kTargetDelay_s = 0.014f;  // 65 bytes at 57600 baud, and half a poll
 // Of the four attitude steps from set-point to set-point: the one by which the steepest pieces of a step fall
-// into holds such that the rotors can follow (10 to 90 % of 20 degrees in 90 ms with 2 % of overshoot; taken at
+// into holds such that the rotors can follow (10 to 90 % of 20 degrees in 90 ms with 4 % of overshoot; taken at
 // the others 84 to 106 ms, and up to 17 %).
 constexpr unsigned kDemandTaken = 1;
 constexpr std::uint16_t kIdle = 1;  // the lowest set-point that turns a rotor
