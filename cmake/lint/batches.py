@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Puts source files together for clang-tidy, which spends most of a file's time in the headers that all include.
 
-batches.py BUILD OUT FILE...: writes OUT/N.cpp, each including some of the files, and its compiler options, a line
-each, to OUT/N.cpp.options; prints the batches, the longest first.  A name that a file defines for itself only
+batches.py BUILD OUT FILE...: lists the files of each batch in OUT/N, its compiler options, a line each, in
+OUT/N.options; prints the batches' lists, the longest batch first.  A name that a file defines for itself only
 (unnamed namespace, static, macro) is not defined by another file of its batch, and a constant's not used by one.
 """
 import functools
@@ -10,6 +10,7 @@ import json
 import pathlib
 import re
 import shlex
+import shutil
 import sys
 
 LINES = 4000  # of source in one batch; with more, the last batch would keep one core busy alone
@@ -107,7 +108,8 @@ class Batch:
 
 def main(build, out, *files):
     out = pathlib.Path(out).resolve()
-    out.mkdir(parents=True, exist_ok=True)
+    shutil.rmtree(out, ignore_errors=True)
+    out.mkdir(parents=True)
     wanted = {str(pathlib.Path(file).resolve()) for file in files}
     batches = []
     for entry in json.loads((pathlib.Path(build) / "compile_commands.json").read_text()):
@@ -128,8 +130,8 @@ def main(build, out, *files):
     if wanted:
         sys.exit(f"batches: not in {build}: {sorted(wanted)}")
     for number, batch in enumerate(sorted(batches, key=lambda batch: -batch.lines)):
-        path = out / f"{number}.cpp"
-        path.write_text("".join(f'#include "{file}"\n' for file in batch.files))
+        path = out / str(number)
+        path.write_text("".join(f"{file}\n" for file in batch.files))
         pathlib.Path(f"{path}.options").write_text("".join(f"{option}\n" for option in batch.options()))
         print(path)
 

@@ -25,21 +25,28 @@ check() {
   return 1
 }
 
-# check_batch CHECKS BATCH: files of which the compiler says that they don't go together, go by halves.
+# check_batch BUILD CHECKS LIST: the listed files as one file, for the analyzer looks at no included one. Files of
+# which the compiler says that they don't go together, go by halves; a file of which anything is said, goes alone.
 check_batch() {
-  local said options half failed=0 files
-  mapfile -t options <"$2.options"
-  said=$(clang-tidy-14 --quiet "$1,-bugprone-suspicious-include" "$2" -- "${options[@]}" 2>&1) && return 0
-  files=$(wc -l <"$2")
-  if ((files > 1)) && grep -q 'clang-diagnostic-error' <<<"$said"; then
-    split -n l/2 --additional-suffix=.cpp "$2" "${2%.cpp}_"
-    for half in "${2%.cpp}_"a{a,b}.cpp; do
-      cp "$2.options" "$half.options"
-      check_batch "$1" "$half" || failed=1
+  local said options half file failed=0 alone=0
+  mapfile -t options <"$3.options"
+  while read -r file; do printf '// file: %s\n' "$file" && cat "$file"; done <"$3" >"$3.cpp"
+  said=$(clang-tidy-14 --quiet "$2" "$3.cpp" -- "${options[@]}" 2>&1) && return 0
+  if (($(wc -l <"$3") > 1)) && grep -q 'clang-diagnostic-error' <<<"$said"; then
+    split -n l/2 "$3" "$3_"
+    for half in "$3_aa" "$3_ab"; do
+      cp "$3.options" "$half.options"
+      check_batch "$1" "$2" "$half" || failed=1
     done
     return "$failed"
   fi
-  grep -v 'warnings generated' <<<"$said" || true
+  grep ': error:' <<<"$said" | grep -vF "$3.cpp:" || true  # in headers
+  while read -r file; do
+    check "$1" "$2" "$file" || alone=1
+  done < <(sed -n "s,^$3.cpp:\([0-9]*\):.*error:.*,\1,p" <<<"$said" | sort -un | while read -r line; do
+    head -n "$line" "$3.cpp" | sed -n 's,^// file: ,,p' | tail -n 1
+  done | sort -u)
+  ((alone)) || echo "$said"  # alone, none of them has anything to say
   return 1
 }
 export -f check check_batch
@@ -53,7 +60,7 @@ run() {
   else
     # shellcheck disable=SC2086  # no name of ours has a space
     python3 "$here/batches.py" "$build" "$build/together/$2" $3 >"$build/together_$2.txt"
-    xargs -P "$(nproc)" -I{} bash -c 'check_batch "$@"' - "--checks=$1" {} <"$build/together_$2.txt" ||
+    xargs -P "$(nproc)" -I{} bash -c 'check_batch "$@"' - "$build" "--checks=$1" {} <"$build/together_$2.txt" ||
       failed=1
   fi
 }
