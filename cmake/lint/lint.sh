@@ -30,10 +30,11 @@ check() {
 check_batch() {
   local said options half file failed=0 alone=0
   mapfile -t options <"$3.options"
+  options+=(-Xclang -analyzer-config -Xclang "max-nodes=$nodes")
   while read -r file; do printf '// file: %s\n' "$file" && cat "$file"; done <"$3" >"$3.cpp"
   said=$(clang-tidy-14 --quiet "$2" "$3.cpp" -- "${options[@]}" 2>&1) && return 0
   if (($(wc -l <"$3") > 1)) && grep -q 'clang-diagnostic-error' <<<"$said"; then
-    split -n l/2 "$3" "$3_"
+    split -n r/2 "$3" "$3_"  # by lines: by bytes, a short path and a longer one would stay together for ever
     for half in "$3_aa" "$3_ab"; do
       cp "$3.options" "$half.options"
       check_batch "$1" "$2" "$half" || failed=1
@@ -50,6 +51,9 @@ check_batch() {
   return 1
 }
 export -f check check_batch
+# States of one function that the analyzer looks at in a batch; alone, a file gets clang's 225 000, for four times
+# the time.
+export nodes=50000
 
 failed=0
 # run CHECKS NAME FILES
