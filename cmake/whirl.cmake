@@ -4,7 +4,10 @@
 #                                               APART: two of its files call different things by one name
 #   whirl_test(name SOURCES ... LINK ... LABELS ... [HEAVY] [APART] [COST s])   a GoogleTest executable; label
 #                                               host: needs the images, QEMU or a fast build, so no sanitizers;
+#                                               guest: needs the guest's kernel, fails outside (./whirl test --guest);
 #                                               COST: the longest ones start first
+#   whirl_guest_script(name SCRIPT file [USES target ...] [TIMEOUT s])   a script of label guest; it is given the
+#                                               paths of the programs that it uses
 include_guard()
 include(cmake/mutate.cmake)
 
@@ -83,6 +86,7 @@ endfunction()
 add_custom_target(whirl_program)
 add_custom_target(whirl_host_tests)
 add_custom_target(whirl_unit_tests)
+add_custom_target(whirl_guest_tests)  # built by the host preset, run by ./whirl test --guest only
 
 function(whirl_test name)
   cmake_parse_arguments(ARG "HEAVY;APART" "TIMEOUT;COST" "SOURCES;LINK;LABELS" ${ARGN})
@@ -90,7 +94,12 @@ function(whirl_test name)
     set(ARG_TIMEOUT 300)
   endif()
   add_executable(${name} ${ARG_SOURCES})
-  target_link_libraries(${name} PRIVATE whirl_options ${ARG_LINK} GTest::gtest GTest::gtest_main)
+  target_link_libraries(${name} PRIVATE whirl_options ${ARG_LINK} GTest::gtest)
+  if("guest" IN_LIST ARG_LABELS)
+    target_link_libraries(${name} PRIVATE whirl_guest_main)
+  else()
+    target_link_libraries(${name} PRIVATE GTest::gtest_main)
+  endif()
   whirl_together(${name} "${ARG_APART}")
   if(NOT ARG_HEAVY)
     target_compile_options(${name} PRIVATE ${WHIRL_LIGHT})
@@ -107,7 +116,24 @@ function(whirl_test name)
   if("host" IN_LIST ARG_LABELS)
     add_dependencies(whirl_host_tests ${name})
     target_compile_options(${name} PRIVATE -O0)  # they wait for what they start
+  elseif("guest" IN_LIST ARG_LABELS)
+    add_dependencies(whirl_guest_tests ${name})
   else()
     add_dependencies(whirl_unit_tests ${name})
   endif()
+endfunction()
+
+function(whirl_guest_script name)
+  cmake_parse_arguments(ARG "" "TIMEOUT;SCRIPT" "USES" ${ARGN})
+  if(NOT ARG_TIMEOUT)
+    set(ARG_TIMEOUT 300)
+  endif()
+  set(programs "")
+  foreach(target ${ARG_USES})
+    list(APPEND programs $<TARGET_FILE:${target}>)
+    add_dependencies(whirl_guest_tests ${target})
+  endforeach()
+  add_test(NAME ${name} COMMAND ${PROJECT_SOURCE_DIR}/cmake/guest/inside.sh
+                                ${CMAKE_CURRENT_SOURCE_DIR}/${ARG_SCRIPT} ${programs})
+  set_tests_properties(${name} PROPERTIES TIMEOUT ${ARG_TIMEOUT} LABELS guest)
 endfunction()
