@@ -41,6 +41,7 @@ results/sinks            base/ io_bridges/messages/ results/messages/ results/si
 harness                  base/ harness/catalogue/ harness/cli/ harness/flight/ harness/stand/ harness/target/
 harness/job              base/ harness/job/
 harness/lua              base/ harness/lua/
+harness/pacing           base/ harness/pacing/
 harness/metrics          harness/metrics/
 harness/world            base/ harness/world/ io_bridges/messages/
 harness/board            base/ harness/board/ io_bridges/board_description/
@@ -54,8 +55,8 @@ harness/stand            base/ harness/stand/ harness/world/ io_bridges/board_de
 harness/sweep            base/ harness/flight/flight_params.hpp harness/sweep/ plant/ results/
 harness/timing           base/ harness/target/ harness/timing/
 harness/calibrate        base/ harness/calibrate/ harness/lockstep/ harness/target/ harness/world/ io_bridges/protocols/ results/ firmware/esc/core/
-harness/live             base/ harness/executive/companion.hpp harness/live/ harness/world/ io_bridges/messages/
-harness/cli              base/ harness/board/ harness/calibrate/ harness/catalogue/ harness/cli/ harness/executive/ harness/job/ harness/live/ harness/plan/ harness/sweep/ harness/target/ harness/timing/ harness/world/ io_bridges/board_description/ io_bridges/rack/ plant/validation/ results/
+harness/live             base/ harness/executive/companion.hpp harness/live/ harness/pacing/ harness/world/ io_bridges/messages/
+harness/cli              base/ harness/board/ harness/calibrate/ harness/catalogue/ harness/cli/ harness/executive/ harness/job/ harness/live/ harness/pacing/ harness/plan/ harness/sweep/ harness/target/ harness/timing/ harness/world/ io_bridges/board_description/ io_bridges/rack/ plant/validation/ results/
 harness/fuzz             base/ harness/calibrate/ harness/catalogue/ harness/fuzz/ harness/plan/ io_bridges/ plant/ results/
 cmake                    cmake/
 cmake/mutate             cmake/mutate/

@@ -100,7 +100,7 @@ int fly_command(const FlyOptions& options, const RunOptions& run, const Composit
               static_cast<unsigned>(port.value().own_port()),
               options.seconds > 0.0 ? "Its time, or Ctrl-C," : "Ctrl-C");
   std::fflush(stdout);
-  live::MonotonicClock clock;
+  pacing::MonotonicClock clock;
   live::LiveOptions live;
   live.pace = options.pace;
   if (options.seconds > 0.0) live.end_ns = std::llround(options.seconds * 1e9);

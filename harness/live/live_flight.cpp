@@ -30,7 +30,7 @@ double ms(std::int64_t ns) {
 
 }  // namespace
 
-LiveFlight::LiveFlight(HostClock& clock, UdpPort port, LiveOptions options)
+LiveFlight::LiveFlight(pacing::HostClock& clock, UdpPort port, LiveOptions options)
     : clock_(clock),
       pacer_(clock, options.pace),
       port_(std::move(port)),
@@ -109,7 +109,7 @@ std::string LiveFlight::state_line(std::int64_t t_ns) const {
 }
 
 std::vector<std::string> LiveFlight::summary() const {
-  const Lateness& late = lateness();
+  const pacing::Lateness& late = lateness();
   char pace[240], udp[240];
   std::snprintf(
       pace, sizeof pace,

@@ -12,9 +12,9 @@
 #include <string>
 
 #include "harness/executive/companion.hpp"
-#include "harness/live/pacer.hpp"
 #include "harness/live/recording.hpp"
 #include "harness/live/udp_port.hpp"
+#include "harness/pacing/pacer.hpp"
 
 namespace whirl::live {
 
@@ -27,13 +27,13 @@ struct LiveOptions {
 
 class LiveFlight final : public Companion {
  public:
-  LiveFlight(HostClock& clock, UdpPort port, LiveOptions options);
+  LiveFlight(pacing::HostClock& clock, UdpPort port, LiveOptions options);
 
   Result<bool> turn(std::int64_t t_ns, World& world) override;
   void on_happened(std::int64_t t_ns, const io::Batch& happened, const World& world) override;
 
   const Recording& recording() const { return recording_; }
-  const Lateness& lateness() const { return pacer_.lateness(); }
+  const pacing::Lateness& lateness() const { return pacer_.lateness(); }
   std::int64_t ended_ns() const { return ended_ns_; }
   // Of the world's signals, in SI; NaN: it has no such signal, or nothing was read yet.
   double last(const std::string& signal) const;
@@ -45,8 +45,8 @@ class LiveFlight final : public Companion {
   void show_state(std::int64_t t_ns, const World& world);
   std::string state_line(std::int64_t t_ns) const;
 
-  HostClock& clock_;
-  Pacer pacer_;
+  pacing::HostClock& clock_;
+  pacing::Pacer pacer_;
   UdpPort port_;
   LiveOptions options_;
   Recording recording_;

@@ -1,10 +1,10 @@
-#include "harness/live/host_clock.hpp"
+#include "harness/pacing/host_clock.hpp"
 
 #include <ctime>
 
 #include "base/check.hpp"
 
-namespace whirl::live {
+namespace whirl::pacing {
 namespace {
 
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
@@ -22,4 +22,4 @@ void MonotonicClock::sleep_until(std::int64_t t_ns) {
   clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr);
 }
 
-}  // namespace whirl::live
+}  // namespace whirl::pacing

@@ -1,13 +1,15 @@
-#include "harness/live/pacer.hpp"
+#include "harness/pacing/pacer.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "harness/live/tests/live_tools.hpp"
+#include "harness/pacing/tests/told_clock.hpp"
 
-namespace whirl::live {
+namespace whirl::pacing {
 namespace {
+
+constexpr std::int64_t kMs = 1'000'000;
 
 TEST(Pacer, VirtualTimePassesAtThePaceOfTheHostsClock) {
   for (const double pace : {0.5, 1.0, 4.0}) {
@@ -48,5 +50,24 @@ TEST(Pacer, AStallIsGivenUpAndToldNotHurriedThrough) {
   EXPECT_EQ(pacer.lateness().late_steps, 1);
 }
 
+TEST(Pacer, TellsTheVirtualTimeOfWhatCameInBetween) {
+  ToldClock clock;
+  Pacer pacer(clock, 0.25);
+  pacer.wait_for(0);
+  EXPECT_EQ(pacer.virtual_ns(clock.t_ns), 0);
+  EXPECT_EQ(pacer.virtual_ns(clock.t_ns + 6 * kMs), 3 * kMs / 2);
+  EXPECT_EQ(pacer.due_ns(kMs), clock.t_ns + 4 * kMs);
+}
+
+TEST(Pacer, LateIsWhatItIsToldToBe) {
+  ToldClock clock;
+  Pacer pacer(clock, 1.0, 200'000);
+  for (std::int64_t ms = 0; ms < 10; ++ms) {
+    pacer.wait_for(ms * kMs);
+    clock.t_ns += kMs + (ms == 4 ? 200'000 : ms == 7 ? 200'001 : 0);
+  }
+  EXPECT_EQ(pacer.lateness().late_steps, 2);  // 8 and 9; 5 to 7 are 200 us behind, not more
+}
+
 }  // namespace
-}  // namespace whirl::live
+}  // namespace whirl::pacing

@@ -2,7 +2,7 @@
 #pragma once
 #include <cstdint>
 
-namespace whirl::live {
+namespace whirl::pacing {
 
 class HostClock {
  public:
@@ -18,4 +18,4 @@ class MonotonicClock final : public HostClock {
   void sleep_until(std::int64_t t_ns) override;
 };
 
-}  // namespace whirl::live
+}  // namespace whirl::pacing
