@@ -91,6 +91,8 @@ void EventLog::add(const io::Reader& reader) {
     case io::Kind::uart_frame:
     case io::Kind::uart_received:
     case io::Kind::pin_edge:
+    case io::Kind::instrument_reading:
+    case io::Kind::emergency_stop:
     case io::Kind::gnss_solution:
     case io::Kind::signals:
       break;  // no window asks for them

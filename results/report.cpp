@@ -50,7 +50,12 @@ void add_reason(std::vector<Reason>& reasons, const Report& report, Verdict verd
 
 void conclude(Report& report) {
   std::vector<Reason> all = report.reasons;
-  if (report.judged) add_reason(all, report, Verdict::fail, Blame::firmware);
+  if (!report.untimely.empty()) {
+    std::erase_if(all, [](const Reason& r) { return r.blame == Blame::firmware; });
+    all.push_back({Blame::host, report.untimely});
+  }
+  const bool timely = report.judged && report.untimely.empty();
+  if (timely) add_reason(all, report, Verdict::fail, Blame::firmware);
   if (report.judged) add_reason(all, report, Verdict::inconclusive, Blame::not_shown);
   if (report.judged && report.expectations.empty()) {
     all.push_back({Blame::user, report.file + ": the plan expects nothing, so it could not fail"});

@@ -108,6 +108,8 @@ struct Report {
   // expectations.
   std::vector<Reason> reasons;
   bool judged = true;  // false: what was expected is told and decides nothing (whirl fly)
+  // Why nothing that was seen of the firmware counts, for or against it: a bench's host was late. Empty: it does.
+  std::string untimely;
   Verdict verdict = Verdict::error;
   Blame blame = Blame::harness;  // of all but pass and none
   std::string reason;            // one line; empty for these

@@ -56,11 +56,11 @@ Result<stand::StandParams> read_stand(const lua::Table& t, const std::string& pr
   p.battery = read_feed(t);
   if (t.has("motor")) read_stage_motor(t.table("motor"), p.stage);
   if (t.has("shunt")) read_stage_shunt(t.table("shunt"), p.stage);
-  if (t.has("mode")) p.mode = read_esc_mode(t, "mode").on_wire;
-  p.address = static_cast<std::uint8_t>(t.integer_or("address", p.address, 0x08, 0x77));
-  p.pulse_rate_Hz = read_pulse_rate(t);
-  p.i2c = static_cast<std::uint16_t>(t.integer_or("i2c", p.i2c, 1, 3));
-  p.serial = static_cast<std::uint16_t>(t.integer_or("serial", p.serial, 1, 8));
+  if (t.has("mode")) p.esc.mode = read_esc_mode(t, "mode").on_wire;
+  p.esc.address = static_cast<std::uint8_t>(t.integer_or("address", p.esc.address, 0x08, 0x77));
+  p.esc.pulse_rate_Hz = read_pulse_rate(t);
+  p.esc.i2c = static_cast<std::uint16_t>(t.integer_or("i2c", p.esc.i2c, 1, 3));
+  p.esc.serial = static_cast<std::uint16_t>(t.integer_or("serial", p.esc.serial, 1, 8));
   if (const auto good = t.finish(); !good) return good.error();
   auto blade = read_propeller(propellers + "/" + prop + ".lua");
   if (!blade) return blade.error();

@@ -11,6 +11,7 @@
 #include "base/result.hpp"
 #include "harness/catalogue/board_file.hpp"
 #include "harness/plan/plan_file.hpp"
+#include "harness/target/bench/bench_description.hpp"
 #include "harness/target/target.hpp"
 #include "harness/world/world.hpp"
 
@@ -27,6 +28,7 @@ struct Setup {  // of a run; of one board of it, where a target is made
   int gdb_port = 0;  // 0: no gdb
   Settings settings = {};
   std::string folder = {};  // of the run, for what the board's parts leave; empty: nothing is left
+  const bench::BenchDescription* bench = nullptr;  // null: the virtual board
 };
 
 struct Composition {

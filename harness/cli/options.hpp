@@ -21,7 +21,9 @@ struct RunOptions {
   bool json = false;
   std::string out;  // where results go; empty: results/ of the house
   std::string tag;
-  std::string only;  // the plan of this name
+  std::string only;    // the plan of this name
+  std::string target;  // "bench/NAME"; empty: the virtual board
+  std::string arm;     // the bench's phrase
   Settings settings;
 };
 

@@ -33,6 +33,8 @@ constexpr const char* kExamples = R"(Examples:
   whirl run test_plans/flight/gust_crossing.lua --seeds 2..21 --jobs 2
                                                mean, spread and worst, and a page of all laid over
   whirl run test_plans/flight/hover.lua --gdb  then: gdb-multiarch build/firmware/flight.elf
+  whirl run test_plans/bench --target bench/esc_stand --arm "the propeller is clear"
+                                               the same plan on a physical board, in real time
   whirl fly --pace 1                           a flight in real time for QGroundControl or another
                                                MAVLink client, on UDP 127.0.0.1:14550
   whirl list                                   what plans there are
@@ -106,6 +108,10 @@ struct RunCommand {
         ->check(setting_complaint)
         ->allow_extra_args(false);
     run->add_option("--out", options.out, "where runs and the history go (default: results)");
+    auto* target = run->add_option("--target", options.target,
+                                   "bench/NAME: a physical board, as test_plans/benches/NAME.lua "
+                                   "describes it (default: the virtual board)");
+    run->add_option("--arm", options.arm, "the phrase of the bench's safety")->needs(target);
   }
 
   // What was parsed as text. Nothing is said twice.

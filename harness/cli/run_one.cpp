@@ -1,4 +1,5 @@
 #include "harness/cli/run_one.hpp"
+#include "harness/cli/bench_choice.hpp"
 
 #include <cmath>
 #include <cstdio>
@@ -45,7 +46,8 @@ Result<Node> read_node(const plan::PlanNode& wanted, const Asker& who, const std
 // All that a run needs, from the names in its plan.
 struct Prepared {
   std::vector<Node> nodes;
-  std::vector<Setup> setups;  // of the nodes
+  std::vector<Setup> setups;                       // of the nodes
+  std::unique_ptr<bench::BenchDescription> bench;  // the setups point at it; null: none
   std::unique_ptr<World> world;
   std::unique_ptr<Target> target;
 
@@ -160,6 +162,12 @@ Result<Prepared> prepare(const plan::Plan& plan, const PlanChoice& choice,
                           choice.seed.value_or(plan.seed), port, settings, folder});
   }
   if (const auto joined = check_wires(plan, all.nodes); !joined) return joined.error();
+  if (!options.target.empty()) {
+    auto bench = bench_for(plan, all.nodes, options, root);
+    if (!bench) return bench.error();
+    all.bench = std::make_unique<bench::BenchDescription>(std::move(bench.value()));
+    for (Setup& setup : all.setups) setup.bench = all.bench.get();
+  }
   auto world = composition.world(all.setups.front());
   if (!world) return world.error();
   all.world = std::move(world.value());

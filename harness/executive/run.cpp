@@ -10,6 +10,7 @@
 #include "base/stopwatch.hpp"
 #include "harness/executive/clock_log.hpp"
 #include "harness/executive/cpu_fault.hpp"
+#include "harness/executive/held_pace.hpp"
 #include "harness/executive/task_table.hpp"
 #include "harness/lockstep/lockstep.hpp"
 #include "harness/plan/script.hpp"
@@ -202,6 +203,7 @@ class Run {
     for (std::size_t i = 0; i < parts_.nodes.size(); ++i) report_node(parts_.nodes[i], logs_[i]);
     // Guards and windows are judged also when the run has failed: their figures help to see why.
     for (const Error& error : script_.finish(completed_)) end_for(error);
+    report_pace(parts_.target.held_pace(), static_cast<double>(stage_.now_ns) * 1e-9, report);
     if (completed_ && report.judged) judge_faults();
     if (completed_ && report.judged) judge_evidence();
     for (std::size_t i = 0; i < parts_.nodes.size(); ++i) {
@@ -311,6 +313,10 @@ class Run {
   }
 
   bool stopped_early(TargetState state) {
+    if (state == TargetState::over_limit) {
+      must_hold("the bench stays within its limits", parts_.target.why_ended());
+      return end_with(results::Blame::firmware, parts_.target.why_ended());
+    }
     const char* what =
         state == TargetState::cpu_locked ? "the core locked up" : "the board switched itself off";
     must_hold("the firmware runs to the end of the plan", what);

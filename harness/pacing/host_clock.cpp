@@ -1,5 +1,6 @@
 #include "harness/pacing/host_clock.hpp"
 
+#include <algorithm>
 #include <ctime>
 
 #include "base/check.hpp"
@@ -20,6 +21,12 @@ std::int64_t MonotonicClock::now_ns() const {
 void MonotonicClock::sleep_until(std::int64_t t_ns) {
   const timespec until{t_ns / kSecond_ns, t_ns % kSecond_ns};
   clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr);
+}
+
+void MonotonicClock::wait_for(std::span<pollfd> files, std::int64_t t_ns) {
+  const std::int64_t left_ns = std::max<std::int64_t>(0, t_ns - now_ns());
+  const timespec left{left_ns / kSecond_ns, left_ns % kSecond_ns};
+  ppoll(files.data(), files.size(), &left, nullptr);
 }
 
 }  // namespace whirl::pacing

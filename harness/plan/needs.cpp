@@ -35,4 +35,18 @@ Result<Done> check_offers(const Plan& plan, const Offers& offers) {
   return Done{};
 }
 
+Result<Done> check_signals(const Plan& plan, const std::vector<Signal>& here,
+                           const std::vector<Signal>& elsewhere) {
+  const SignalTable own(here), other(elsewhere);
+  const auto knows = [](const SignalTable& table, const std::string& word) {
+    return table.find(word) || table.find_with_unit(word);
+  };
+  for (const SourceCall& word : plan.words) {
+    if (knows(own, word.name) || !knows(other, word.name)) continue;
+    return Error{ErrorKind::bad_input, plan.file + ":" + std::to_string(word.line),
+                 "there is no signal '" + word.name + "' here", "there are " + own.names()};
+  }
+  return Done{};
+}
+
 }  // namespace whirl::plan

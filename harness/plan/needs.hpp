@@ -7,6 +7,7 @@
 #include "base/result.hpp"
 #include "harness/plan/plan_file.hpp"
 #include "harness/target/offers.hpp"
+#include "harness/world/signal_table.hpp"
 
 namespace whirl::plan {
 
@@ -20,6 +21,10 @@ struct Need {
 std::vector<Offer> needs_of_call(const std::string& call);
 // By its keys and by the calls in its function's text.
 std::vector<Need> needs_of(const Plan& plan);
+
+// Errors  bad_input, with the plan's line: its text names a signal that `elsewhere` has and `here` has not
+Result<Done> check_signals(const Plan& plan, const std::vector<Signal>& here,
+                           const std::vector<Signal>& elsewhere);
 
 // In one sentence, for who asks: "t:budget".
 std::string not_offered(const std::string& what, Offer offer);

@@ -211,6 +211,8 @@ int PlanFile::add_plan(lua_State* L) {
   if (is_of_file(run, self->path_)) {
     plan.value().calls =
         source_calls(self->sandbox_.source(), run.linedefined, run.lastlinedefined);
+    plan.value().words =
+        source_words(self->sandbox_.source(), run.linedefined, run.lastlinedefined);
   }
   self->plans_.push_back(std::move(plan.value()));
   return 0;

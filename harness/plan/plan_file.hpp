@@ -48,6 +48,7 @@ struct Plan {
   std::vector<PlanWire> wires;
   std::vector<std::string> tags;
   std::vector<SourceCall> calls;  // of t's, in the text of its function
+  std::vector<SourceCall> words;  // all names and texts in it
   std::uint64_t seed = 1;
   std::int64_t timeout_ns = 0;
   std::optional<lua::Table> stand;

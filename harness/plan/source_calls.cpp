@@ -18,4 +18,14 @@ std::vector<SourceCall> source_calls(std::string_view source, int first_line, in
   return calls;
 }
 
+std::vector<SourceCall> source_words(std::string_view source, int first_line, int last_line) {
+  std::vector<SourceCall> words;
+  for (const lua::Token& token : lua::tokens_of(source)) {
+    if (token.kind == lua::Token::Kind::sign) continue;
+    if (token.line < first_line || token.line > last_line) continue;
+    words.push_back({std::string(token.text), token.line});
+  }
+  return words;
+}
+
 }  // namespace whirl::plan

@@ -16,4 +16,7 @@ struct SourceCall {
 
 std::vector<SourceCall> source_calls(std::string_view source, int first_line, int last_line);
 
+// All names and texts of the stretch: a signal is read as s.speed_radps or as "speed".
+std::vector<SourceCall> source_words(std::string_view source, int first_line, int last_line);
+
 }  // namespace whirl::plan

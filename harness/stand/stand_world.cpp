@@ -16,31 +16,6 @@ constexpr std::int64_t kStep_ns = 1'000'000;
 constexpr double kMost_flow_mps = 20.0;
 constexpr double kSlow_radps = 20.0;  // below, loads go with the square of speed
 
-// Which set-points mean something in which mode, and how the mode counts them on the wire.
-struct Scale {
-  request::SetPointKind kind;
-  double to_unit;
-  std::initializer_list<io::EscMode> modes;
-};
-const Scale kScales[] = {
-    {request::SetPointKind::duty, 100.0, {io::EscMode::duty}},
-    {request::SetPointKind::speed, kRpm_per_radps, {io::EscMode::rpm}},
-    {request::SetPointKind::thrust,
-     1.0,
-     {io::EscMode::thrust_by_rpm, io::EscMode::thrust_by_power}},
-    {request::SetPointKind::power, 1.0, {io::EscMode::power}},
-};
-
-Throttle::Raw raw_of(const request::RawTransfer& wanted) {
-  Throttle::Raw raw;
-  raw.write = wanted.write;
-  raw.read = wanted.read;
-  raw.times = wanted.times;
-  raw.every_ns = std::max(kStep_ns, wanted.every_ns / kStep_ns * kStep_ns);
-  raw.shift_ns = wanted.shift_ns;
-  return raw;
-}
-
 std::int64_t ns_of(double seconds) {
   return std::llround(seconds * 1e9);
 }
@@ -58,10 +33,7 @@ StandWorld::StandWorld(const StandParams& params, std::uint64_t seed)
       rotor_(params.blade, +1),
       battery_(params.battery),
       cell_(params.cell, seed, "stand.cell"),
-      throttle_(params.address, params.i2c),
-      pulses_(params.motor),
-      line_(params.serial) {
-  if (params_.pulse_rate_Hz > 0.0) throttle_.never_write();
+      master_(params.esc) {
   name_signals();
 }
 
@@ -80,16 +52,14 @@ void StandWorld::step(std::int64_t t_ns, const io::Batch& happened, io::Batch& s
 void StandWorld::on_messages(const io::Batch& happened) {
   for (io::Reader reader(happened.bytes()); reader.next();) {
     const io::Header& header = reader.header();
-    if (header.kind == io::Kind::shaft_state && header.port == params_.motor) {
+    if (header.kind == io::Kind::shaft_state && header.port == params_.esc.motor) {
       shaft_ = reader.as<io::ShaftState>();
-    } else if (header.kind == io::Kind::i2c_reply) {
-      throttle_.on_message(reader);
-    } else if (header.kind == io::Kind::uart_received) {
-      line_.on_message(reader);
     } else if (header.kind == io::Kind::shoot_through) {
       ++shots_;
     } else if (header.kind == io::Kind::board_reset) {
       ++resets_;
+    } else {
+      master_.on_message(reader);
     }
   }
 }
@@ -123,48 +93,20 @@ void StandWorld::send(std::int64_t t_ns, io::Batch& sensed) {
                            .brake_Nm = brake_Nm_,
                            .source_V = std::max(0.0, battery_.source_V()),
                            .source_ohm = battery_.series_resistance_ohm()};
-  sensed.add(io::Kind::shaft_load, params_.motor, t_ns, load);
-  throttle_.send(t_ns, sensed);
-  if (params_.pulse_rate_Hz > 0.0) {
-    pulses_.follow(throttle_.value(), throttle_.silent(), params_.pulse_rate_Hz);
-  }
-  pulses_.send(t_ns, sensed);
-  line_.send(t_ns, sensed);
+  sensed.add(io::Kind::shaft_load, params_.esc.motor, t_ns, load);
+  if (params_.commands) master_.send(t_ns, sensed);
 }
 
 // ---- What a plan may ask
 
 Result<Done> StandWorld::command(const Command& command, std::int64_t /*now_ns*/) {
-  return std::visit(
-      Match{[this](const request::SetPoint& c) { return set(c); },
-            [this](const request::Stop&) -> Result<Done> { return throttle_.set(0), Done{}; },
-            [this](const request::Silence& c) -> Result<Done> {
-              return throttle_.silence(c.silent), Done{};
-            },
-            [this](const request::SetPointRate& c) -> Result<Done> {
-              return throttle_.set_rate(c.rate_Hz), Done{};
-            },
-            [this](const request::RawTransfer& c) -> Result<Done> {
-              return throttle_.send_raw(raw_of(c)), Done{};
-            },
-            [this](const request::Pulses& c) -> Result<Done> { return pulses_.set(c), Done{}; },
-            [this](const request::Line& c) -> Result<Done> { return line_.say(c.text), Done{}; },
-            [this](const request::Brake& c) -> Result<Done> {
-              brake_Nm_ = c.torque_Nm;
-              return Done{};
-            },
-            [&](const auto&) -> Result<Done> { return not_understood("a stand", word(command)); }},
-      command);
-}
-
-Result<Done> StandWorld::set(const request::SetPoint& command) {
-  for (const Scale& scale : kScales) {
-    if (scale.kind != command.kind) continue;
-    if (std::find(scale.modes.begin(), scale.modes.end(), params_.mode) == scale.modes.end()) break;
-    throttle_.set(io::setpoint_of_value(params_.mode, command.value_SI * scale.to_unit));
-    return Done{};
-  }
-  return refusal(word(command), "the stand's mode is another one", "stand = { mode = ... }");
+  const auto taken = master_.take(command);
+  if (!taken) return taken.error();
+  if (taken.value()) return Done{};
+  const auto* brake = std::get_if<request::Brake>(&command);
+  if (brake == nullptr) return not_understood("a stand", word(command));
+  brake_Nm_ = brake->torque_Nm;
+  return Done{};
 }
 
 void StandWorld::blow(double to_mps, std::int64_t start_ns, std::int64_t edge_ns) {
@@ -233,37 +175,13 @@ void StandWorld::name_signals() {
   add_signal("charge_used", D::charge, "of the battery",
              [this] { return battery_.charge_used_C(); });
   add_signal("wind", D::speed, "down along the shaft", [this] { return wind_mps_; });
-  add_signal("setpoint", D::none, "0..2047, as commanded",
-             [this] { return static_cast<double>(throttle_.value()); });
-  add_signal("told_current", D::current, "by the ESC over I2C",
-             [this] { return throttle_.reported().current_A; });
-  add_signal("told_speed", D::angular_rate, "by the ESC over I2C",
-             [this] { return radps_of(throttle_.reported().speed_rpm); });
-  add_signal("esc_flags", D::none, "status byte", [this] { return throttle_.reported().flags; });
-  add_signal("armed", D::none, "1: the ESC says so", [this] {
-    const double flags = throttle_.reported().flags;
-    return std::isnan(flags) ? 0.0 : static_cast<double>(static_cast<int>(flags) & 1);
-  });
-  add_signal("i2c_refused", D::none, "orders without a good answer",
-             [this] { return static_cast<double>(throttle_.reported().refused); });
-  add_signal("i2c_stretch", D::time, "longest hold of SCL in the latest transfers",
-             [this] { return throttle_.reported().stretched_s; });
-  add_signal("i2c_raw_replies", D::none, "to raw transfers",
-             [this] { return static_cast<double>(throttle_.raw_reported().replies); });
-  add_signal("i2c_raw_acked", D::none, "raw transfers acknowledged in all bytes",
-             [this] { return static_cast<double>(throttle_.raw_reported().acked); });
-  add_signal("i2c_raw_bytes", D::none, "of the last raw read",
-             [this] { return throttle_.raw_reported().read_bytes; });
-  add_signal("i2c_raw_good", D::none,
-             "1: the last raw read had a status, its CRC and only FF after",
-             [this] { return throttle_.raw_reported().read_good; });
+  for (EscLine::Named& told : master_.signals()) {
+    add_signal(told.signal.name, told.signal.dimension, told.signal.about, std::move(told.value));
+  }
   add_signal("resets", D::none, "of the ESC, by a watchdog or by itself",
              [this] { return static_cast<double>(resets_); });
   add_signal("shoot_through", D::none, "times that both switches of a leg were on",
              [this] { return static_cast<double>(shots_); });
-  for (EscLine::Named& told : line_.signals()) {
-    add_signal(told.signal.name, told.signal.dimension, told.signal.about, std::move(told.value));
-  }
 }
 
 }  // namespace whirl::stand

@@ -3,9 +3,7 @@
 //
 //   Step     takes speed and charge of the last millisecond, moves the rotor's inflow and the
 //            supply by it, tells the torque coefficient, the supply and what goes over the bus
-//   Command  SetPoint over I2C in the ESC's mode (StandParams::mode), Stop, Silence, SetPointRate;
-//            Line on the serial line; RawTransfer, each time shifted in its millisecond; Pulses on the
-//            throttle pin; Brake
+//   Command  those of esc_master.hpp, and Brake
 //   Air      Wind down the shaft, the flow generator's; without a duration for ever
 //   Faults   supply_dip (value: volts below)
 //   Left out warm windings, the flow's own turbulence
@@ -15,10 +13,8 @@
 #include <string>
 #include <vector>
 
-#include "harness/stand/esc_line.hpp"
-#include "harness/stand/pulse_output.hpp"
+#include "harness/stand/esc_master.hpp"
 #include "harness/stand/stand_params.hpp"
-#include "harness/stand/throttle.hpp"
 #include "harness/world/world.hpp"
 #include "plant/battery/battery.hpp"
 #include "plant/rotor/rotor.hpp"
@@ -35,12 +31,12 @@ class StandWorld : public World {
   void step(std::int64_t t_ns, const io::Batch& happened, io::Batch& sensed) override;
   Result<Done> command(const Command& command, std::int64_t now_ns) override;
   Result<Done> disturb(const Disturbance& disturbance, std::int64_t now_ns) override;
-  std::int64_t command_on_wire_ns() const override { return throttle_.on_wire_ns(); }
+  std::int64_t command_on_wire_ns() const override { return master_.on_wire_ns(); }
   Result<bool> take_fault(const FaultSpec& fault) override;
   std::vector<std::uint32_t> applied_faults() const override { return faults_.acted(); }
   std::string status() const override;
-  Result<Done> say(const std::string& line) override { return line_.ask(line); }
-  const std::vector<std::string>& heard() const override { return line_.heard(); }
+  Result<Done> say(const std::string& line) override { return master_.ask(line); }
+  const std::vector<std::string>& heard() const override { return master_.heard(); }
 
  private:
   struct Flow {  // a ramp from one speed to another
@@ -52,7 +48,6 @@ class StandWorld : public World {
   void on_messages(const io::Batch& happened);
   void move(std::int64_t t_ns);
   void send(std::int64_t t_ns, io::Batch& sensed);
-  Result<Done> set(const request::SetPoint& command);
   void blow(double to_mps, std::int64_t start_ns, std::int64_t edge_ns);
   void add_signal(std::string name, Dimension dimension, std::string about,
                   std::function<double()> value);
@@ -62,8 +57,7 @@ class StandWorld : public World {
   plant::Rotor rotor_;
   plant::Battery battery_;
   plant::LoadCell cell_;
-  Throttle throttle_;
-  PulseOutput pulses_;
+  EscMaster master_;
   io::ShaftState shaft_;
   plant::RotorLoads loads_;
   plant::LoadReading weighed_;
@@ -71,7 +65,6 @@ class StandWorld : public World {
   std::int64_t calm_from_ns_ = INT64_MAX, calm_edge_ns_ = 1;
   double wind_mps_ = 0.0, brake_Nm_ = 0.0;
   TimedFaults faults_;
-  EscLine line_;
   std::uint64_t shots_ = 0, resets_ = 0;
   std::vector<Signal> signals_;
   std::vector<std::function<double()>> values_;

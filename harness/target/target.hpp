@@ -23,6 +23,17 @@ enum class TargetState {
   running,
   ended,       // the board asked for power-down, or the run was ended
   cpu_locked,  // the core cannot go on; firmware's doing, named in a cpu_fault message
+  over_limit,  // a bench has left its limits and was made safe; why_ended() tells
+};
+
+// How a target that cannot wait has kept its time; see harness/pacing.
+struct HeldPace {
+  double pace = 1.0;
+  std::int64_t late_ns = 0;        // of the host: what counts as late
+  double late_share = 0.0;         // of the steps, that a run may have and be judged
+  std::vector<double> lateness_s;  // of each step, the host's
+  std::int64_t late_steps = 0, slipped_ns = 0;
+  std::string scheduling;  // "SCHED_FIFO 49, memory locked"
 };
 
 class Target {
@@ -38,6 +49,8 @@ class Target {
   // Names and versions of all that takes part, for run.json: {"qemu", "7.2.22"}, {"image sha256", ..}
   virtual std::vector<std::pair<std::string, std::string>> versions() const = 0;
   virtual Offers offers() const = 0;  // the same at any time
+  virtual std::string why_ended() const { return {}; }
+  virtual const HeldPace* held_pace() const { return nullptr; }  // null: it waits for the harness
 };
 
 }  // namespace whirl

@@ -114,7 +114,7 @@ double start_of_the_native_esc_s(double backward_radps = 0.0) {
   if (!params) ADD_FAILURE() << params.error().message();
   stand::StandWorld world(params.value(), 1);
   NativeBoard board;
-  board.address = params.value().address;
+  board.address = params.value().esc.address;
   io::Batch happened;
   std::vector<double> values(world.signals().size());
   std::int64_t t_ns = 0;

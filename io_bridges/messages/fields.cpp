@@ -151,6 +151,10 @@ constexpr Field kPinEdge[] = {
     WHIRL_FIELD(PinEdge, level),
 };
 
+constexpr Field kInstrumentReading[] = {
+    WHIRL_FIELD(InstrumentReading, value),
+};
+
 #undef WHIRL_FIELD
 
 constexpr KindInfo kKinds[] = {
@@ -163,6 +167,7 @@ constexpr KindInfo kKinds[] = {
     {Kind::i2c_order, "i2c_order", true, kI2cOrder, sizeof(I2cOrder), Tail::bytes},
     {Kind::pulse_train, "pulse_train", true, kPulseTrain, sizeof(PulseTrain), Tail::none},
     {Kind::rc_channels, "rc_channels", true, kRcChannelsFields, sizeof(RcChannels), Tail::none},
+    {Kind::emergency_stop, "emergency_stop", true, {}, 0, Tail::text},
     {Kind::esc_setpoint, "esc_setpoint", false, kEscSetpoint, sizeof(EscSetpoint), Tail::none},
     {Kind::uart_received, "uart_received", false, {}, 0, Tail::bytes},
     {Kind::i2c_transaction, "i2c_transaction", false, kBusTransaction, sizeof(BusTransaction),
@@ -182,6 +187,8 @@ constexpr KindInfo kKinds[] = {
     {Kind::busy_time, "busy_time", false, kBusyTime, sizeof(BusyTime), Tail::none},
     {Kind::shaft_state, "shaft_state", false, kShaftState, sizeof(ShaftState), Tail::none},
     {Kind::i2c_reply, "i2c_reply", false, kI2cReplyHead, sizeof(I2cReplyHead), Tail::bytes},
+    {Kind::instrument_reading, "instrument_reading", false, kInstrumentReading,
+     sizeof(InstrumentReading), Tail::none},
     {Kind::shoot_through, "shoot_through", false, kShootThrough, sizeof(ShootThrough), Tail::none},
     {Kind::uart_delivered, "uart_delivered", false, {}, 0, Tail::bytes},
     {Kind::gnss_solution, "gnss_solution", false, kGnssSolution, sizeof(GnssSolution), Tail::none},

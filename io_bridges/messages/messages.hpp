@@ -22,15 +22,16 @@ inline constexpr int kMostMotors = 12;  // of a vehicle; plant::kMostMotors is c
 
 enum class Kind : std::uint8_t {
   // Harness to target.
-  body_motion = 1,  // BodyMotion: the motion of the sensors on the board from here on
-  esc_state = 2,    // EscState, port = motor number 1..kMostMotors
-  uart_frame = 3,   // bytes to send into UART `port` from t_ns on
-  fault = 4,        // FaultCommand + name text
-  end_of_run = 5,   // empty
-  shaft_load = 6,   // ShaftLoad: air, brake and supply of a power stage, from here on
-  i2c_order = 7,    // I2cOrder + bytes to write, port = bus number: not before t_ns
-  pulse_train = 8,  // PulseTrain, port = motor number: on its throttle pin, from here on
-  rc_channels = 9,  // RcChannels: stick positions that a transmitter sends; silence: it is off
+  body_motion = 1,      // BodyMotion: the motion of the sensors on the board from here on
+  esc_state = 2,        // EscState, port = motor number 1..kMostMotors
+  uart_frame = 3,       // bytes to send into UART `port` from t_ns on
+  fault = 4,            // FaultCommand + name text
+  end_of_run = 5,       // empty
+  shaft_load = 6,       // ShaftLoad: air, brake and supply of a power stage, from here on
+  i2c_order = 7,        // I2cOrder + bytes to write, port = bus number: not before t_ns
+  pulse_train = 8,      // PulseTrain, port = motor number: on its throttle pin, from here on
+  rc_channels = 9,      // RcChannels: stick positions that a transmitter sends; silence: it is off
+  emergency_stop = 10,  // text, why: a bench is made safe
   // Target to harness.
   esc_setpoint = 32,     // EscSetpoint, port = motor number 1..kMostMotors
   uart_received = 33,    // bytes the board has sent on UART `port`; t_ns: the last stop bit
@@ -53,6 +54,7 @@ enum class Kind : std::uint8_t {
   uart_delivered = 49,  // a uart_frame has passed the line to the board; t_ns: the last stop bit
   gnss_solution = 55,  // GnssSolution, port = device number: a GNSS receiver has computed its place
   pin_edge = 50,       // PinEdge, port = number of the pin among those that the board file names
+  instrument_reading = 51,  // InstrumentReading, port = place in the bench's list of readings
   // Only in a run's file of messages (results/messages).
   signals = 64,  // a row of the world's signals
 };
@@ -217,6 +219,10 @@ struct I2cReplyHead {
 struct PinEdge {
   std::uint8_t level = 0;  // from t_ns on
   std::uint8_t pad[7] = {};
+};
+
+struct InstrumentReading {  // of a bench: what was measured when (t_ns), in SI
+  double value = 0.0;
 };
 
 struct ShootThrough {

@@ -208,7 +208,7 @@ TEST(Stand, MotorAndShuntOfThePlanReachTheBoardsPowerStage) {
                     .keys = {{"params.inductance", 2e-5},
                              {"params.resistance", 1.0},
                              {"params.shunt.gain", 0.1}}}};  // which the part's own error replaces
-  const auto set = set_stage(board, stand.motor, stand.stage);
+  const auto set = set_stage(board, stand.esc.motor, stand.stage);
   ASSERT_TRUE(set) << set.error().message();
   EXPECT_TRUE(board.devices[0].keys.empty());
   const auto& stage = board.devices[1].keys;

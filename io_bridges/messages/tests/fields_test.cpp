@@ -39,6 +39,8 @@ bool has_to_be_listed(Kind kind) {
     case Kind::uart_delivered:
     case Kind::gnss_solution:
     case Kind::pin_edge:
+    case Kind::instrument_reading:
+    case Kind::emergency_stop:
     case Kind::signals:
       return true;
   }

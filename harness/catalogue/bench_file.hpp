@@ -1,0 +1,25 @@
+// A bench as a Lua file: what of this host a physical board hangs on, and when it is made safe.
+//
+//   return { bench = "esc_stand", board = "esc32v2", pace = 1,
+//            late = "200 us", late_share = "1 %",
+//            links = { { name = "throttle", bus = "i2c2", bridge = "mcp2221a", serial = "0002137245", rate = "100 kHz" },
+//                      { name = "terminal", bus = "usart1", path = "/dev/serial/by-id/...", baud = "921600 baud" } },
+//            instruments = { { name = "cell", path = "/dev/ttyUSB1", baud = "115200 baud", delay = "4 ms",
+//                              readings = { { signal = "thrust", column = 1, scale = "9.80665e-3 N", zero = 0 } } } },
+//            signals = { speed = "told_speed" },
+//            safety = { phrase = "the propeller is clear", longest = "120 s", heartbeat = "100 ms",
+//                       limits = { { signal = "bus_current", low = "-1 A", high = "22 A" } } } }
+//   Late     of the host: a step later than `late` counts; more than `late_share` of them, and the run is inconclusive
+//   Scale    what one count of a reading is, with its unit: the signal is (number - zero) x scale
+//   Errors   bad_input, with file and line
+#pragma once
+#include <string>
+
+#include "base/result.hpp"
+#include "harness/target/bench/bench_description.hpp"
+
+namespace whirl {
+
+Result<bench::BenchDescription> read_bench(const std::string& path);
+
+}  // namespace whirl

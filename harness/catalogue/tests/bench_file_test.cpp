@@ -1,0 +1,89 @@
+#include "harness/catalogue/bench_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "base/scratch_folder.hpp"
+
+namespace whirl {
+namespace {
+
+const std::string kGood = R"(return {
+  bench = "b", board = "esc32v2", pace = 0.5, late = "300 us", late_share = "2 %",
+  links = {
+    { name = "throttle", bus = "i2c2", bridge = "cp2112", serial = "X1", rate = "400 kHz" },
+    { name = "terminal", bus = "usart1", path = "/dev/ttyUSB0", baud = "921600 baud" },
+  },
+  instruments = {
+    { name = "cell", path = "/dev/ttyUSB1", delay = "4 ms",
+      readings = { { signal = "thrust", column = 2, scale = "10 mN", zero = 5 } } },
+  },
+  signals = { speed = "told_speed" },
+  safety = { phrase = "clear", longest = "60 s", limits = { { signal = "bus_current", low = "-1 A", high = "22 A" } } },
+})";
+
+Result<bench::BenchDescription> bench_of(const std::string& text) {
+  const ScratchFolder folder;
+  const std::string path = folder.file("b.lua");
+  std::ofstream(path) << text;
+  return read_bench(path);
+}
+
+std::string with(const std::string& what, const std::string& instead) {
+  std::string text = kGood;
+  text.replace(text.find(what), what.size(), instead);
+  return text;
+}
+
+TEST(BenchFile, SaysWhatHangsWhere) {
+  const auto got = bench_of(kGood);
+  ASSERT_TRUE(got) << got.error().message();
+  const bench::BenchDescription& b = got.value();
+  EXPECT_EQ(b.pace, 0.5);
+  EXPECT_EQ(b.late_ns, 300'000);
+  EXPECT_EQ(b.late_share, 0.02);
+  ASSERT_EQ(b.bridges.size(), 1u);
+  EXPECT_EQ(b.bridges[0].kind, "cp2112");
+  EXPECT_EQ(b.bridges[0].bus, 2);
+  EXPECT_EQ(b.bridges[0].rate_Hz, 400e3);
+  ASSERT_EQ(b.serials.size(), 1u);
+  EXPECT_EQ(b.serials[0].baud, 921'600);
+  ASSERT_EQ(b.readings().size(), 1u);
+  EXPECT_EQ(b.readings()[0].dimension, Dimension::force);
+  EXPECT_EQ(b.readings()[0].scale_SI, 0.01);
+  EXPECT_EQ(b.readings()[0].zero, 5.0);
+  EXPECT_EQ(b.instruments[0].delay_ns, 4'000'000);
+  EXPECT_EQ(b.signals.at("speed"), "told_speed");
+  ASSERT_EQ(b.safety.limits.size(), 1u);
+  EXPECT_EQ(b.safety.limits[0].high, 22.0);
+  EXPECT_EQ(b.safety.heartbeat_ns, 100'000'000);
+}
+
+TEST(BenchFile, RefusesWhatNoBenchCanBe) {
+  const std::pair<std::string, std::string> cases[] = {
+      {with("\"cp2112\"", "\"ft260\""), "bridge"},
+      {with("i2c2", "spi1"), "bus"},
+      {with("\"10 mN\"", "\"0 N\""), "scale"},
+      {with("\"22 A\"", "\"-2 A\""), "high"},
+      {with("\"22 A\"", "\"22 V\""), "high"},
+      {with("phrase = \"clear\", ", ""), "phrase"},
+      {with("/dev/ttyUSB1", "/dev/ttyUSB0"), "twice"},
+      {with("name = \"cell\"", "name = \"terminal\""), "twice"},
+      {with("longest = \"60 s\",", ""), "longest"},
+      {with("pace = 0.5", "pace = 0"), "pace"},
+      {with("delay = \"4 ms\"", "delay = \"4 ms\", colour = 1"), "colour"},
+      {with("readings = { { signal = \"thrust\", column = 2, scale = \"10 mN\", zero = 5 } }",
+            "readings = {}"),
+       "readings"},
+  };
+  for (const auto& [text, word] : cases) {
+    const auto got = bench_of(text);
+    ASSERT_FALSE(got) << word;
+    EXPECT_EQ(got.error().kind, ErrorKind::bad_input);
+    EXPECT_NE(got.error().message().find(word), std::string::npos) << got.error().message();
+  }
+}
+
+}  // namespace
+}  // namespace whirl

@@ -1,0 +1,81 @@
+#include "harness/cli/bench_choice.hpp"
+
+#include <algorithm>
+
+#include "harness/catalogue/bench_file.hpp"
+#include "harness/cli/find_file.hpp"
+#include "harness/cli/find_plans.hpp"
+
+namespace whirl::cli {
+namespace {
+
+constexpr std::string_view kPrefix = "bench/";
+
+Error refused(const std::string& place, const std::string& what, const std::string& cure = "") {
+  return {ErrorKind::bad_input, place, what, cure};
+}
+
+Result<Done> check_options(const RunOptions& options) {
+  if (!options.target.starts_with(kPrefix) || options.target.size() == kPrefix.size()) {
+    return refused("--target", "'" + options.target + "' is no target", "bench/NAME");
+  }
+  if (options.gdb) return refused("--gdb", "a bench does not wait for a debugger");
+  if (options.twice) return refused("--twice", "no two runs of metal are equal to the bit");
+  if (options.jobs > 1) return refused("--jobs", "a bench runs one plan at a time");
+  return Done{};
+}
+
+// The world's end of each bus of the board, where the bench has something in its place.
+Result<Done> check_links(const plan::Plan& plan, const BoardDescription& board,
+                         const bench::BenchDescription& bench) {
+  for (const BoardDevice& device : board.devices) {
+    const auto joins = [&](const std::string& kind, int number) {
+      return device.bus == kind + std::to_string(number);
+    };
+    const bool joined =
+        std::any_of(bench.bridges.begin(), bench.bridges.end(),
+                    [&](const auto& link) { return joins("i2c", link.bus); }) ||
+        std::any_of(bench.serials.begin(), bench.serials.end(), [&](const auto& link) {
+          return joins("usart", link.uart) || joins("uart", link.uart);
+        });
+    // A line that nobody types on may be left open: a plan that asks gets no answer, and says so.
+    if (device.type != "i2c_master" || joined) continue;
+    return refused(
+        bench.file,
+        "nothing joins " + device.bus + ", over which " + plan.name + " commands " + board.name,
+        "links = { { bus = \"" + device.bus + "\", bridge = ... } }");
+  }
+  return Done{};
+}
+
+}  // namespace
+
+Result<bench::BenchDescription> bench_for(const plan::Plan& plan, const std::vector<Node>& nodes,
+                                          const RunOptions& options, const std::string& root) {
+  if (const auto good = check_options(options); !good) return good.error();
+  if (!plan.stand || nodes.size() != 1) {
+    return refused(plan.place, "a bench is a thrust stand with one board",
+                   "a vehicle's sensors are played by the pod, which no bench has yet");
+  }
+  const std::string wanted = options.target.substr(kPrefix.size());
+  const auto file =
+      find_file(wanted, {plan.file, "--target"}, {root + "/test_plans/benches"}, ".lua");
+  if (!file) return file.error();
+  auto bench = read_bench(shown_path(file.value()));
+  if (!bench) return bench.error();
+  const BoardDescription& board = nodes.front().board;
+  if (bench.value().board != board.name) {
+    return refused(plan.place, "the plan is for " + board.name + ", and on bench " +
+                                   bench.value().name + " there is " + bench.value().board);
+  }
+  if (const auto joined = check_links(plan, board, bench.value()); !joined) return joined.error();
+  if (options.arm != bench.value().safety.phrase) {
+    return refused(bench.value().file,
+                   options.arm.empty() ? "a rotor will turn: nobody has said that all is clear"
+                                       : "'" + options.arm + "' is not the bench's phrase",
+                   "look, then add --arm \"" + bench.value().safety.phrase + "\"");
+  }
+  return bench;
+}
+
+}  // namespace whirl::cli

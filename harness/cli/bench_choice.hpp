@@ -1,0 +1,19 @@
+// Which bench a run is for, and whether the plan can be run there.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "base/result.hpp"
+#include "harness/board/node.hpp"
+#include "harness/cli/options.hpp"
+#include "harness/plan/plan_file.hpp"
+#include "harness/target/bench/bench_description.hpp"
+
+namespace whirl::cli {
+
+// Errors  bad_input: no such bench, another board than the plan's, a bus that the plan uses and nothing joins,
+//         the phrase was not said; several boards, a vehicle, --gdb, --twice or several runs at once
+Result<bench::BenchDescription> bench_for(const plan::Plan& plan, const std::vector<Node>& nodes,
+                                          const RunOptions& options, const std::string& root);
+
+}  // namespace whirl::cli

@@ -1,0 +1,172 @@
+#include "harness/composition/boards.hpp"
+
+#include <poll.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <set>
+
+#include "harness/catalogue/stand_table.hpp"
+#include "harness/catalogue/surroundings_table.hpp"
+#include "harness/catalogue/vehicle_file.hpp"
+#include "harness/flight/flight_world.hpp"
+#include "harness/pacing/host_clock.hpp"
+#include "harness/plan/needs.hpp"
+#include "harness/stand/bench_stand.hpp"
+#include "harness/stand/stand_world.hpp"
+#include "harness/target/bench/bench_target.hpp"
+#include "harness/target/bench/bridge_link.hpp"
+#include "harness/target/bench/serial_links.hpp"
+#include "harness/target/virtual_board.hpp"
+#include "io_bridges/protocols/esc_codec.hpp"
+
+namespace whirl {
+namespace {
+
+Result<stand::StandParams> stand_of(const cli::Setup& setup) {
+  return catalogue::read_stand(*setup.plan.stand, setup.root + "/test_plans/propellers");
+}
+
+// Each motor has its ESC on the board, and each ESC its motor.
+Result<Done> check_escs(const cli::Setup& setup, const flight::FlightParams& params) {
+  const int motors = static_cast<int>(params.vehicle.airframe.rotors.size());
+  std::set<int> driven;
+  for (const BoardDevice& device : setup.board.devices) {
+    if (device.type == "esc_i2c") driven.insert(device.motor);
+  }
+  const auto wrong = [&](const std::string& what) {
+    return Error{ErrorKind::bad_input, setup.vehicle_file, what,
+                 "the vehicle has " + std::to_string(motors) + " motors, " + setup.board.name +
+                     " " + std::to_string(driven.size()) + " ESCs"};
+  };
+  for (const int motor : driven) {
+    if (motor > motors) {
+      return wrong("the board's ESC of motor " + std::to_string(motor) + " has no motor");
+    }
+  }
+  for (int motor = 1; motor <= motors; ++motor) {
+    if (driven.count(motor) == 0) return wrong("motor " + std::to_string(motor) + " has no ESC");
+  }
+  return Done{};
+}
+
+flight::BoardEars ears_of(const BoardDescription& board) {
+  const auto has = [&](std::initializer_list<const char*> types) {
+    return std::any_of(board.devices.begin(), board.devices.end(), [&](const BoardDevice& device) {
+      return std::find(types.begin(), types.end(), device.type) != types.end();
+    });
+  };
+  return {.radio = has({"mavlink_link"}), .receiver = has({"cppm", "sbus"})};
+}
+
+// What the plan reads of the virtual stand and this bench does not measure is said before anything turns.
+Result<std::unique_ptr<World>> bench_world(const cli::Setup& setup,
+                                           const stand::StandParams& params) {
+  const std::string& file = setup.bench->file;
+  if (params.esc.pulse_rate_Hz > 0.0) {
+    return Error{ErrorKind::bad_input, setup.plan.place,
+                 "throttle = \"pwm\": no bench gives pulses yet", "throttle = \"i2c\""};
+  }
+  stand::BenchStandParams bench;
+  bench.esc = params.esc;
+  bench.aliases = setup.bench->signals;
+  for (const bench::Reading& reading : setup.bench->readings()) {
+    bench.readings.push_back({reading.signal, reading.dimension, "as the bench measures it"});
+  }
+  for (const bench::Limit& limit : setup.bench->safety.limits) {
+    bench.limits.push_back({limit.signal, limit.dimension, limit.low, limit.high});
+  }
+  auto world = stand::BenchStand::make(std::move(bench));
+  if (!world) return Error{ErrorKind::bad_input, file, world.error().what, world.error().cure};
+  const stand::StandWorld elsewhere(params, setup.seed);
+  const auto read = plan::check_signals(setup.plan, world.value()->signals(), elsewhere.signals());
+  if (!read) return read.error();
+  return std::unique_ptr<World>(std::move(world.value()));
+}
+
+Result<std::unique_ptr<World>> make_world(const cli::Setup& setup) {
+  if (setup.plan.stand) {
+    const auto params = stand_of(setup);
+    if (!params) return params.error();
+    if (setup.bench != nullptr) return bench_world(setup, params.value());
+    return std::unique_ptr<World>(std::make_unique<stand::StandWorld>(params.value(), setup.seed));
+  }
+  auto params = catalogue::read_vehicle(setup.vehicle_file, setup.settings);
+  if (!params) return params.error();
+  const auto around = catalogue::read_surroundings(*setup.plan.surroundings, params.value());
+  if (!around) return around.error();
+  if (const auto joined = check_escs(setup, params.value()); !joined) return joined.error();
+  params.value().ears = ears_of(setup.board);
+  return std::unique_ptr<World>(std::make_unique<flight::FlightWorld>(params.value(), setup.seed));
+}
+
+pacing::MonotonicClock& host_clock() {
+  static pacing::MonotonicClock clock;
+  return clock;
+}
+
+// Enter, where a person sits at the terminal.
+bool enter_pressed() {
+  pollfd terminal{STDIN_FILENO, POLLIN, 0};
+  return isatty(STDIN_FILENO) == 1 && poll(&terminal, 1, 0) == 1;
+}
+
+Result<std::unique_ptr<Target>> bench_target(const cli::Setup& setup, const BridgeMaker& bridge) {
+  const auto params = stand_of(setup);
+  if (!params) return params.error();
+  const bench::BenchDescription& bench = *setup.bench;
+  std::vector<std::unique_ptr<bench::Link>> links;
+  for (const bench::BridgeLink& link : bench.bridges) {
+    auto port = bridge(link);
+    if (!port) return port.error();
+    const auto zero = io::pack_setpoint(params.value().esc.address, 0);
+    links.push_back(std::make_unique<bench::BridgeThread>(
+        bench::BridgeOptions{.name = link.name,
+                             .bus = link.bus,
+                             .safe = {params.value().esc.address, {zero.begin(), zero.end()}, 0},
+                             .heartbeat_ns = bench.safety.heartbeat_ns},
+        std::move(port.value())));
+  }
+  for (const bench::SerialLink& link : bench.serials) {
+    links.push_back(std::make_unique<bench::BoardSerial>(link));
+  }
+  std::uint16_t port = 0;
+  for (const bench::Instrument& instrument : bench.instruments) {
+    links.push_back(std::make_unique<bench::InstrumentLine>(instrument, port));
+    port = static_cast<std::uint16_t>(port + instrument.readings.size());
+  }
+  return std::unique_ptr<Target>(std::make_unique<bench::BenchTarget>(
+      bench::BenchOptions{.bench = bench, .operator_stops = enter_pressed}, std::move(links),
+      host_clock()));
+}
+
+Result<std::unique_ptr<Target>> make_target(const cli::Setup& setup, const BridgeMaker& bridge) {
+  if (setup.bench != nullptr) return bench_target(setup, bridge);
+  VirtualBoardOptions options;
+  options.board = {setup.board,
+                   {.image = setup.image,
+                    .seed = setup.seed,
+                    .gdb_port = setup.gdb_port,
+                    .folder = setup.folder,
+                    .node = setup.plan.nodes[setup.node].name}};
+  if (setup.plan.stand && setup.node == 0) {
+    const auto params = stand_of(setup);
+    if (!params) return params.error();
+    const auto set =
+        stand::set_stage(options.board.board, params.value().esc.motor, params.value().stage);
+    if (!set) return set.error();
+  }
+  options.any_qemu_version = std::getenv("WHIRL_ANY_QEMU") != nullptr;
+  return std::unique_ptr<Target>(std::make_unique<VirtualBoard>(std::move(options)));
+}
+
+}  // namespace
+
+cli::Composition boards_and_worlds(const std::string& root, const std::string& results,
+                                   const BridgeMaker& bridge) {
+  return {make_world, [bridge](const cli::Setup& setup) { return make_target(setup, bridge); },
+          root, results};
+}
+
+}  // namespace whirl

@@ -1,0 +1,121 @@
+#include "harness/standin/stand_in.hpp"
+
+#include <array>
+#include <cstdio>
+
+#include "base/check.hpp"
+
+namespace whirl {
+
+StandIn::StandIn(World& world, Target& board, pacing::HostClock& clock, StandInOptions options)
+    : lockstep_(world, board),
+      clock_(clock),
+      pacer_(clock, options.pace),
+      options_(std::move(options)) {
+  const SignalTable signals(world.signals());
+  for (const std::string& name : options_.told) {
+    const auto column = signals.find(name);
+    WHIRL_CHECK(column, name);
+    columns_.push_back(*column);
+  }
+}
+
+Result<Done> StandIn::run() {
+  std::optional<Error> error;
+  if (const auto started = lockstep_.start(); !started) error = started.error();
+  while (!error) {
+    pacer_.wait_for(lockstep_.now_ns());
+    {
+      const std::scoped_lock lock(mutex_);
+      if (ending_) break;
+    }
+    take_in();
+    const auto state = lockstep_.step();
+    hand_out();
+    if (!state) error = state.error();
+    if (!state || state.value() != TargetState::running) break;
+    tell();
+  }
+  lockstep_.stop();
+  const std::scoped_lock lock(mutex_);
+  ended_ = true;
+  changed_.notify_all();
+  if (error) return *error;
+  return Done{};
+}
+
+void StandIn::end() {
+  const std::scoped_lock lock(mutex_);
+  ending_ = true;
+}
+
+// What came to the wires since the last step is in this one.
+void StandIn::take_in() {
+  const std::int64_t now_ns = lockstep_.now_ns();
+  std::array<std::uint8_t, 1024> bytes;
+  if (options_.serial) {
+    const std::size_t size = options_.serial->read(bytes);
+    if (size > 0) {
+      lockstep_.to_send().add(io::Kind::uart_frame, options_.uart, now_ns, bytes.data(),
+                              static_cast<std::uint32_t>(size));
+    }
+  }
+  const std::scoped_lock lock(mutex_);
+  for (const std::uint32_t number : fresh_) {
+    const bench::Transfer& transfer = open_.at(number).transfer;
+    const io::I2cOrder order{transfer.address, transfer.read, number};
+    lockstep_.to_send().add(io::Kind::i2c_order, options_.i2c, now_ns, order, transfer.write.data(),
+                            static_cast<std::uint32_t>(transfer.write.size()));
+  }
+  fresh_.clear();
+}
+
+void StandIn::hand_out() {
+  for (io::Reader r(lockstep_.happened().bytes()); r.next();) {
+    if (r.header().kind == io::Kind::i2c_reply) answer(r);
+    if (r.header().kind != io::Kind::uart_received || r.header().port != options_.uart) continue;
+    if (options_.serial) options_.serial->write(r.payload());
+  }
+}
+
+void StandIn::answer(const io::Reader& reply) {
+  const auto head = reply.as<io::I2cReplyHead>();
+  const auto bytes = reply.tail_after(sizeof head);
+  const std::scoped_lock lock(mutex_);
+  const auto it = open_.find(head.number);
+  if (it == open_.end()) return;
+  bench::TransferOutcome outcome;
+  outcome.acked = head.acked != 0;
+  outcome.timed_out = head.timed_out != 0;
+  outcome.bytes.assign(bytes.begin(), bytes.end());
+  outcome.end_host_ns = clock_.now_ns();
+  it->second.outcome = std::move(outcome);
+  changed_.notify_all();
+}
+
+void StandIn::tell() {
+  if (!options_.instruments || lockstep_.now_ns() % options_.told_every_ns != 0) return;
+  std::string line;
+  for (const std::size_t column : columns_) {
+    char number[32];
+    std::snprintf(number, sizeof number, "%s%.7g", line.empty() ? "" : " ",
+                  lockstep_.row()[column]);
+    line += number;
+  }
+  line += "\r\n";
+  options_.instruments->write({reinterpret_cast<const std::uint8_t*>(line.data()), line.size()});
+}
+
+Result<bench::TransferOutcome> StandIn::transfer(const bench::Transfer& transfer) {
+  std::unique_lock lock(mutex_);
+  const std::uint32_t number = number_++;
+  open_[number] = {transfer, std::nullopt};
+  fresh_.push_back(number);
+  changed_.wait(lock, [&] { return ended_ || open_.at(number).outcome.has_value(); });
+  auto outcome = std::move(open_.at(number).outcome);
+  open_.erase(number);
+  if (outcome) return std::move(*outcome);
+  return Error{ErrorKind::host, "stand-in", "the board has ended", ""};
+}
+
+}  // namespace whirl

@@ -1,0 +1,70 @@
+// A virtual board that behaves as one of metal: time does not wait for who is at its wires.
+//
+//   Wires   its serial line on a pseudo-terminal, its I2C slave by transfers that wait for their answer, what a load
+//           cell and meters would say as lines of text on another pseudo-terminal
+//   Pace    of the host's clock, as a pacer holds it; a host that is late is told of in lateness()
+//   Thread  run() is one thread's; transfer() and end() may be called by any other
+//   Left out  the wire's own noise; a USB bridge's time, which is its model's
+#pragma once
+#include <condition_variable>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "harness/lockstep/lockstep.hpp"
+#include "harness/pacing/pacer.hpp"
+#include "harness/target/bench/bridge_link.hpp"
+#include "io_bridges/serial/pseudo_terminal.hpp"
+
+namespace whirl {
+
+struct StandInOptions {
+  double pace = 1.0;
+  std::uint16_t uart = 1, i2c = 2;
+  std::optional<io::PseudoTerminal> serial;  // none: nobody is at the line
+  std::optional<io::PseudoTerminal> instruments;
+  std::vector<std::string> told;           // signals of the world, in the order of a line, in SI
+  std::int64_t told_every_ns = 2'000'000;  // of virtual time, whole milliseconds
+};
+
+class StandIn {
+ public:
+  StandIn(World& world, Target& board, pacing::HostClock& clock, StandInOptions options);
+
+  // Until end(), or the board ends. Errors  those of the target, and of lockstep
+  Result<Done> run();
+  void end();
+
+  // Over the board's I2C, as a master on its bus would: waits until it has ended, some milliseconds of virtual
+  // time. Errors  host: the board has ended
+  Result<bench::TransferOutcome> transfer(const bench::Transfer& transfer);
+
+  const pacing::Lateness& lateness() const { return pacer_.lateness(); }
+
+ private:
+  struct Waiting {
+    bench::Transfer transfer;
+    std::optional<bench::TransferOutcome> outcome;
+  };
+  void take_in();
+  void hand_out();
+  void tell();
+  void answer(const io::Reader& reply);
+
+  Lockstep lockstep_;
+  pacing::HostClock& clock_;
+  pacing::Pacer pacer_;
+  StandInOptions options_;
+  std::vector<std::size_t> columns_;  // of options_.told
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::map<std::uint32_t, Waiting> open_;
+  std::vector<std::uint32_t> fresh_;  // not yet given to the board
+  std::uint32_t number_ = 0;
+  bool ending_ = false, ended_ = false;
+};
+
+}  // namespace whirl

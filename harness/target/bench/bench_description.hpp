@@ -1,0 +1,80 @@
+// A bench: a physical board, what of this host its buses hang on, and when all of it is made safe.
+//
+//   Links        each stands for a part of the board file that is the world's end of a bus: an i2c_master by a USB
+//                bridge, a `serial` by a serial line
+//   Instruments  lines of text with numbers, each a signal: load cell, tachometer, meters
+//   Safety       limits on signals, a limit on time, the phrase that who runs it has to say
+#pragma once
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "base/units.hpp"
+
+namespace whirl::bench {
+
+struct SerialLink {
+  std::string name, path;
+  std::uint16_t uart = 1;
+  int baud = 115200;
+};
+
+struct BridgeLink {  // USB to I2C
+  std::string name;
+  std::string kind;    // "mcp2221a", "cp2112"
+  std::string serial;  // number of the bridge; empty: the only one
+  std::uint16_t bus = 2;
+  double rate_Hz = 100e3;
+};
+
+struct Reading {  // the n-th number of a line, (number - zero) * scale
+  std::string signal;
+  Dimension dimension = Dimension::none;
+  int column = 1;
+  double scale_SI = 1.0, zero = 0.0;
+};
+
+struct Instrument {
+  std::string name, path;
+  int baud = 115200;
+  std::int64_t delay_ns = 0;  // from what is measured to the end of its line
+  std::vector<Reading> readings;
+};
+
+struct Limit {
+  std::string signal;
+  Dimension dimension = Dimension::none;
+  double low = 0.0, high = 0.0;  // SI
+};
+
+struct Safety {
+  std::string phrase;
+  std::vector<Limit> limits;
+  std::int64_t longest_ns = 0;  // of a run
+  std::int64_t heartbeat_ns =
+      0;  // of the host: silence of our own loop after which the links make safe
+};
+
+struct BenchDescription {
+  std::string file, name, board;  // the board's name, as plans write it
+  double pace = 1.0;
+  std::int64_t late_ns = 0;  // of the host: what counts as late
+  double late_share = 0.0;   // of the steps: more makes a run inconclusive
+  std::vector<SerialLink> serials;
+  std::vector<BridgeLink> bridges;
+  std::vector<Instrument> instruments;
+  std::map<std::string, std::string> signals;  // other names: {"speed", "told_speed"}
+  Safety safety;
+
+  // In the order of the ports of instrument_reading.
+  std::vector<Reading> readings() const {
+    std::vector<Reading> all;
+    for (const Instrument& i : instruments) {
+      all.insert(all.end(), i.readings.begin(), i.readings.end());
+    }
+    return all;
+  }
+};
+
+}  // namespace whirl::bench

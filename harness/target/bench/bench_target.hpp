@@ -1,0 +1,62 @@
+// A physical board as a target: its buses hang on this host, and time does not wait.
+//
+//   Step     arrive() serves the links until the step's end is due by the pacer. What came is told in order of
+//            its time; what a link had before the step's end and told later comes with the next one
+//   Late     a step that begins late is counted, and told to the report by held_pace(); a stall beyond
+//            100 ms is given up, as the pacer says
+//   Safe     an emergency_stop from the world, the bench's longest time, a lost heartbeat, the operator or the
+//            end of the run: the links send the zero set-point and nothing else from then on
+//   Offers   nothing: no virtual time, no watches, no faults on wires, no log of buses
+#pragma once
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "harness/pacing/pacer.hpp"
+#include "harness/target/bench/bench_description.hpp"
+#include "harness/target/bench/link.hpp"
+#include "harness/target/target.hpp"
+
+namespace whirl::bench {
+
+struct BenchOptions {
+  BenchDescription bench;
+  std::function<bool()> operator_stops;  // asked each step; null: nobody is there
+  bool real_time = true;                 // asks the host for SCHED_FIFO
+};
+
+class BenchTarget final : public Target {
+ public:
+  BenchTarget(BenchOptions options, std::vector<std::unique_ptr<Link>> links,
+              pacing::HostClock& clock);
+  ~BenchTarget() override;
+
+  Result<Done> start() override;
+  void run(std::int64_t until_ns, const io::Batch& sensed) override;
+  Result<TargetState> arrive(io::Batch& happened) override;
+  void stop(io::Batch& happened) override;
+  std::vector<std::pair<std::string, std::string>> versions() const override;
+  Offers offers() const override { return {}; }
+  std::string why_ended() const override { return why_; }
+  const HeldPace* held_pace() const override { return &held_; }
+
+ private:
+  Result<Done> serve_until(std::int64_t due_host_ns);
+  Result<Done> serve_all(std::int64_t now_host_ns);
+  void tell(std::int64_t until_ns, io::Batch& happened);
+  void make_safe(const std::string& why);
+
+  BenchOptions options_;
+  std::vector<std::unique_ptr<Link>> links_;
+  pacing::HostClock& clock_;
+  pacing::Pacer pacer_;
+  HeldPace held_;
+  Arrivals arrivals_;
+  std::int64_t until_ns_ = 0;
+  std::string why_;  // made safe, and by what; empty: not
+  bool started_ = false, stopped_ = false;
+  bool host_stopped_ = false;  // by the operator or the host: nothing of the firmware's
+};
+
+}  // namespace whirl::bench
