@@ -6,16 +6,7 @@
 #include "harness/cli/composition.hpp"
 #include "harness/cli/console.hpp"
 #include "harness/composition/boards.hpp"
-
-namespace whirl {
-namespace {
-
-Result<std::unique_ptr<bench::I2cPort>> make_bridge(const bench::BridgeLink& link) {
-  return Error{ErrorKind::bad_input, link.name, "this program drives no " + link.kind + " yet", ""};
-}
-
-}  // namespace
-}  // namespace whirl
+#include "harness/target/bench/hid_port.hpp"
 
 int main(int argc, char** argv) {
   using namespace whirl;
@@ -28,5 +19,5 @@ int main(int argc, char** argv) {
   return cli::run_program(
       argc, argv,
       boards_and_worlds(here.value().root, wanted ? std::string(results) : here.value().results,
-                        make_bridge));
+                        bench::hid_port));
 }

@@ -11,7 +11,7 @@
 #include "base/result.hpp"
 #include "harness/catalogue/board_file.hpp"
 #include "harness/plan/plan_file.hpp"
-#include "harness/target/bench/bench_description.hpp"
+#include "harness/target/bench/bridge_link.hpp"
 #include "harness/target/target.hpp"
 #include "harness/world/world.hpp"
 
@@ -35,7 +35,8 @@ struct Composition {
   std::function<Result<std::unique_ptr<World>>(const Setup&)> world;
   std::function<Result<std::unique_ptr<Target>>(const Setup&)> target;
   std::string root;
-  std::string results;  // folder of runs and history
+  std::string results;                  // folder of runs and history
+  bench::BridgeMaker bridge = nullptr;  // USB to I2C, of a bench
 };
 
 // The whole program but its composition. Returns the exit code.

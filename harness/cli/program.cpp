@@ -4,6 +4,7 @@
 #include <tuple>
 
 #include "base/mishap.hpp"
+#include "harness/cli/bench_command.hpp"
 #include "harness/cli/calibrate_command.hpp"
 #include "harness/cli/composition.hpp"
 #include "harness/cli/console.hpp"
@@ -229,6 +230,20 @@ int run_chosen(int argc, char** argv, Composition composition) {
 
   esc->add_option("--data", calibration.data, "fit this data.txt of an earlier run again");
 
+  BenchOptions bench;
+  auto* benches = app.add_subcommand("bench", "physical boards on this host's wires");
+  benches->require_subcommand(1);
+  auto* check = benches->add_subcommand("check", "is all there, how fast and steady is each link");
+  check->add_option("name", bench.name, "of test_plans/benches, or a file")->required();
+  check->add_option("--seconds", bench.seconds, "of each measurement (2)")
+      ->check(CLI::Range(0.1, 600.0));
+
+  ParityOptions pair;
+  auto* parity = app.add_subcommand("parity", "two runs of one plan, figure by figure");
+  parity->add_option("first", pair.first, "a run's folder: of the virtual board")->required();
+  parity->add_option("second", pair.second, "another one: of a bench")->required();
+  parity->add_option("--page", pair.page, "where the page goes (default: the second's folder)");
+
   FuzzOptions fuzzing;
   auto* fuzz =
       app.add_subcommand("fuzz", "random inputs by seed; whatever breaks is a bug of whirl");
@@ -262,6 +277,8 @@ int run_chosen(int argc, char** argv, Composition composition) {
                           (calibration.data.empty() ? "" : " --data " + calibration.data);
     return calibrate_esc_command(calibration, composition);
   }
+  if (*check) return bench_check_command(bench, composition);
+  if (*parity) return parity_command(pair);
   if (*fuzz) return fuzz_command(fuzzing);
   if (*job) return job_command(composition);
   if (*devices) return devices_command();

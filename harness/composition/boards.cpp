@@ -112,7 +112,8 @@ bool enter_pressed() {
   return isatty(STDIN_FILENO) == 1 && poll(&terminal, 1, 0) == 1;
 }
 
-Result<std::unique_ptr<Target>> bench_target(const cli::Setup& setup, const BridgeMaker& bridge) {
+Result<std::unique_ptr<Target>> bench_target(const cli::Setup& setup,
+                                             const bench::BridgeMaker& bridge) {
   const auto params = stand_of(setup);
   if (!params) return params.error();
   const bench::BenchDescription& bench = *setup.bench;
@@ -141,7 +142,8 @@ Result<std::unique_ptr<Target>> bench_target(const cli::Setup& setup, const Brid
       host_clock()));
 }
 
-Result<std::unique_ptr<Target>> make_target(const cli::Setup& setup, const BridgeMaker& bridge) {
+Result<std::unique_ptr<Target>> make_target(const cli::Setup& setup,
+                                            const bench::BridgeMaker& bridge) {
   if (setup.bench != nullptr) return bench_target(setup, bridge);
   VirtualBoardOptions options;
   options.board = {setup.board,
@@ -164,9 +166,9 @@ Result<std::unique_ptr<Target>> make_target(const cli::Setup& setup, const Bridg
 }  // namespace
 
 cli::Composition boards_and_worlds(const std::string& root, const std::string& results,
-                                   const BridgeMaker& bridge) {
+                                   const bench::BridgeMaker& bridge) {
   return {make_world, [bridge](const cli::Setup& setup) { return make_target(setup, bridge); },
-          root, results};
+          root, results, bridge};
 }
 
 }  // namespace whirl

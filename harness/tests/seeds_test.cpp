@@ -75,5 +75,24 @@ TEST(Seeds, AreSaidOnce) {
   EXPECT_EQ(whirl(root, {"run", "--seeds", "1..2", "--gdb"}).code, 2);
 }
 
+TEST(Target, WhatNoBenchCanRunIsSaidBeforeAnythingTurns) {
+  const FakeRoot root;
+  root.write("p.lua", plan_text("t:wait \"10 ms\" t:expect(t:value \"thrust\"):at_least(0)"));
+  const std::string plan = root.path() + "/p.lua";
+  const auto refused = [&](std::vector<std::string> words, const std::string& why) {
+    words.insert(words.begin(), {"run", plan});
+    const Outcome outcome = whirl(root, words);
+    EXPECT_EQ(outcome.code, 2) << why;
+    EXPECT_NE((outcome.out + outcome.err).find(why), std::string::npos)
+        << outcome.out << outcome.err;
+  };
+  refused({"--target", "foo"}, "'foo' is no target");
+  refused({"--target", "bench/"}, "is no target");
+  refused({"--target", "bench/b", "--twice"}, "--twice");
+  refused({"--target", "bench/b", "--gdb"}, "--gdb");
+  refused({"--target", "bench/b"}, "a bench is a thrust stand");  // the plan has a vehicle
+  refused({"--arm", "clear"}, "--target");
+}
+
 }  // namespace
 }  // namespace whirl::test

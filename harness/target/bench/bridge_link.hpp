@@ -15,6 +15,7 @@
 #include <optional>
 #include <thread>
 
+#include "harness/target/bench/bench_description.hpp"
 #include "harness/target/bench/link.hpp"
 
 namespace whirl::bench {
@@ -41,6 +42,8 @@ class I2cPort {
   virtual void close() = 0;
   virtual std::string version() const = 0;  // "MCP2221A 0002137245, firmware 1.2"
 };
+
+using BridgeMaker = std::function<Result<std::unique_ptr<I2cPort>>(const BridgeLink&)>;
 
 struct BridgeOptions {
   std::string name;

@@ -1,0 +1,55 @@
+#include "harness/target/bench/hid_port.hpp"
+
+#include <cmath>
+
+#include "base/check.hpp"
+#include "io_bridges/hid/i2c_bridge.hpp"
+
+namespace whirl::bench {
+namespace {
+
+class HidBridgePort final : public I2cPort {
+ public:
+  explicit HidBridgePort(const BridgeLink& link) : link_(link) {}
+
+  Result<Done> open() override {
+    const auto kind = link_.kind == "cp2112" ? io::BridgeKind::cp2112 : io::BridgeKind::mcp2221a;
+    io::I2cBridgeSettings settings;
+    settings.speed_Hz = static_cast<int>(std::lround(link_.rate_Hz));
+    settings.timeout_ns = 20'000'000;  // the ESC's longest answer takes one
+    auto opened = io::open_i2c_bridge(kind, link_.serial, settings);
+    if (!opened) return opened.error();
+    bridge_ = std::move(opened.value());
+    return Done{};
+  }
+
+  Result<TransferOutcome> transfer(const Transfer& transfer) override {
+    WHIRL_CHECK(bridge_ != nullptr);
+    io::I2cTransfer made = bridge_->transfer(transfer.address, transfer.write, transfer.read);
+    if (made.outcome == io::I2cOutcome::unplugged) return made.error(link_.name);
+    TransferOutcome outcome;
+    outcome.acked = made.ok();
+    outcome.timed_out = !made.ok() && made.outcome != io::I2cOutcome::address_nack &&
+                        made.outcome != io::I2cOutcome::data_nack;
+    outcome.bytes = std::move(made.bytes);
+    outcome.end_host_ns = made.end_ns;
+    return outcome;
+  }
+
+  void close() override { bridge_.reset(); }
+  std::string version() const override {
+    return bridge_->label() + (link_.serial.empty() ? "" : " " + link_.serial);
+  }
+
+ private:
+  BridgeLink link_;
+  std::unique_ptr<io::I2cBridge> bridge_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<I2cPort>> hid_port(const BridgeLink& link) {
+  return std::unique_ptr<I2cPort>(std::make_unique<HidBridgePort>(link));
+}
+
+}  // namespace whirl::bench

@@ -1,0 +1,72 @@
+#include "results/parity.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "base/near.hpp"
+
+namespace whirl::results {
+namespace {
+
+Expectation figure(const std::string& name, double measured, bool met) {
+  Expectation e;
+  e.name = name;
+  e.measured = measured;
+  e.verdict = met ? Verdict::pass : Verdict::fail;
+  return e;
+}
+
+TEST(Parity, FiguresMeetByNameAndOrder) {
+  Report first, second;
+  first.expectations = {figure("rise", 20.0, true), figure("again", 1.0, true),
+                        figure("again", 2.0, true), figure("peak", 5.0, true)};
+  second.expectations = {figure("again", 1.0, true), figure("rise", 19.0, false),
+                         figure("again", 3.0, true), figure("new", 7.0, true)};
+  const auto rows = parity(first, second);
+  ASSERT_EQ(rows.size(), 5u);
+  EXPECT_TRUE(near(rows[0].difference, -0.05, round_off(2, 1.0)));
+  EXPECT_TRUE(rows[0].first_met);
+  EXPECT_FALSE(rows[0].second_met);
+  EXPECT_EQ(rows[2].second, 3.0);
+  EXPECT_FALSE(rows[3].in_both);
+  EXPECT_TRUE(std::isnan(rows[3].second));
+  EXPECT_EQ(rows[4].name, "new");
+  EXPECT_FALSE(rows[4].in_both);
+}
+
+TEST(Parity, PageAndTextNameWhatDiffersAndEscapeWhatUsersWrote) {
+  Report first, second;
+  first.plan = "a <plan>";
+  first.expectations = {figure("rise & <fall>", 20.0, true)};
+  second.expectations = {figure("rise & <fall>", 25.0, false)};
+  second.versions = {{"bench", "b.lua"}};
+  const std::string page = parity_page(first, second), text = parity_text(first, second);
+  EXPECT_NE(page.find("rise &amp; &lt;fall>"), std::string::npos);
+  EXPECT_EQ(page.find("<plan>"), std::string::npos);
+  for (const std::string& shown : {page, text}) {
+    EXPECT_NE(shown.find("+25.00 %"), std::string::npos);
+    EXPECT_NE(shown.find("first only"), std::string::npos);
+    EXPECT_NE(shown.find("b.lua"), std::string::npos);
+  }
+}
+
+TEST(Verdicts, AHostThatWasLateTakesPassAndFailAway) {
+  for (const bool met : {true, false}) {
+    Report report;
+    report.expectations = {figure("rise", 20.0, met)};
+    report.untimely = "the host was late";
+    conclude(report);
+    EXPECT_EQ(report.verdict, Verdict::inconclusive);
+    EXPECT_EQ(exit_code(report), 3);
+    EXPECT_EQ(report.reason, "the host was late");
+  }
+  Report bad;
+  bad.untimely = "the host was late";
+  bad.reasons = {{Blame::user, "no such file"}};
+  conclude(bad);
+  EXPECT_EQ(exit_code(bad), 2);  // what the user has to mend stays
+}
+
+}  // namespace
+}  // namespace whirl::results
