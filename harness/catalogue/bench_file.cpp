@@ -1,6 +1,7 @@
 #include "harness/catalogue/bench_file.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "harness/lua/table.hpp"
@@ -122,6 +123,10 @@ Result<bench::BenchDescription> read_bench(const std::string& path) {
   for (const lua::Table& entry : t.tables("links")) read_link(entry, bench);
   for (const lua::Table& entry : t.tables("instruments")) {
     bench.instruments.push_back(read_instrument(entry));
+  }
+  for (bench::BridgeLink& link : bench.bridges) {  // a slow board answers late
+    link.timeout_ns =
+        std::llround(static_cast<double>(link.timeout_ns) / std::min(1.0, bench.pace));
   }
   if (t.has("signals")) {
     const lua::Table names = t.table("signals");

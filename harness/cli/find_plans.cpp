@@ -17,8 +17,8 @@ namespace fs = std::filesystem;
 
 bool is_data_folder(const fs::path& path) {
   const std::string name = path.filename().string();
-  return name == "boards" || name == "vehicles" || name == "propellers" || name == "include" ||
-         name == "calibrations";
+  return name == "benches" || name == "boards" || name == "vehicles" || name == "propellers" ||
+         name == "include" || name == "calibrations";
 }
 
 // The plan files below a folder; each folder once, however many links lead to it.

@@ -1,68 +1,10 @@
 // The way of a bench from end to end, without its copper: the ESC's real image runs as a stand-in at a pace, its
 // serial line and load cell on pseudo-terminals, its I2C behind a bridge that takes its time; the plan of the bench
 // is run against it as against metal.
-//
-//   Host   whoever is late by chance makes the run inconclusive: then only that is judged, that it says so
-#include <gtest/gtest.h>
-
-#include <cstdio>
-#include <fstream>
-#include <nlohmann/json.hpp>
-#include <thread>
-
-#include "base/scratch_folder.hpp"
-#include "harness/catalogue/board_file.hpp"
-#include "harness/catalogue/stand_table.hpp"
-#include "harness/composition/boards.hpp"
-#include "harness/pacing/host_clock.hpp"
-#include "harness/stand/stand_world.hpp"
-#include "harness/standin/stand_in.hpp"
-#include "harness/target/virtual_board.hpp"
+#include "harness/tests/stand_in_rise.hpp"
 
 namespace whirl {
 namespace {
-
-const std::string kRoot = WHIRL_ROOT;
-const std::string kPace = "0.15";
-
-stand::StandParams stand_params() {
-  const auto table =
-      lua::read_text(R"(return { prop = "hk_10x4.5", battery = "4s_2200" })", "test");
-  auto params = catalogue::read_stand(table.value(), kRoot + "/test_plans/propellers");
-  params.value().commands = false;
-  return params.value();
-}
-
-struct Metal {  // what the bench hangs on
-  explicit Metal(const ScratchFolder& folder)
-      : serial(folder.file("terminal")), cell(folder.file("cell")) {
-    auto board = read_board(kRoot + "/test_plans/boards/esc32v2.lua");
-    VirtualBoardOptions options;
-    options.board = {board.value(), {.image = kRoot + "/build/firmware/esc.elf", .seed = 1}};
-    target.emplace(std::move(options));
-    StandInOptions wires;
-    wires.pace = std::stod(kPace);
-    wires.serial.emplace(std::move(io::PseudoTerminal::open(serial).value()));
-    wires.instruments.emplace(std::move(io::PseudoTerminal::open(cell).value()));
-    wires.told = {"thrust", "bus_voltage", "supply_current"};
-    stand_in.emplace(world, *target, clock, std::move(wires));
-    thread = std::thread([this] {
-      const auto ran = stand_in->run();
-      EXPECT_TRUE(ran.ok()) << ran.error().message();
-    });
-  }
-  ~Metal() {
-    stand_in->end();
-    thread.join();
-  }
-
-  std::string serial, cell;
-  stand::StandWorld world{stand_params(), 1};
-  pacing::MonotonicClock clock;
-  std::optional<VirtualBoard> target;
-  std::optional<StandIn> stand_in;
-  std::thread thread;
-};
 
 class WireOfStandIn final : public bench::I2cPort {
  public:
@@ -78,57 +20,14 @@ class WireOfStandIn final : public bench::I2cPort {
   StandIn& stand_in_;
 };
 
-std::string bench_file(const Metal& metal) {
-  return R"(return { bench = "stand_in", board = "esc32v2", pace = )" + kPace +
-         R"(, late = "5 ms", late_share = "2 %",
-  links = { { name = "throttle", bus = "i2c2", bridge = "cp2112" },
-            { name = "terminal", bus = "usart1", path = ")" +
-         metal.serial + R"(", baud = "921600 baud" } },
-  instruments = { { name = "cell", path = ")" +
-         metal.cell + R"(", readings = { { signal = "thrust", column = 1, scale = "1 N" },
-    { signal = "bus_voltage", column = 2, scale = "1 V" },
-    { signal = "supply_current", column = 3, scale = "1 A" } } } },
-  signals = { speed = "told_speed" },
-  safety = { phrase = "clear", longest = "30 s", heartbeat = "1 s",
-             limits = { { signal = "supply_current", low = "-5 A", high = "22 A" } } } })";
-}
-
-nlohmann::json run_on_bench(const ScratchFolder& folder, Metal& metal, int& code) {
-  const std::string bench = folder.file("bench.lua"), out = folder.file("out");
-  std::ofstream(bench) << bench_file(metal);
-  const auto composition = boards_and_worlds(
-      kRoot, out, [&](const bench::BridgeLink&) -> Result<std::unique_ptr<bench::I2cPort>> {
-        return std::unique_ptr<bench::I2cPort>(std::make_unique<WireOfStandIn>(*metal.stand_in));
-      });
-  std::vector<std::string> words{
-      "whirl", "run",  kRoot + "/test_plans/bench/rise.lua", "--target", "bench/" + bench,
-      "--arm", "clear"};
-  std::vector<char*> argv;
-  for (std::string& word : words) argv.push_back(word.data());
-  code = cli::run_program(static_cast<int>(argv.size()), argv.data(), composition);
-  std::ifstream file(out + "/runs/latest/run.json");
-  return nlohmann::json::parse(file);
-}
-
 TEST(Bench, TheThrustRiseOfTheRealImageIsMeasuredOverItsWires) {
   const ScratchFolder folder;
-  Metal metal(folder);
+  Metal metal(folder, 0.15);
   int code = -1;
-  const nlohmann::json run = run_on_bench(folder, metal, code);
-  const std::string reason = run["reason"];
-  if (code == 3) {
-    ASSERT_NE(reason.find("the host was late"), std::string::npos) << reason;
-    std::printf("not judged: %s\n", reason.c_str());
-    return;
-  }
-  ASSERT_EQ(code, 0) << reason;
-  for (const auto& e : run["expectations"]) {
-    if (e["name"] != "thrust rise, 10 to 90 %") continue;
-    std::printf("rise on the bench %.2f ms\n", e["measured"].get<double>());
-    EXPECT_GT(e["measured"].get<double>(), 10.0);
-    return;
-  }
-  ADD_FAILURE() << "no rise was measured";
+  const auto wire = [&](const bench::BridgeLink&) -> Result<std::unique_ptr<bench::I2cPort>> {
+    return std::unique_ptr<bench::I2cPort>(std::make_unique<WireOfStandIn>(*metal.stand_in));
+  };
+  expect_a_rise(run_on_bench(folder, metal, "cp2112", wire, code), code);
 }
 
 }  // namespace

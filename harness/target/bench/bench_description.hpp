@@ -26,6 +26,8 @@ struct BridgeLink {  // USB to I2C
   std::string serial;  // number of the bridge; empty: the only one
   std::uint16_t bus = 2;
   double rate_Hz = 100e3;
+  std::int64_t timeout_ns =
+      20'000'000;  // of the host; the ESC's longest answer takes one millisecond
 };
 
 struct Reading {  // the n-th number of a line, (number - zero) * scale

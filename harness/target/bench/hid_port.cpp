@@ -16,7 +16,7 @@ class HidBridgePort final : public I2cPort {
     const auto kind = link_.kind == "cp2112" ? io::BridgeKind::cp2112 : io::BridgeKind::mcp2221a;
     io::I2cBridgeSettings settings;
     settings.speed_Hz = static_cast<int>(std::lround(link_.rate_Hz));
-    settings.timeout_ns = 20'000'000;  // the ESC's longest answer takes one
+    settings.timeout_ns = link_.timeout_ns;
     auto opened = io::open_i2c_bridge(kind, link_.serial, settings);
     if (!opened) return opened.error();
     bridge_ = std::move(opened.value());

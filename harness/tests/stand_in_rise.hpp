@@ -1,0 +1,113 @@
+// An ESC's real image as a stand-in for metal, and the bench's plan run against it.
+#pragma once
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "base/scratch_folder.hpp"
+#include "harness/catalogue/board_file.hpp"
+#include "harness/catalogue/stand_table.hpp"
+#include "harness/composition/boards.hpp"
+#include "harness/pacing/host_clock.hpp"
+#include "harness/stand/stand_world.hpp"
+#include "harness/standin/stand_in.hpp"
+#include "harness/target/virtual_board.hpp"
+
+namespace whirl {
+
+inline const std::string kRoot = WHIRL_ROOT;
+
+inline stand::StandParams stand_params() {
+  const auto table =
+      lua::read_text(R"(return { prop = "hk_10x4.5", battery = "4s_2200" })", "test");
+  auto params = catalogue::read_stand(table.value(), kRoot + "/test_plans/propellers");
+  params.value().commands = false;
+  return params.value();
+}
+
+struct Metal {  // what the bench hangs on
+  Metal(const ScratchFolder& folder, double at_pace)
+      : pace(at_pace), serial(folder.file("terminal")), cell(folder.file("cell")) {
+    auto board = read_board(kRoot + "/test_plans/boards/esc32v2.lua");
+    VirtualBoardOptions options;
+    options.board = {board.value(), {.image = kRoot + "/build/firmware/esc.elf", .seed = 1}};
+    target.emplace(std::move(options));
+    StandInOptions wires;
+    wires.pace = pace;
+    wires.serial.emplace(std::move(io::PseudoTerminal::open(serial).value()));
+    wires.instruments.emplace(std::move(io::PseudoTerminal::open(cell).value()));
+    wires.told = {"thrust", "bus_voltage", "supply_current"};
+    stand_in.emplace(world, *target, clock, std::move(wires));
+    thread = std::thread([this] {
+      const auto ran = stand_in->run();
+      EXPECT_TRUE(ran.ok()) << ran.error().message();
+    });
+  }
+  ~Metal() {
+    stand_in->end();
+    thread.join();
+  }
+
+  double pace;
+  std::string serial, cell;
+  stand::StandWorld world{stand_params(), 1};
+  pacing::MonotonicClock clock;
+  std::optional<VirtualBoard> target;
+  std::optional<StandIn> stand_in;
+  std::thread thread;
+};
+
+inline std::string bench_file(const Metal& metal, const std::string& bridge) {
+  return R"(return { bench = "stand_in", board = "esc32v2", pace = )" + std::to_string(metal.pace) +
+         R"(, late = "5 ms", late_share = "2 %",
+  links = { { name = "throttle", bus = "i2c2", bridge = ")" +
+         bridge + R"(" },
+            { name = "terminal", bus = "usart1", path = ")" +
+         metal.serial + R"(", baud = "921600 baud" } },
+  instruments = { { name = "cell", path = ")" +
+         metal.cell + R"(", readings = { { signal = "thrust", column = 1, scale = "1 N" },
+    { signal = "bus_voltage", column = 2, scale = "1 V" },
+    { signal = "supply_current", column = 3, scale = "1 A" } } } },
+  signals = { speed = "told_speed" },
+  safety = { phrase = "clear", longest = "30 s", heartbeat = "1 s",
+             limits = { { signal = "supply_current", low = "-5 A", high = "22 A" } } } })";
+}
+
+inline nlohmann::json run_on_bench(const ScratchFolder& folder, Metal& metal,
+                                   const std::string& bridge, const bench::BridgeMaker& maker,
+                                   int& code) {
+  const std::string bench = folder.file("bench.lua"), out = folder.file("out");
+  std::ofstream(bench) << bench_file(metal, bridge);
+  const auto composition = boards_and_worlds(kRoot, out, maker);
+  std::vector<std::string> words{
+      "whirl", "run",  kRoot + "/test_plans/bench/rise.lua", "--target", "bench/" + bench,
+      "--arm", "clear"};
+  std::vector<char*> argv;
+  for (std::string& word : words) argv.push_back(word.data());
+  code = cli::run_program(static_cast<int>(argv.size()), argv.data(), composition);
+  std::ifstream file(out + "/runs/latest/run.json");
+  return nlohmann::json::parse(file);
+}
+
+// A run whose host was late is not judged, but for that it says so.
+inline void expect_a_rise(const nlohmann::json& run, int code) {
+  const std::string reason = run["reason"];
+  if (code == 3) {
+    ASSERT_NE(reason.find("the host was late"), std::string::npos) << reason;
+    std::printf("not judged: %s\n", reason.c_str());
+    return;
+  }
+  ASSERT_EQ(code, 0) << reason;
+  for (const auto& e : run["expectations"]) {
+    if (e["name"] != "thrust rise, 10 to 90 %") continue;
+    std::printf("rise on the bench %.2f ms\n", e["measured"].get<double>());
+    EXPECT_GT(e["measured"].get<double>(), 10.0);
+    return;
+  }
+  ADD_FAILURE() << "no rise was measured";
+}
+
+}  // namespace whirl
