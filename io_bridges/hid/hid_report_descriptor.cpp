@@ -167,7 +167,8 @@ std::optional<std::int32_t> value_in(std::span<const std::uint8_t> report, const
     if (report.empty() || report[0] != field.report) return std::nullopt;
     report = report.subspan(1);
   }
-  if (std::size_t{field.bit} + field.bits > 8 * report.size()) return std::nullopt;
+  if (field.bits == 0 || std::size_t{field.bit} + field.bits > 8 * report.size())
+    return std::nullopt;
   std::uint64_t value = 0;
   for (std::uint32_t i = 0; i < field.bits; ++i) {
     const std::uint32_t bit = field.bit + i;

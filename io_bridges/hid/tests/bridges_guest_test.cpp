@@ -231,6 +231,7 @@ TEST_P(OnHidraw, BusyAnotherSerialNumberAndAnotherKindAreRefusedInOneLine) {
 }
 
 TEST_P(OnHidraw, WithoutPermissionTheUdevRuleIsTold) {
+  std::fflush(stdout);  // or the child would say it again
   const pid_t child = fork();
   if (child == 0) {
     if (setgid(65534) != 0 || setuid(65534) != 0) _exit(2);  // nobody
