@@ -15,16 +15,6 @@ Error refused(const std::string& place, const std::string& what, const std::stri
   return {ErrorKind::bad_input, place, what, cure};
 }
 
-Result<Done> check_options(const RunOptions& options) {
-  if (!options.target.starts_with(kPrefix) || options.target.size() == kPrefix.size()) {
-    return refused("--target", "'" + options.target + "' is no target", "bench/NAME");
-  }
-  if (options.gdb) return refused("--gdb", "a bench does not wait for a debugger");
-  if (options.twice) return refused("--twice", "no two runs of metal are equal to the bit");
-  if (options.jobs > 1) return refused("--jobs", "a bench runs one plan at a time");
-  return Done{};
-}
-
 // The world's end of each bus of the board, where the bench has something in its place.
 Result<Done> check_links(const plan::Plan& plan, const BoardDescription& board,
                          const bench::BenchDescription& bench) {
@@ -50,9 +40,21 @@ Result<Done> check_links(const plan::Plan& plan, const BoardDescription& board,
 
 }  // namespace
 
+Result<Done> check_bench_options(const RunOptions& options) {
+  if (options.target.empty()) return Done{};
+  if (!options.target.starts_with(kPrefix) || options.target.size() == kPrefix.size()) {
+    return refused("--target", "'" + options.target + "' is no target", "bench/NAME");
+  }
+  if (options.gdb) return refused("--gdb", "a bench does not wait for a debugger");
+  if (options.twice) return refused("--twice", "no two runs of metal are equal to the bit");
+  if (!options.seeds.empty()) return refused("--seeds", "a bench draws nothing by a seed");
+  if (options.jobs > 1) return refused("--jobs", "a bench runs one plan at a time");
+  return Done{};
+}
+
 Result<bench::BenchDescription> bench_for(const plan::Plan& plan, const std::vector<Node>& nodes,
                                           const RunOptions& options, const std::string& root) {
-  if (const auto good = check_options(options); !good) return good.error();
+  if (const auto good = check_bench_options(options); !good) return good.error();
   if (!plan.stand || nodes.size() != 1) {
     return refused(plan.place, "a bench is a thrust stand with one board",
                    "a vehicle's sensors are played by the pod, which no bench has yet");

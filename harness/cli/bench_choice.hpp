@@ -11,8 +11,12 @@
 
 namespace whirl::cli {
 
+// Before any plan is run, for plans in processes of their own know of no target. Errors  bad_input: no target of
+// that kind; --gdb, --twice, several seeds or several runs at once
+Result<Done> check_bench_options(const RunOptions& options);
+
 // Errors  bad_input: no such bench, another board than the plan's, a bus that the plan uses and nothing joins,
-//         the phrase was not said; several boards, a vehicle, --gdb, --twice or several runs at once
+//         the phrase was not said; several boards, a vehicle; what check_bench_options() refuses
 Result<bench::BenchDescription> bench_for(const plan::Plan& plan, const std::vector<Node>& nodes,
                                           const RunOptions& options, const std::string& root);
 

@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "base/interruption.hpp"
+#include "harness/cli/bench_choice.hpp"
 #include "harness/cli/console.hpp"
 #include "harness/cli/find_plans.hpp"
 #include "harness/cli/jobs.hpp"
@@ -28,6 +29,7 @@ void run_here(const std::vector<PlanChoice>& plans, const RunOptions& options,
 }  // namespace
 
 int run_command(const RunOptions& options, const Composition& composition) {
+  if (const auto good = check_bench_options(options); !good) return complain(good.error());
   const FoundPlans found = find_plans(options, composition.root);
   if (options.gdb && found.plans.size() > 1) {
     std::fprintf(stderr, "whirl: --gdb wants one plan, not %zu (name it, or use --only)\n",

@@ -90,6 +90,9 @@ TEST(Target, WhatNoBenchCanRunIsSaidBeforeAnythingTurns) {
   refused({"--target", "bench/"}, "is no target");
   refused({"--target", "bench/b", "--twice"}, "--twice");
   refused({"--target", "bench/b", "--gdb"}, "--gdb");
+  // In processes of their own two runs would know of no bench, and pass on the virtual board.
+  refused({"--target", "bench/b", "--seeds", "1..2"}, "--seeds");
+  refused({"--target", "bench/b", "--jobs", "2"}, "--jobs");
   refused({"--target", "bench/b"}, "a bench is a thrust stand");  // the plan has a vehicle
   refused({"--arm", "clear"}, "--target");
 }

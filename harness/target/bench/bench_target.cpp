@@ -73,8 +73,10 @@ Result<TargetState> BenchTarget::arrive(io::Batch& happened) {
     make_safe(served.error().message());
     return served.error();
   }
-  if (until_ns_ >= options_.bench.safety.longest_ns) {
+  if (until_ns_ >= options_.bench.safety.longest_ns && why_.empty()) {
     make_safe("the bench's longest time is over");
+    return Error{ErrorKind::bad_input, options_.bench.file, why_,
+                 "a shorter plan, or more in its safety"};
   }
   if (host_stopped_) return Error{ErrorKind::host, options_.bench.name, why_, ""};
   return why_.empty() ? TargetState::running : TargetState::over_limit;
