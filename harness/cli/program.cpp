@@ -179,6 +179,46 @@ CLI::App* add_export(CLI::App& app, ExportOptions& options) {
   return command;
 }
 
+CLI::App* add_bench_check(CLI::App& app, BenchOptions& options) {
+  auto* benches = app.add_subcommand("bench", "physical boards on this host's wires");
+  benches->require_subcommand(1);
+  auto* check = benches->add_subcommand("check", "is all there, how fast and steady is each link");
+  check->add_option("name", options.name, "of test_plans/benches, or a file")->required();
+  check->add_option("--seconds", options.seconds, "of each measurement (2)")
+      ->check(CLI::Range(0.1, 600.0));
+  return check;
+}
+
+CLI::App* add_parity(CLI::App& app, ParityOptions& options) {
+  auto* parity = app.add_subcommand("parity", "two runs of one plan, figure by figure");
+  parity->add_option("first", options.first, "a run's folder: of the virtual board")->required();
+  parity->add_option("second", options.second, "another one: of a bench")->required();
+  parity->add_option("--page", options.page, "where the page goes (default: the second's folder)");
+  return parity;
+}
+
+CLI::App* add_sweep(CLI::App& app, SweepOptions& options) {
+  auto* sweeps = app.add_subcommand(
+      "sweep", "thrust, torque, power and current of a propeller or vehicle file");
+  sweeps->add_option("file", options.file, "a propeller or a vehicle (Lua)")->required();
+  sweeps->add_option("--speed", options.speed,
+                     "of the sweeps over inflow and advance: \"4500 rpm\"");
+  sweeps->add_option("--top-speed", options.top_speed,
+                     "end of the static sweep (default 6000 rpm)");
+  sweeps->add_option("--voltage", options.voltage,
+                     "of the bus (default: the full pack): \"16.4 V\"");
+  return sweeps;
+}
+
+CLI::App* add_history(CLI::App& app, HistoryOptions& history, RunOptions& options) {
+  auto* past = app.add_subcommand("history", "how the expectations of a plan went, run by run");
+  past->add_option("plan", history.plan, "plan name (default: all)");
+  past->add_option("--expectation", history.expectation, "only names that contain this");
+  past->add_option("--last", history.last, "so many runs")->check(CLI::Range(1, 1000));
+  past->add_option("--out", options.out, "where the runs went (default: results)");
+  return past;
+}
+
 int run_chosen(int argc, char** argv, Composition composition) {
   CLI::App app{"Whirlstand: a test stand for rotorcraft firmware", "whirl"};
   app.footer(kExamples);
@@ -195,22 +235,13 @@ int run_chosen(int argc, char** argv, Composition composition) {
   add_plan_options(*list, options);
 
   HistoryOptions history;
-  auto* past = app.add_subcommand("history", "how the expectations of a plan went, run by run");
-  past->add_option("plan", history.plan, "plan name (default: all)");
-  past->add_option("--expectation", history.expectation, "only names that contain this");
-  past->add_option("--last", history.last, "so many runs")->check(CLI::Range(1, 1000));
-  past->add_option("--out", options.out, "where the runs went (default: results)");
+  auto* past = add_history(app, history, options);
 
   ExportOptions exported;
   auto* exports = add_export(app, exported);
 
   SweepOptions sweep;
-  auto* sweeps = app.add_subcommand(
-      "sweep", "thrust, torque, power and current of a propeller or vehicle file");
-  sweeps->add_option("file", sweep.file, "a propeller or a vehicle (Lua)")->required();
-  sweeps->add_option("--speed", sweep.speed, "of the sweeps over inflow and advance: \"4500 rpm\"");
-  sweeps->add_option("--top-speed", sweep.top_speed, "end of the static sweep (default 6000 rpm)");
-  sweeps->add_option("--voltage", sweep.voltage, "of the bus (default: the full pack): \"16.4 V\"");
+  auto* sweeps = add_sweep(app, sweep);
 
   TimingOptions timing;
   auto* validate = app.add_subcommand("validate", "the plant against its references");
@@ -231,18 +262,9 @@ int run_chosen(int argc, char** argv, Composition composition) {
   esc->add_option("--data", calibration.data, "fit this data.txt of an earlier run again");
 
   BenchOptions bench;
-  auto* benches = app.add_subcommand("bench", "physical boards on this host's wires");
-  benches->require_subcommand(1);
-  auto* check = benches->add_subcommand("check", "is all there, how fast and steady is each link");
-  check->add_option("name", bench.name, "of test_plans/benches, or a file")->required();
-  check->add_option("--seconds", bench.seconds, "of each measurement (2)")
-      ->check(CLI::Range(0.1, 600.0));
-
+  auto* check = add_bench_check(app, bench);
   ParityOptions pair;
-  auto* parity = app.add_subcommand("parity", "two runs of one plan, figure by figure");
-  parity->add_option("first", pair.first, "a run's folder: of the virtual board")->required();
-  parity->add_option("second", pair.second, "another one: of a bench")->required();
-  parity->add_option("--page", pair.page, "where the page goes (default: the second's folder)");
+  auto* parity = add_parity(app, pair);
 
   FuzzOptions fuzzing;
   auto* fuzz =

@@ -86,6 +86,7 @@ inline nlohmann::json run_on_bench(const ScratchFolder& folder, Metal& metal,
       "whirl", "run",  kRoot + "/test_plans/bench/rise.lua", "--target", "bench/" + bench,
       "--arm", "clear"};
   std::vector<char*> argv;
+  argv.reserve(words.size());
   for (std::string& word : words) argv.push_back(word.data());
   code = cli::run_program(static_cast<int>(argv.size()), argv.data(), composition);
   std::ifstream file(out + "/runs/latest/run.json");
