@@ -23,11 +23,10 @@ class WireOfStandIn final : public bench::I2cPort {
 TEST(Bench, TheThrustRiseOfTheRealImageIsMeasuredOverItsWires) {
   const ScratchFolder folder;
   Metal metal(folder, 0.15);
-  int code = -1;
   const auto wire = [&](const bench::BridgeLink&) -> Result<std::unique_ptr<bench::I2cPort>> {
     return std::unique_ptr<bench::I2cPort>(std::make_unique<WireOfStandIn>(*metal.stand_in));
   };
-  expect_a_rise(run_on_bench(folder, metal, "cp2112", wire, code), code);
+  expect_a_rise(run_on_bench(folder, metal, "cp2112", wire));
 }
 
 }  // namespace

@@ -76,9 +76,13 @@ inline std::string bench_file(const Metal& metal, const std::string& bridge) {
              limits = { { signal = "supply_current", low = "-5 A", high = "22 A" } } } })";
 }
 
-inline nlohmann::json run_on_bench(const ScratchFolder& folder, Metal& metal,
-                                   const std::string& bridge, const bench::BridgeMaker& maker,
-                                   int& code) {
+struct BenchRun {
+  nlohmann::json file;  // run.json
+  int code = -1;        // the program's exit code
+};
+
+inline BenchRun run_on_bench(const ScratchFolder& folder, Metal& metal, const std::string& bridge,
+                             const bench::BridgeMaker& maker) {
   const std::string bench = folder.file("bench.lua"), out = folder.file("out");
   std::ofstream(bench) << bench_file(metal, bridge);
   const auto composition = boards_and_worlds(kRoot, out, maker);
@@ -88,21 +92,23 @@ inline nlohmann::json run_on_bench(const ScratchFolder& folder, Metal& metal,
   std::vector<char*> argv;
   argv.reserve(words.size());
   for (std::string& word : words) argv.push_back(word.data());
-  code = cli::run_program(static_cast<int>(argv.size()), argv.data(), composition);
+  BenchRun run;
+  run.code = cli::run_program(static_cast<int>(argv.size()), argv.data(), composition);
   std::ifstream file(out + "/runs/latest/run.json");
-  return nlohmann::json::parse(file);
+  run.file = nlohmann::json::parse(file);
+  return run;
 }
 
 // A run whose host was late is not judged, but for that it says so.
-inline void expect_a_rise(const nlohmann::json& run, int code) {
-  const std::string reason = run["reason"];
-  if (code == 3) {
+inline void expect_a_rise(const BenchRun& run) {
+  const std::string reason = run.file["reason"];
+  if (run.code == 3) {
     ASSERT_NE(reason.find("the host was late"), std::string::npos) << reason;
     std::printf("not judged: %s\n", reason.c_str());
     return;
   }
-  ASSERT_EQ(code, 0) << reason;
-  for (const auto& e : run["expectations"]) {
+  ASSERT_EQ(run.code, 0) << reason;
+  for (const auto& e : run.file["expectations"]) {
     if (e["name"] != "thrust rise, 10 to 90 %") continue;
     std::printf("rise on the bench %.2f ms\n", e["measured"].get<double>());
     EXPECT_GT(e["measured"].get<double>(), 10.0);
