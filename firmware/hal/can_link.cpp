@@ -19,6 +19,15 @@ void HeaderCan::start() {
   Nvic<Irq::CAN2_SCE>::enable(kPriorityCan);
 }
 
+std::array<std::uint8_t, 16> unique_id() {
+  std::array<std::uint8_t, 16> bytes{};
+  for (std::uint32_t i = 0; i < 12; ++i) {
+    const std::uint32_t word = RegBlock<UID::base>::read(i & ~3u);
+    bytes[i] = static_cast<std::uint8_t>(word >> 8 * (i % 4));
+  }
+  return bytes;
+}
+
 }  // namespace fw::hal
 
 extern "C" void can2_tx_handler() {

@@ -19,4 +19,6 @@ struct HeaderCan {
 
 extern BxCan<HeaderCan> can2;
 
+std::array<std::uint8_t, 16> unique_id();  // of this part: 12 bytes, then zeros
+
 }  // namespace fw::hal

@@ -37,6 +37,10 @@ struct RCC {
                                  WWDGRSTF = bit(30), LPWRRSTF = bit(31);
 };
 
+struct UID {  // 96 bits, each part's own
+  static constexpr std::uint32_t base = 0x1FFF'7A10;
+};
+
 struct PWR {
   using CR = Reg32<0x4000'7000>;
   static constexpr std::uint32_t VOS = bit(14);  // scale 1: needed above 144 MHz
