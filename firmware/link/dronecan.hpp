@@ -5,7 +5,7 @@
 //   Bits        a scalar's bytes least significant first, each from its most significant bit on; a last
 //               piece that is no whole byte is left-aligned
 //   Long ones   (8 bytes and more) begin with their CRC: CCITT-FALSE over the type's signature, then the
-//               payload. A frame lost shows there, or by its toggle
+//               payload. A frame lost shows there; one that comes twice has its toggle twice
 //   Source      dronecan.github.io/Specification; dronecan/libcanard
 //   Error       the golden vectors and the host's codec (tests/dronecan_test.cpp)
 #pragma once
@@ -186,15 +186,16 @@ class Reassembly {
     if (frame.length == 0) return false;
     const std::uint8_t tail = frame.data[frame.length - 1u];
     if ((tail & kStart) != 0) {
-      size_ = 0;
+      spoiled_ += running_ && (tail & kTransferId) != transfer_id_ ? 1 : 0;
+      size_ = skip_ = 0;
       toggle_ = 0;
       transfer_id_ = tail & kTransferId;
       running_ = true;
     }
-    const bool fits = running_ && (tail & kToggle) == toggle_ &&
-                      (tail & kTransferId) == transfer_id_ &&
-                      size_ + frame.length - 1 <= bytes_.size();
-    if (!fits) return drop();
+    const bool goes_on = running_ && (tail & kTransferId) == transfer_id_;
+    if (!goes_on) return drop();
+    if ((tail & kToggle) != toggle_) return false;  // CAN may deliver a frame twice
+    if (size_ + frame.length - 1 > bytes_.size()) return drop();
     std::copy_n(frame.data.begin(), frame.length - 1,
                 bytes_.begin() + static_cast<std::ptrdiff_t>(size_));
     size_ += frame.length - 1u;
