@@ -8,7 +8,7 @@
 #include <string_view>
 #include <tuple>
 
-#include "firmware/link/dronecan.hpp"
+#include "firmware/dronecan/dronecan.hpp"
 
 namespace fw::dronecan {
 
