@@ -59,6 +59,10 @@ class Machine final : public board::Emulator {
   // For the instruments.
   CoreClock& clock() { return *clock_; }
   void throw_code_away() { api_.tb_flush(cpu_); }
+  // Only the blocks with that instruction. Also from within one: it runs to its end.
+  void forget_code_at(std::uint32_t address) {
+    api_.tb_invalidate_phys_addr(api_.address_space_memory, address, kPrivileged);
+  }
   void code_translated(std::uint32_t from, std::uint32_t to);
 
   io::Nanoseconds now() const override {

@@ -57,7 +57,8 @@ void Machine::accessed(std::uint32_t address) {
     core_stopped(board::StoppedCore::frame_among_registers);
   }
   anchor();
-  if (clock_->reached_register(core_registers_[kPc])) throw_code_away();
+  const std::uint32_t pc = core_registers_[kPc];
+  if (clock_->reached_register(pc)) forget_code_at(pc);
 }
 
 std::uint64_t Machine::read_window(void* window, hwaddr offset, unsigned size) {
