@@ -162,10 +162,10 @@ Result<DrivePoint> drive_rotor(const flight::FlightParams& vehicle, const RotorP
   return point_of(books, speed_radps, rotor.loads, high, bus_V);
 }
 
-double rested_V(const plant::BatteryParams& pack, double depth) {
+plant::Battery rested(const plant::BatteryParams& pack, double depth) {
   plant::BatteryParams there = pack;
   there.initial_depth_of_discharge = depth;
-  return plant::Battery(there).open_circuit_V();
+  return plant::Battery(there);
 }
 
 double total_A(const flight::FlightParams& vehicle, const DrivePoint& each) {
@@ -198,9 +198,9 @@ double until_empty_s(const flight::FlightParams& vehicle, const RotorPoint& roto
   constexpr int kShares = 10;
   double time_s = 0.0;
   for (int i = 0; i < kShares; ++i) {
-    const double ohm = pack.series_resistance_ohm + pack.relaxation_resistance_ohm;
-    const double source_V = rested_V(pack, (i + 0.5) / kShares);
-    const auto hover = hover_from(vehicle, rotor, thrust_N, source_V, ohm);
+    const plant::Battery there = rested(pack, (i + 0.5) / kShares);
+    const auto hover = hover_from(vehicle, rotor, thrust_N, there.open_circuit_V(),
+                                  there.settled_resistance_ohm());
     if (!hover) break;
     time_s += pack.capacity_C / kShares / hover.value().total_A;
   }
@@ -231,12 +231,12 @@ Result<DrivePoint> drive_for_thrust(const flight::FlightParams& vehicle, double 
 }
 
 Result<HoverPoint> hover_point(const flight::FlightParams& vehicle, double bus_V) {
-  const plant::BatteryParams& pack = vehicle.vehicle.battery;
-  const double source_V = bus_V > 0.0 ? bus_V : rested_V(pack, 0.0);
+  const plant::Battery full = rested(vehicle.vehicle.battery, 0.0);
+  const double source_V = bus_V > 0.0 ? bus_V : full.open_circuit_V();
   const double thrust_N = vehicle.vehicle.airframe.mass_kg * kGravity_mps2 /
                           static_cast<double>(vehicle.vehicle.airframe.rotors.size());
   const RotorPoint rotor = rotor_for(vehicle, thrust_N, no_load_radps(vehicle, source_V));
-  const double ohm = bus_V > 0.0 ? 0.0 : pack.series_resistance_ohm;
+  const double ohm = bus_V > 0.0 ? 0.0 : full.series_resistance_ohm();
   auto hover = hover_from(vehicle, rotor, thrust_N, source_V, ohm);
   if (hover) hover.value().until_empty_s = until_empty_s(vehicle, rotor, thrust_N);
   return hover;
