@@ -107,9 +107,11 @@ Battery::Battery(const BatteryParams& params)
 }
 
 void Battery::look_up() {
-  factor_ =
-      warmth_factor_ * factor_at(params_.resistance_over_depth,
-                                 &ResistanceOverDepth::depth_of_discharge, depth_of_discharge());
+  factor_ = warmth_factor_;
+  if (!params_.resistance_over_depth.empty()) {
+    factor_ *= factor_at(params_.resistance_over_depth, &ResistanceOverDepth::depth_of_discharge,
+                         depth_of_discharge());
+  }
   series_ohm_ = factor_ * params_.series_resistance_ohm;
   source_V_ = open_circuit_V() - fast_.voltage_V - slow_.voltage_V;
 }
@@ -149,6 +151,7 @@ BatteryBooks Battery::draw(double charge_C, double dt_s) {
       .dip_J = dip_V_ * charge_C,
   };
   for (Branch* branch : {&fast_, &slow_}) {
+    if (branch->ohm == 0.0) continue;  // eight times a step, of every pack
     if (dt_s != last_dt_s_) branch->blend = -std::expm1(-dt_s / branch->time_s);
     const double settled_V = factor_ * branch->ohm * charge_C / dt_s;
     branch->voltage_V += (settled_V - branch->voltage_V) * branch->blend;

@@ -132,9 +132,9 @@ namespace {
 
 // Of the twelve degrees that were measured; what has more is not told apart.
 double twist_share(const Blade& blade) {
-  constexpr double kMeasured_rad = 12.0 * kPi / 180.0;
+  constexpr double kPer_rad = 180.0 / (12.0 * kPi);
   const double twist = blade.rings[2].angle_rad - blade.rings[kRing_count - 2].angle_rad;
-  return std::clamp(twist / kMeasured_rad, 0.0, 1.0);
+  return std::clamp(twist * kPer_rad, 0.0, 1.0);
 }
 
 }  // namespace
