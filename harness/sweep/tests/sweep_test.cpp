@@ -33,8 +33,8 @@ TEST(Sweep, BusCurrentIsDutyTimesWindingCurrentLessWhatCommutationsGiveBack) {
   EXPECT_GT(p.bus_A, 0.93 * 0.5 * p.winding_A);
 }
 
-// Back-EMF, resistance and, between the pulses, a diode: V = Ke w + R i + (1 - duty) Vd, with the datasheet's Kv and what the thesis's points show of
-// R on a running motor.
+// Back-EMF, resistance and, between the pulses, a diode: V = Ke w + R i + (1 - duty) Vd, with the
+// datasheet's Kv and what the thesis's points show of R on a running motor.
 TEST(Sweep, TheMotorsVoltageEquationHolds) {
   const DrivePoint p = drive_point(quad(), 6.0, 16.4);
   const double ke = 60.0 / (2.0 * std::numbers::pi * 950.0);
@@ -104,7 +104,7 @@ TEST(Sweep, HoverDrawsWhatTheVehiclesOwnControllersDrawInFlight) {
                           "half of it the thrust's; the rest noise, counts of PWM, relaxation")));
 }
 
-// Ten minutes and some at the full pack's current; the tired pack's is larger.
+// The current rises as the pack's voltage falls.
 TEST(Sweep, ThePackIsEmptySoonerThanItsFirstCurrentPromises) {
   const auto hover = hover_point(quad(), 0.0);
   ASSERT_TRUE(hover.ok());
