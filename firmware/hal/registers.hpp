@@ -15,6 +15,7 @@ struct RCC {
   using CR = Reg32<base + 0x00>;
   using PLLCFGR = Reg32<base + 0x04>;
   using CFGR = Reg32<base + 0x08>;
+  using APB2RSTR = Reg32<base + 0x24>;
   using AHB1ENR = Reg32<base + 0x30>;
   using APB1ENR = Reg32<base + 0x40>;
   using APB2ENR = Reg32<base + 0x44>;
@@ -29,8 +30,9 @@ struct RCC {
   static constexpr std::uint32_t TIM2EN = bit(0), TIM5EN = bit(3), TIM6EN = bit(4), TIM7EN = bit(5),
                                  SPI3EN = bit(15), USART2EN = bit(17), I2C2EN = bit(22),
                                  I2C3EN = bit(23), PWREN = bit(28);
-  static constexpr std::uint32_t TIM1EN = bit(0), USART6EN = bit(5), ADC1EN = bit(8),
-                                 SPI1EN = bit(12), SYSCFGEN = bit(14);
+  static constexpr std::uint32_t TIM1EN = bit(0), USART1EN = bit(4), USART6EN = bit(5),
+                                 ADC1EN = bit(8), SPI1EN = bit(12), SYSCFGEN = bit(14);
+  static constexpr std::uint32_t SPI1RST = bit(12);
   static constexpr std::uint32_t RMVF = bit(24), BORRSTF = bit(25), PADRSTF = bit(26),
                                  PORRSTF = bit(27), SFTRSTF = bit(28), WDGRSTF = bit(29),
                                  WWDGRSTF = bit(30), LPWRRSTF = bit(31);
@@ -87,6 +89,7 @@ struct ADC1 {
 
 struct SYSCFG {
   using EXTICR1 = Reg32<0x4001'3808>;  // lines 0..3, four bits each
+  using EXTICR4 = Reg32<0x4001'3814>;  // lines 12..15
 };
 
 struct EXTI {
@@ -106,7 +109,7 @@ struct Spi {
                                  SSI = bit(8), SSM = bit(9);
   static constexpr std::uint32_t BR_Msk = 7u << 3, BR_DIV2 = 0u << 3, BR_DIV8 = 2u << 3,
                                  BR_DIV128 = 6u << 3;
-  static constexpr std::uint32_t RXDMAEN = bit(0), TXDMAEN = bit(1);
+  static constexpr std::uint32_t RXDMAEN = bit(0), TXDMAEN = bit(1), RXNEIE = bit(6);
   static constexpr std::uint32_t BSY = bit(7);
 };
 using SPI1 = Spi<0x4001'3000>;
@@ -143,6 +146,7 @@ struct Usart {
   static constexpr std::uint32_t RE = bit(2), TE = bit(3), UE = bit(13);
   static constexpr std::uint32_t DMAR = bit(6), DMAT = bit(7);
 };
+using USART1 = Usart<0x4001'1000>;
 using USART2 = Usart<0x4000'4400>;
 using USART6 = Usart<0x4001'1400>;
 
@@ -199,6 +203,8 @@ using Spi1RxDma = DmaStream<kDma2, 0>;    // channel 3
 using Usart6RxDma = DmaStream<kDma2, 2>;  // channel 5
 using Spi1TxDma = DmaStream<kDma2, 3>;    // channel 3
 using Usart6TxDma = DmaStream<kDma2, 6>;  // channel 5
+using Usart1RxDma = DmaStream<kDma2, 5>;  // channel 4
+using Usart1TxDma = DmaStream<kDma2, 7>;  // channel 4
 
 // Interrupt numbers, RM0090 table 61.
 enum class Irq : std::uint8_t {
@@ -209,11 +215,14 @@ enum class Irq : std::uint8_t {
   TIM1_CC = 27,
   I2C2_EV = 33,
   I2C2_ER = 34,
+  SPI1_Global = 35,
+  EXTI15_10 = 40,
   TIM5_Global = 50,
   TIM6_DAC = 54,
   TIM7_Global = 55,
   DMA2_Stream0 = 56,
   DMA2_Stream6 = 69,
+  DMA2_Stream7 = 70,
   I2C3_EV = 72,
   I2C3_ER = 73,
 };
