@@ -13,8 +13,11 @@ namespace whirl::io {
 
 class SpiSlave {
  public:
+  static constexpr Nanoseconds kNothing = -1;
+
   virtual ~SpiSlave() = default;
-  virtual void shift_out(Nanoseconds now) = 0;
+  // How long what goes out has waited for it; kNothing: there was nothing in time, or nobody selected.
+  virtual Nanoseconds shift_out(Nanoseconds now) = 0;
   // `bits`: how many clocks there were, 8 of a whole byte, fewer where the master broke it off. Returns
   // what they read from MISO, in the low bits.
   virtual std::uint8_t sampled(std::uint8_t mosi, int bits, Nanoseconds now) = 0;

@@ -164,6 +164,7 @@ bool Spi::receives() const {
 void Spi::write_dr(std::uint16_t value) {
   tx_buffer_ = (cr1_ & DFF) != 0 ? value : value & 0xFF;
   tx_full_ = true;
+  written_ns_ = chip_.events.now();
   sr_ &= ~TXE;
   if (!shifting_) next_frame();
   update();

@@ -37,7 +37,7 @@ class Spi final : public WordBlock, public io::SpiSlave {
   DmaRequest& tx_request() { return tx_request_; }
   DmaRequest& rx_request() { return rx_request_; }
   // An external master's clock. 0xFF: this slave is not selected.
-  void shift_out(Nanoseconds now) override;
+  Nanoseconds shift_out(Nanoseconds now) override;
   std::uint8_t sampled(std::uint8_t mosi, int bits, Nanoseconds now) override;
 
   void reset() override;
@@ -80,7 +80,8 @@ class Spi final : public WordBlock, public io::SpiSlave {
   std::uint16_t tx_buffer_ = 0, rx_buffer_ = 0, shift_ = 0;
   bool tx_full_ = false, shifting_ = false, crc_frame_ = false, frame_is_crc_ = false;
   bool ovr_dr_read_ = false, modf_sr_read_ = false;
-  int slave_bits_ = 0;  // clocks since the shift register was loaded
+  Nanoseconds written_ns_ = 0;  // DR, last
+  int slave_bits_ = 0;          // clocks since the shift register was loaded
   bool slave_loaded_ = false, slave_shifting_ = false;
   std::uint8_t slave_in_ = 0;  // bits sampled so far
   Nanoseconds frame_ns_ = 0;

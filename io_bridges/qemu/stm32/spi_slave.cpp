@@ -30,10 +30,12 @@ void Spi::load_slave_shift() {
   update();
 }
 
-void Spi::shift_out(Nanoseconds) {
-  if (!selected_as_slave()) return;
+Nanoseconds Spi::shift_out(Nanoseconds now) {
+  if (!selected_as_slave()) return kNothing;
   slave_shifting_ = true;
+  const bool waited = slave_loaded_ || tx_full_;
   if (!slave_loaded_) load_slave_shift();
+  return waited ? now - written_ns_ : kNothing;
 }
 
 std::uint8_t Spi::sampled(std::uint8_t mosi, int bits, Nanoseconds) {

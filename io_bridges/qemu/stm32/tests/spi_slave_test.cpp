@@ -57,6 +57,16 @@ TEST(SpiSlave, DrMovesOnAtTheFirstBitNotAtTheLast) {
   EXPECT_EQ(bench.clock(0xA2), 0x22u);
 }
 
+TEST(SpiSlave, TellsTheMastersModelHowLongAByteHasWaited) {
+  SlaveBench bench;
+  bench.select(true);
+  bench.put(kDr, 0x11);
+  bench.run(500);
+  EXPECT_EQ(bench.slave().shift_out(bench.now()), 500);
+  bench.slave().sampled(0, 8, bench.now());
+  EXPECT_EQ(bench.slave().shift_out(bench.now()), io::SpiSlave::kNothing);
+}
+
 TEST(SpiSlave, AWriteBeforeTheFirstBitReplacesWhatWaits) {
   SlaveBench bench;
   bench.select(true);
