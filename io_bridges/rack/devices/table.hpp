@@ -21,6 +21,7 @@
   TYPE(mavlink_link)             \
   TYPE(serial)                   \
   TYPE(i2c_master)               \
+  TYPE(pod_replay)               \
   TYPE(power_stage)              \
   TYPE(pulse_source)             \
   TYPE(volts)                    \
