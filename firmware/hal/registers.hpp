@@ -28,8 +28,8 @@ struct RCC {
   static constexpr std::uint32_t GPIOAEN = bit(0), GPIOBEN = bit(1), GPIOCEN = bit(2),
                                  CCMDATARAMEN = bit(20), DMA1EN = bit(21), DMA2EN = bit(22);
   static constexpr std::uint32_t TIM2EN = bit(0), TIM5EN = bit(3), TIM6EN = bit(4), TIM7EN = bit(5),
-                                 SPI3EN = bit(15), USART2EN = bit(17), I2C2EN = bit(22),
-                                 I2C3EN = bit(23), PWREN = bit(28);
+                                 SPI3EN = bit(15), USART2EN = bit(17), I2C1EN = bit(21),
+                                 I2C2EN = bit(22), I2C3EN = bit(23), PWREN = bit(28);
   static constexpr std::uint32_t TIM1EN = bit(0), USART1EN = bit(4), USART6EN = bit(5),
                                  ADC1EN = bit(8), SPI1EN = bit(12), SYSCFGEN = bit(14);
   static constexpr std::uint32_t SPI1RST = bit(12);
@@ -119,6 +119,8 @@ template <std::uint32_t base>
 struct I2c {
   using CR1 = Reg32<base + 0x00>;
   using CR2 = Reg32<base + 0x04>;
+  using OAR1 = Reg32<base + 0x08>;
+  using OAR2 = Reg32<base + 0x0C>;
   using DR = Reg32<base + 0x10>;
   using SR1 = Reg32<base + 0x14>;
   using SR2 = Reg32<base + 0x18>;
@@ -128,11 +130,14 @@ struct I2c {
                                  SWRST = bit(15);
   static constexpr std::uint32_t ITERREN = bit(8), ITEVTEN = bit(9), ITBUFEN = bit(10),
                                  DMAEN = bit(11), LAST = bit(12);
-  static constexpr std::uint32_t SB = bit(0), ADDR = bit(1), BTF = bit(2), TXE = bit(7),
-                                 BERR = bit(8), ARLO = bit(9), AF = bit(10), OVR = bit(11);
-  static constexpr std::uint32_t BUSY = bit(1);
+  static constexpr std::uint32_t SB = bit(0), ADDR = bit(1), BTF = bit(2), STOPF = bit(4),
+                                 RXNE = bit(6), TXE = bit(7), BERR = bit(8), ARLO = bit(9),
+                                 AF = bit(10), OVR = bit(11);
+  static constexpr std::uint32_t BUSY = bit(1), TRA = bit(2), DUALF = bit(7);
   static constexpr std::uint32_t FS = bit(15);
+  static constexpr std::uint32_t ENDUAL = bit(0), OAR1_KEPT_ONE = bit(14);
 };
+using I2C1 = I2c<0x4000'5400>;
 using I2C2 = I2c<0x4000'5800>;
 using I2C3 = I2c<0x4000'5C00>;
 
@@ -213,6 +218,8 @@ enum class Irq : std::uint8_t {
   DMA1_Stream3 = 14,
   DMA1_Stream6 = 17,
   TIM1_CC = 27,
+  I2C1_EV = 31,
+  I2C1_ER = 32,
   I2C2_EV = 33,
   I2C2_ER = 34,
   SPI1_Global = 35,

@@ -4,7 +4,11 @@
 //
 //   Host to pod   0x01 sample: flags, 7 x int16 (accelerometer, temperature, gyro; counts)
 //                 0x02 faults: flags (bit 0 frozen, bit 1 no supply), identity (0: its own)
-//   Pod to host   0x81 status, see PodStatus
+//                 0x03 barometer: quantity (0 pressure, 1 temperature), counts (u32)
+//                 0x04 its PROM: 8 x u16      0x05 magnetometer: 3 x int16 (x, y, z; counts)
+//                 0x06 an ESC's status: number 0..3, current (int16, mA), speed (u16, rpm), flags
+//   Pod to host   0x81 status, see host_link.hpp
+//                 0x82 a set-point came: number 0..3, 1: valid, value (u16)
 //   Bytes         integers low byte first
 #pragma once
 #include <array>
@@ -18,7 +22,16 @@ namespace fw::pod {
 
 inline constexpr std::uint8_t kFrameStart = 0xA5;
 inline constexpr std::size_t kFrameHead = 4, kFrameTail = 2, kMostPayload = 48;
-enum class FrameKind : std::uint8_t { sample = 0x01, faults = 0x02, status = 0x81 };
+enum class FrameKind : std::uint8_t {
+  sample = 0x01,
+  faults = 0x02,
+  barometer = 0x03,
+  prom = 0x04,
+  magnetometer = 0x05,
+  esc = 0x06,
+  status = 0x81,
+  setpoint = 0x82,
+};
 
 struct Frame {
   FrameKind kind{};

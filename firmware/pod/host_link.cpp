@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <tuple>
 
+#include "firmware/pod/escs.hpp"
 #include "firmware/pod/host_uart.hpp"
 #include "firmware/pod/imu.hpp"
+#include "firmware/pod/sensors.hpp"
 
 namespace fw::pod {
 namespace {
@@ -34,6 +36,7 @@ void HostLink::poll(std::uint32_t now_us) {
   for (std::size_t i = 0; i < n; ++i) {
     if (reader_.add(bytes[i])) on_frame(reader_.frame(), now_us);
   }
+  send_setpoints();
   if (static_cast<std::int32_t>(now_us - status_due_us_) >= 0) send_status(now_us);
 }
 
@@ -48,6 +51,38 @@ void HostLink::on_frame(const Frame& frame, std::uint32_t now_us) {
     const std::uint8_t flags = frame.payload[0];
     imu.set_faults((flags & kFrozen) != 0, (flags & kNo_supply) == 0, frame.payload[1]);
   }
+  on_slow_frame(frame);
+}
+
+// For the parts on I2C.
+void HostLink::on_slow_frame(const Frame& frame) {
+  const auto half = [&](std::size_t at) { return static_cast<std::uint16_t>(frame.word(at)); };
+  if (frame.kind == FrameKind::barometer && frame.length == 5) {
+    barometer.set_counts(frame.payload[0], half(1) | static_cast<std::uint32_t>(half(3)) << 16);
+  }
+  if (frame.kind == FrameKind::prom && frame.length == 16) {
+    whirl::core::Ms5611::Prom prom{};
+    for (std::size_t i = 0; i < prom.size(); ++i) prom[i] = half(2 * i);
+    barometer.set_prom(prom);
+  }
+  if (frame.kind == FrameKind::magnetometer && frame.length == 6) {
+    magnetometer.set_counts({frame.word(0), frame.word(2), frame.word(4)});
+  }
+  if (frame.kind == FrameKind::esc && frame.length == 6 && frame.payload[0] < kEscs) {
+    escs[frame.payload[0]].set_status({frame.word(1), half(3), frame.payload[5]});
+  }
+}
+
+void HostLink::send_setpoints() {
+  for (std::size_t i = 0; i < kEscs; ++i) {
+    const auto came = escs[i].take_write();
+    if (!came) continue;
+    FrameWriter out(FrameKind::setpoint, setpoint_number_++);
+    out.byte(static_cast<std::uint32_t>(i));
+    out.byte(came->valid ? 1 : 0);
+    out.half(came->v);
+    std::ignore = host_uart.send(out.finish());
+  }
 }
 
 void HostLink::send_status(std::uint32_t now_us) {
@@ -60,7 +95,8 @@ void HostLink::send_status(std::uint32_t now_us) {
   out.byte(watch_.overdue(now_us) ? 1 : 0);
   out.byte(0);
   out.word(watch_.flagged());
-  for (const std::uint32_t count : {watch_.lost(), watch_.late(), reader_.damaged(), imu.oddities(),
+  for (const std::uint32_t count : {watch_.lost(), watch_.late(), reader_.damaged(),
+                                    imu.oddities() + barometer.oddities() + magnetometer.oddities(),
                                     imu.overlaps(), spi.late_rearm}) {
     out.half(std::min<std::uint32_t>(count, 0xFFFF));
   }

@@ -21,12 +21,14 @@ class HostLink {
 
  private:
   void on_frame(const Frame& frame, std::uint32_t now_us);
+  void on_slow_frame(const Frame& frame);
+  void send_setpoints();
   void send_status(std::uint32_t now_us);
 
   FrameReader reader_;
   SampleWatch watch_;
   std::uint32_t status_due_us_ = 0, turned_us_ = 0, longest_turn_us_ = 0;
-  std::uint8_t status_number_ = 0;
+  std::uint8_t status_number_ = 0, setpoint_number_ = 0;
 };
 
 extern HostLink host_link;

@@ -54,7 +54,8 @@ class Hmc5883l {
   void pulse_over(Nanoseconds now) { board_.drdy_pin(true, now); }
   unsigned gain() const { return gain_; }  // of the next measurement
   unsigned averages() const { return 1u << (registers_.peek(0) >> 5 & 3); }
-  int bias() const;  // of the self test: 1, -1 or 0
+  bool locked() const;  // data that are placed now are lost
+  int bias() const;     // of the self test: 1, -1 or 0
 
  private:
   std::uint8_t read_register(std::uint8_t address, Nanoseconds now);
@@ -65,7 +66,6 @@ class Hmc5883l {
   void data_read(std::uint8_t address);
   void set_mode(Nanoseconds now);
   unsigned rate() const { return registers_.peek(0) >> 2 & 7; }
-  bool locked() const;
   void set_status(std::uint8_t bit, bool on);
   void unlock();
 

@@ -49,6 +49,7 @@ class Ms5611 {
       : prom_(prom), i2c_address_(i2c_address), board_(board) {}
 
   void supply(bool on);
+  void set_prom(const Prom& prom) { prom_ = prom; }
 
   // SPI.
   void select();

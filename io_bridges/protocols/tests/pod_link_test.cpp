@@ -28,6 +28,27 @@ TEST(PodLink, ASampleStandsLowByteFirstUnderItsChecksum) {
   EXPECT_EQ(want.size(), kPodSampleBytes);
 }
 
+TEST(PodLink, FramesOfThePartsOnI2cStandAsTyped) {
+  EXPECT_EQ(pack_pod_esc(2, 3, -100, 4001, 0x83),
+            (std::vector<std::uint8_t>{0xA5, 0x06, 0x02, 0x06, 0x03, 0x9C, 0xFF, 0xA1, 0x0F, 0x83,
+                                       0x7F, 0x59}));
+  EXPECT_EQ(pack_pod_barometer(1, 1, 8569150),
+            (std::vector<std::uint8_t>{0xA5, 0x03, 0x01, 0x05, 0x01, 0x3E, 0xC1, 0x82, 0x00, 0xC0,
+                                       0x7B}));
+}
+
+TEST(PodLink, ASetpointIsRead) {
+  std::vector<PodSetpoint> all;
+  PodLinkReader reader([](const PodStatus&) {});
+  reader.on_setpoint([&](const PodSetpoint& setpoint) { all.push_back(setpoint); });
+  for (const int byte : {0xA5, 0x82, 0x05, 0x04, 0x02, 0x01, 0xFF, 0x07, 0x6B, 0x13})
+    reader.add(static_cast<std::uint8_t>(byte));
+  ASSERT_EQ(all.size(), 1u);
+  EXPECT_EQ(all[0].esc, 2);
+  EXPECT_TRUE(all[0].valid);
+  EXPECT_EQ(all[0].value, 2047);
+}
+
 TEST(PodLink, AStatusIsReadFieldByField) {
   const auto all = read(kStatusFrame, 0);
   ASSERT_EQ(all.size(), 1u);
