@@ -21,8 +21,9 @@ plant/rotor              base/ plant/rotor/
 plant/sensors            base/ plant/base/ plant/sensors/
 io_bridges/board_description base/ io_bridges/board_description/
 io_bridges/messages      base/ io_bridges/messages/
-io_bridges/protocols     base/ io_bridges/protocols/
+io_bridges/protocols     base/ io_bridges/protocols/ io_bridges/devices/core/
 io_bridges/devices       base/ io_bridges/protocols/ io_bridges/devices/
+io_bridges/devices/core  io_bridges/devices/core/
 io_bridges/hid           base/ io_bridges/hid/
 io_bridges/hid/emulated  base/ io_bridges/devices/ io_bridges/hid/hid_port.hpp io_bridges/hid/emulated/
 io_bridges/link          base/ io_bridges/link/
@@ -66,6 +67,7 @@ cmake                    cmake/
 cmake/mutate             cmake/mutate/
 firmware                 firmware/
 firmware/esc/core        firmware/esc/core/
+firmware/pod             firmware/ io_bridges/devices/core/
 END
 }
 

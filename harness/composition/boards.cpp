@@ -60,6 +60,12 @@ flight::BoardEars ears_of(const BoardDescription& board) {
   return {.radio = has({"mavlink_link"}), .receiver = has({"cppm", "sbus"})};
 }
 
+// A pod's rig is the world around its board: the stand that a plan names stays empty.
+bool brings_its_world(const BoardDescription& board) {
+  return std::any_of(board.devices.begin(), board.devices.end(),
+                     [](const BoardDevice& device) { return device.type == "pod_replay"; });
+}
+
 // What the plan reads of the virtual stand and this bench does not measure is said before anything turns.
 Result<std::unique_ptr<World>> bench_world(const cli::Setup& setup,
                                            const stand::StandParams& params) {
@@ -152,7 +158,7 @@ Result<std::unique_ptr<Target>> make_target(const cli::Setup& setup,
                     .gdb_port = setup.gdb_port,
                     .folder = setup.folder,
                     .node = setup.plan.nodes[setup.node].name}};
-  if (setup.plan.stand && setup.node == 0) {
+  if (setup.plan.stand && setup.node == 0 && !brings_its_world(setup.board)) {
     const auto params = stand_of(setup);
     if (!params) return params.error();
     const auto set =
