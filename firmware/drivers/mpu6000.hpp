@@ -138,8 +138,8 @@ class Mpu6000 {
   static constexpr std::uint32_t kSilent_ms = 10;
 
   Status read_register(Address address) {
-    return start(Transfer::setup, std::array<std::uint8_t, 2>{
-                                      static_cast<std::uint8_t>(address | kRead), 0});
+    return start(Transfer::setup,
+                 std::array<std::uint8_t, 2>{static_cast<std::uint8_t>(address | kRead), 0});
   }
   Status write_register(Address address, std::uint8_t value) {
     return start(Transfer::setup, std::array<std::uint8_t, 2>{address, value});
