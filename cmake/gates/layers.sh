@@ -23,6 +23,7 @@ io_bridges/board_description base/ io_bridges/board_description/
 io_bridges/messages      base/ io_bridges/messages/
 io_bridges/protocols     base/ io_bridges/protocols/
 io_bridges/devices       base/ io_bridges/protocols/ io_bridges/devices/
+io_bridges/copper        base/ io_bridges/copper/ io_bridges/messages/
 io_bridges/hid           base/ io_bridges/hid/
 io_bridges/hid/emulated  base/ io_bridges/devices/ io_bridges/hid/hid_port.hpp io_bridges/hid/emulated/
 io_bridges/link          base/ io_bridges/link/
@@ -38,7 +39,7 @@ results                  base/ io_bridges/messages/ results/
 results/messages         base/ io_bridges/messages/ results/messages/
 results/flight_log       base/ results/flight_log/
 results/spread           base/ io_bridges/messages/ results/
-results/sinks            base/ io_bridges/messages/ results/messages/ results/sinks/
+results/sinks            base/ io_bridges/copper/wire_drawing.hpp io_bridges/copper/edge.hpp io_bridges/messages/ results/messages/ results/sinks/
 harness                  base/ harness/cli/ harness/composition/ harness/target/bench/
 harness/composition      base/ harness/catalogue/ harness/cli/composition.hpp harness/composition/ harness/flight/ harness/pacing/ harness/plan/needs.hpp harness/stand/ harness/target/ io_bridges/protocols/
 harness/job              base/ harness/job/
@@ -52,7 +53,7 @@ harness/target/bench     base/ harness/pacing/ harness/target/ io_bridges/
 harness/lockstep         base/ harness/lockstep/ harness/target/target.hpp harness/world/ io_bridges/messages/
 harness/plan             base/ harness/board/ harness/lua/ harness/metrics/ harness/plan/ harness/target/offers.hpp harness/world/ io_bridges/board_description/bus_name.hpp results/
 harness/executive        base/ harness/board/ harness/executive/ harness/lockstep/ harness/metrics/ harness/plan/ harness/target/ harness/world/ io_bridges/devices/faults.hpp io_bridges/messages/ results/
-harness/catalogue        base/ harness/calibrate/setup.hpp harness/catalogue/ harness/flight/ harness/lua/ harness/stand/ harness/target/bench/bench_description.hpp io_bridges/board_description/ io_bridges/protocols/ io_bridges/rack/ plant/ firmware/esc/core/
+harness/catalogue        base/ harness/calibrate/setup.hpp harness/catalogue/ harness/flight/ harness/lua/ harness/stand/ harness/target/bench/bench_description.hpp io_bridges/board_description/ io_bridges/copper/channel_name.hpp io_bridges/protocols/ io_bridges/rack/ plant/ firmware/esc/core/
 harness/flight           base/ harness/flight/ harness/world/ io_bridges/messages/ io_bridges/protocols/ plant/ firmware/esc/core/
 harness/standin          base/ harness/lockstep/ harness/pacing/ harness/standin/ harness/target/ harness/world/ io_bridges/messages/ io_bridges/serial/
 harness/stand            base/ harness/stand/ harness/world/ io_bridges/board_description/ io_bridges/messages/ io_bridges/protocols/ plant/
