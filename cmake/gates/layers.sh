@@ -24,6 +24,7 @@ io_bridges/messages      base/ io_bridges/messages/
 io_bridges/protocols     base/ io_bridges/protocols/
 io_bridges/devices       base/ io_bridges/protocols/ io_bridges/devices/
 io_bridges/copper        base/ io_bridges/copper/ io_bridges/messages/
+io_bridges/sigrok        base/ io_bridges/copper/edge.hpp io_bridges/copper/edge_sink.hpp io_bridges/sigrok/
 io_bridges/hid           base/ io_bridges/hid/
 io_bridges/hid/emulated  base/ io_bridges/devices/ io_bridges/hid/hid_port.hpp io_bridges/hid/emulated/
 io_bridges/link          base/ io_bridges/link/
