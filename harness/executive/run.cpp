@@ -384,7 +384,12 @@ results::RunHead run_head(const plan::Plan& plan, const std::vector<Node>& nodes
   for (const Node& node : nodes) {
     results::NodeHead& named = head.nodes.emplace_back();
     named.name = node.name;
-    for (const BoardDevice& device : node.board.devices) named.devices.push_back(device.name);
+    for (const BoardDevice& device : node.board.devices) {
+      named.devices.push_back(device.name);
+      named.buses.push_back(device.bus);
+      if (device.type == "pulse_source") named.throttles.push_back(device.motor);
+    }
+    named.bauds_Hz = node.board.bauds_Hz();
     for (const BoardPin& pin : node.board.pins) named.pins.push_back(pin.name);
     named.watch = node.board.watch;
   }
