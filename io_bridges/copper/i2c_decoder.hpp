@@ -50,7 +50,6 @@ class I2cDecoder {
   int clocks_ = 0;          // since START
   std::uint32_t bits_ = 0;  // of this byte, acknowledge last
   bool addressed_ = false;
-  bool refused_ = false;  // a byte was not acknowledged
 };
 
 }  // namespace whirl::copper
