@@ -25,6 +25,7 @@ io_bridges/protocols     base/ io_bridges/protocols/
 io_bridges/devices       base/ io_bridges/protocols/ io_bridges/devices/
 io_bridges/copper        base/ io_bridges/copper/ io_bridges/messages/
 io_bridges/sigrok        base/ io_bridges/copper/edge.hpp io_bridges/copper/edge_sink.hpp io_bridges/sigrok/
+io_bridges/openocd       base/ io_bridges/openocd/
 io_bridges/hid           base/ io_bridges/hid/
 io_bridges/hid/emulated  base/ io_bridges/devices/ io_bridges/hid/hid_port.hpp io_bridges/hid/emulated/
 io_bridges/link          base/ io_bridges/link/
@@ -62,7 +63,7 @@ harness/sweep            base/ harness/flight/flight_params.hpp harness/sweep/ p
 harness/timing           base/ harness/target/ harness/timing/
 harness/calibrate        base/ harness/calibrate/ harness/lockstep/ harness/target/ harness/world/ io_bridges/protocols/ results/ firmware/esc/core/
 harness/live             base/ harness/executive/companion.hpp harness/live/ harness/pacing/ harness/world/ io_bridges/messages/
-harness/cli              base/ harness/board/ harness/calibrate/ harness/catalogue/ harness/cli/ harness/executive/ harness/job/ harness/live/ harness/pacing/ harness/plan/ harness/sweep/ harness/target/ harness/timing/ harness/world/ io_bridges/board_description/ io_bridges/protocols/esc_codec.hpp io_bridges/rack/ plant/validation/ results/
+harness/cli              base/ harness/board/ harness/calibrate/ harness/catalogue/ harness/cli/ harness/executive/ harness/job/ harness/live/ harness/pacing/ harness/plan/ harness/sweep/ harness/target/ harness/timing/ harness/world/ io_bridges/board_description/ io_bridges/copper/decoding.hpp io_bridges/openocd/ io_bridges/protocols/esc_codec.hpp io_bridges/qemu/board/image.hpp io_bridges/sigrok/capture.hpp io_bridges/rack/ plant/validation/ results/
 harness/fuzz             base/ harness/calibrate/ harness/catalogue/ harness/fuzz/ harness/plan/ io_bridges/ plant/ results/
 cmake                    cmake/
 cmake/mutate             cmake/mutate/
