@@ -77,6 +77,7 @@ class Run {
         lockstep_(parts.world, parts.target),
         acted_(parts.nodes.size()) {
     stage_.folder = parts.folder;
+    stage_.sees = [&parts](const std::string& wires) { return parts.target.sees(wires); };
     results::Report& r = record_.report;
     r.plan = parts.plan.name;
     r.file = parts.plan.file;
