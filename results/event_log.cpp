@@ -1,5 +1,6 @@
 #include "results/event_log.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace whirl::results {
@@ -47,6 +48,13 @@ void EventLog::add(const io::Reader& reader) {
     case io::Kind::spi_transaction:
       add_bus(reader, true);
       break;
+    case io::Kind::can_transfer: {
+      const auto r = reader.as<io::CanRecord>();
+      const std::size_t last = std::clamp<std::size_t>(r.frame.length, 1, 8) - 1;
+      can.push_back({header.port, r.sender, r.frame.id, (r.frame.flags & 1) != 0, r.error == 0,
+                     (r.frame.data[last] & 0x80) != 0, r.busy_ns, r.tec, r.start_ns, header.t_ns});
+      break;
+    }
     case io::Kind::data_ready:
       data_ready_ns[header.port].push_back(header.t_ns);
       break;
@@ -100,6 +108,7 @@ void EventLog::add(const io::Reader& reader) {
     case io::Kind::shaft_load:
     case io::Kind::shaft_state:
     case io::Kind::i2c_order:
+    case io::Kind::can_order:
     case io::Kind::pulse_train:
     case io::Kind::rc_channels:
     case io::Kind::i2c_reply:

@@ -28,12 +28,17 @@ struct RCC {
                                  CCMDATARAMEN = bit(20), DMA1EN = bit(21), DMA2EN = bit(22);
   static constexpr std::uint32_t TIM2EN = bit(0), TIM5EN = bit(3), TIM6EN = bit(4), TIM7EN = bit(5),
                                  SPI3EN = bit(15), USART2EN = bit(17), I2C2EN = bit(22),
-                                 I2C3EN = bit(23), PWREN = bit(28);
+                                 I2C3EN = bit(23), CAN1EN = bit(25), CAN2EN = bit(26),
+                                 PWREN = bit(28);
   static constexpr std::uint32_t TIM1EN = bit(0), USART6EN = bit(5), ADC1EN = bit(8),
                                  SPI1EN = bit(12), SYSCFGEN = bit(14);
   static constexpr std::uint32_t RMVF = bit(24), BORRSTF = bit(25), PADRSTF = bit(26),
                                  PORRSTF = bit(27), SFTRSTF = bit(28), WDGRSTF = bit(29),
                                  WWDGRSTF = bit(30), LPWRRSTF = bit(31);
+};
+
+struct UID {  // 96 bits, each part's own
+  static constexpr std::uint32_t base = 0x1FFF'7A10;
 };
 
 struct PWR {
@@ -146,6 +151,10 @@ struct Usart {
 using USART2 = Usart<0x4000'4400>;
 using USART6 = Usart<0x4001'1400>;
 
+// bxCAN; its registers: hal/bxcan_registers.hpp. The filters of both are CAN1's.
+using CAN1 = RegBlock<0x4000'6400>;
+using CAN2 = RegBlock<0x4000'6800>;
+
 template <std::uint32_t kBase>
 struct Timer {
   using CR1 = Reg32<kBase + 0x00>;
@@ -213,6 +222,9 @@ enum class Irq : std::uint8_t {
   TIM6_DAC = 54,
   TIM7_Global = 55,
   DMA2_Stream0 = 56,
+  CAN2_TX = 63,
+  CAN2_RX0 = 64,
+  CAN2_SCE = 66,
   DMA2_Stream6 = 69,
   I2C3_EV = 72,
   I2C3_ER = 73,

@@ -35,7 +35,7 @@ Result<Done> check_escs(const cli::Setup& setup, const flight::FlightParams& par
   const int motors = static_cast<int>(params.vehicle.airframe.rotors.size());
   std::set<int> driven;
   for (const BoardDevice& device : setup.board.devices) {
-    if (device.type == "esc_i2c") driven.insert(device.motor);
+    if (device.type == "esc_i2c" || device.type == "esc_dronecan") driven.insert(device.motor);
   }
   const auto wrong = [&](const std::string& what) {
     return Error{ErrorKind::bad_input, setup.vehicle_file, what,

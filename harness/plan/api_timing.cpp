@@ -6,56 +6,13 @@
 #include "harness/metrics/timing.hpp"
 #include "harness/plan/budget_shares.hpp"
 #include "harness/plan/budget_stack.hpp"
-#include "harness/plan/needs.hpp"
 #include "harness/plan/raise.hpp"
+#include "harness/plan/timing_window.hpp"
 #include "harness/plan/values.hpp"
 #include "io_bridges/board_description/bus_name.hpp"
 
 namespace whirl::plan {
 namespace {
-
-double seconds(std::int64_t ns) {
-  return static_cast<double>(ns) * 1e-9;
-}
-
-std::string in_text(double x_s, const std::string& unit) {
-  if (std::abs(x_s) < 1e-12) x_s = 0.0;  // times are whole nanoseconds
-  char text[48];
-  std::snprintf(text, sizeof text, "%.4g %s", in_unit(x_s, unit), unit.c_str());
-  return text;
-}
-
-std::string spread(const metrics::Distribution& d, const std::string& unit) {
-  if (d.count == 0) return "nothing to measure";
-  if (std::isnan(d.max)) return "not known of each of " + std::to_string(d.count) + " values";
-  return "p50 " + in_text(d.p50, unit) + ", p99 " + in_text(d.p99, unit) + ", " +
-         std::to_string(d.count) + " values";
-}
-
-std::optional<Limit> optional_limit(const lua::Table& given, const char* key, Dimension dimension) {
-  if (!given.has(key)) return std::nullopt;
-  const double value = given.quantity(key, dimension, lua::at_least(0.0));
-  return Limit{value, unit_symbol(given.text(key))};
-}
-
-std::int64_t window_end(Script& self, const lua::Table& given) {
-  constexpr std::size_t kMost_windows = 1'000;
-  if (self.windows() >= kMost_windows) given.refuse("during", "more than 1000 budgets");
-  return given.has("during") ? self.stage().now_ns + given.duration_ns("during") : kForever;
-}
-
-// The period of what happens at `times` in [from, to]: with its deviation from nominal. The edges
-// count too: a thing that stopped, or never began, has a gap there.
-std::vector<double> deviations(std::span<const std::int64_t> times, std::int64_t from,
-                               std::int64_t to, double nominal_s) {
-  std::vector<double> all = metrics::deviations_s(metrics::periods_s(times), nominal_s);
-  const double head = seconds((times.empty() ? to : times.front()) - from);
-  const double tail = seconds(to - (times.empty() ? from : times.back()));
-  for (double gap : {head, tail}) {
-    if (gap > nominal_s) all.push_back(gap - nominal_s);
-  }
-  return all;
-}
 
 struct Budget {
   std::string function, place;
@@ -78,14 +35,6 @@ std::string margin_note(const Budget& b, const Limit& limit) {
   return text;
 }
 
-void judge_spread(Script& self, std::span<const double> values, const Limit& limit,
-                  const std::string& name, const std::string& place, std::int64_t to_ns,
-                  Script::Figure figure = Script::Figure::extreme) {
-  const auto d = metrics::distribution(values);
-  self.judge_in_window({d.max, Dimension::time, name}, figure, limit, place, seconds(to_ns),
-                       spread(d, limit.unit));
-}
-
 // What code takes is as accurate as the clock that its cycles are counted on.
 void judge_code_time(Script& self, std::span<const double> values, const Budget& b,
                      const Limit& limit, const std::string& what, std::int64_t to_ns) {
@@ -97,26 +46,12 @@ void judge_code_time(Script& self, std::span<const double> values, const Budget&
                        self.stage().nodes[b.node].board.timing_accuracy());
 }
 
-NodePlace node_at(lua_State* L, Script& self, const std::string& text) {
-  const auto place = node_place(self.stage().nodes, text);
-  if (!place) raise(L, place.error().what, place.error().cure);
-  return place.value();
-}
-
 // Of one trace: all of it is on one board, so that its node's name need be given once only.
 std::string on_node(lua_State* L, Script& self, std::size_t node, const std::string& text) {
   if (text.find('/') == std::string::npos) return text;
   const NodePlace at = node_at(L, self, text);
   if (at.node != node) raise(L, "'" + text + "' is on another board", "a latency is of one board");
   return at.rest;
-}
-
-// Also for calls that stand where no text shows them: in a function of another file.
-void must_offer(lua_State* L, Script& self, const std::string& call) {
-  for (const Offer offer : needs_of_call(call)) {
-    if (self.stage().offers.has(offer)) continue;
-    raise(L, not_offered("t:" + call, offer));
-  }
 }
 
 void judge_calls(Script& self, const Budget& b, std::int64_t from, std::int64_t to) {
@@ -211,12 +146,6 @@ int budget(lua_State* L) {
   lua_pushvalue(L, 2);
   lua_pushcclosure(L, read_budget, 1);
   return 1;
-}
-
-void must_see(lua_State* L, Script& self, const std::string& wires) {
-  if (!self.stage().sees || self.stage().sees(wires)) return;
-  raise(L, "no clip of the bench's analyser is on " + wires,
-        "analyser = { channels = ... } of the bench's file");
 }
 
 // A frame that an analyser saw and could not read may be the one that a figure misses.
@@ -328,7 +257,8 @@ int bus(lua_State* L) {
   w.place = place_of(L);
   w.spi = device->bus.starts_with("spi");
   if (!w.spi && !device->bus.starts_with("i2c"))
-    raise(L, name + " is on " + device->bus + ", not I2C or SPI");
+    raise(L, name + " is on " + device->bus + ", not I2C or SPI",
+          "frames on CAN are judged by t:can");
   w.bus = numbered_bus(L, *device);
   must_see(L, self, device->bus);
   w.address = w.spi ? board.number(at.rest) : device->address;
@@ -359,7 +289,9 @@ int bus(lua_State* L) {
 }
 
 struct Actuator {
+  bool can = false;  // reached by the microcontroller's esc.RawCommand
   int bus = 0, address = 0;
+  bool operator==(const Actuator&) const = default;
 };
 
 struct LatencyWindow {
@@ -371,9 +303,17 @@ struct LatencyWindow {
   Limit limit;
 };
 
+constexpr std::uint32_t kRawCommand = 1030;  // esc.RawCommand of DroneCAN: one frame for all
+
 std::vector<metrics::Span> writes_to(const results::EventLog& log, const Actuator& actuator,
                                      std::int64_t from, std::int64_t to) {
   std::vector<metrics::Span> writes;
+  for (const auto& r : log.can) {
+    const bool command = actuator.can && r.good && r.sender < 0 && r.is_message(kRawCommand);
+    if (!command || r.bus != actuator.bus || r.start_ns < from || r.end_ns > to) continue;
+    writes.push_back({r.start_ns, r.end_ns});
+  }
+  if (actuator.can) return writes;
   for (const auto& r : log.bus) {
     if (r.spi || r.read || r.bus != actuator.bus || r.address != actuator.address) continue;
     if (r.start_ns >= from && r.stop_ns <= to) writes.push_back({r.start_ns, r.stop_ns});
@@ -438,10 +378,13 @@ int latency(lua_State* L) {
   }
   for (const BoardDevice& device : board.devices) {
     const bool meant = device.name == to || (to == "esc" && device.motor > 0);
-    if (!meant || !device.bus.starts_with("i2c")) continue;
-    w.actuators.push_back({numbered_bus(L, device), device.address});
+    const bool can = device.bus.starts_with("can");
+    if (!meant || (!can && !device.bus.starts_with("i2c"))) continue;
+    const Actuator actuator{can, numbered_bus(L, device), can ? 0 : device.address};
+    if (std::find(w.actuators.begin(), w.actuators.end(), actuator) != w.actuators.end()) continue;
+    w.actuators.push_back(actuator);
   }
-  if (w.actuators.empty()) raise(L, "no I2C device '" + to + "' on " + board.name);
+  if (w.actuators.empty()) raise(L, "no device '" + to + "' on I2C or CAN of " + board.name);
   w.limit.value_SI = given.quantity("at_most", Dimension::time, lua::above(0.0));
   w.limit.unit = unit_symbol(given.text("at_most"));
   const std::int64_t end = window_end(self, given);

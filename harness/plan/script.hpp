@@ -209,6 +209,7 @@ void add_time_calls(lua_State* L);
 void add_record_calls(lua_State* L);
 void add_expect_calls(lua_State* L);
 void add_timing_calls(lua_State* L);
+void add_can_calls(lua_State* L);
 void add_action_calls(lua_State* L);
 void add_text_calls(lua_State* L);
 void add_log_calls(lua_State* L);

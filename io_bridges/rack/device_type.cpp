@@ -68,6 +68,13 @@ io::I2cBus& DeviceSlot::i2c() {
   return no_bus_;
 }
 
+io::CanBus& DeviceSlot::can() {
+  if (io::CanBus* bus = rack_.can(bus_number())) return *bus;
+  fail("the part has no bus '" + device_.bus + "' for it");
+  no_can_ = std::make_unique<io::CanBus>(rack_.events(), "nowhere");
+  return *no_can_;
+}
+
 void DeviceSlot::join_spi(io::SpiTarget& target) {
   if (!rack_.join_spi(bus_number(), pin("cs"), target, device_, number_)) {
     fail("the part has no bus '" + device_.bus + "' for it");

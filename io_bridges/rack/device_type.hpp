@@ -14,6 +14,7 @@
 #include "base/result.hpp"
 #include "io_bridges/board_description/bus_name.hpp"
 #include "io_bridges/devices/bus.hpp"
+#include "io_bridges/devices/can_bus.hpp"
 #include "io_bridges/devices/faults.hpp"
 #include "io_bridges/devices/i2c_bus.hpp"
 #include "io_bridges/devices/wire.hpp"
@@ -55,6 +56,7 @@ class Rack {
   virtual io::Wire* pin(const std::string& name) = 0;
   virtual bool set_analog(const std::string& pin, std::function<double(Nanoseconds)> volts) = 0;
   virtual io::I2cBus* i2c(int number) = 0;
+  virtual io::CanBus* can(int number) = 0;  // with the faults of its wire and its log
   // With the faults of its wires and its log.
   virtual bool join_spi(int bus, io::Wire& chip_select, io::SpiTarget& target,
                         const BoardDevice& device, int number) = 0;
@@ -90,6 +92,7 @@ class DeviceSlot {
   io::Wire& pin(const std::string& path) { return wire(text(path)); }
   io::Wire& wire(const std::string& pin);
   io::I2cBus& i2c();
+  io::CanBus& can();
   void join_i2c(io::I2cTarget& target) { i2c().add(target); }
   void join_spi(io::SpiTarget& target);
   void join_uart(io::UartPeer& peer);
@@ -113,6 +116,7 @@ class DeviceSlot {
   std::optional<Error> error_;
   io::Wire nowhere_{"nowhere"};
   io::I2cBus no_bus_{"nowhere"};
+  std::unique_ptr<io::CanBus> no_can_;
 };
 
 struct DeviceType {

@@ -1,5 +1,8 @@
-// bus.csv of each board: every transfer on I2C and SPI with its bytes and times.
+// bus.csv of each board: every transfer on I2C and SPI and every frame on CAN with its bytes and times.
+// On CAN the address is the identifier, the direction who sent: "mcu", or the device's number.
+#include <algorithm>
 #include <cstdio>
+#include <span>
 
 #include "base/text.hpp"
 #include "results/sinks/bus_row.hpp"
@@ -32,10 +35,25 @@ class BusCsv : public Sink {
   std::vector<OutputFile> files_;
 };
 
+std::string frame_row(const io::Reader& message) {
+  const auto r = message.as<io::CanRecord>();
+  const std::string sender = r.sender < 0 ? "mcu" : "device " + std::to_string(r.sender);
+  char text[128];
+  std::snprintf(text, sizeof text, "%.9f,%.9f,can%d,0x%0*X,%s,%d,%u,",
+                static_cast<double>(r.start_ns) * 1e-9,
+                static_cast<double>(message.header().t_ns) * 1e-9, message.header().port,
+                (r.frame.flags & 1) != 0 ? 8 : 3, r.frame.id,
+                r.sender == -2 ? "babbling" : sender.c_str(), r.error == 0 ? 1 : 0, r.frame.length);
+  std::string row = text;
+  add_hex(std::span(r.frame.data).first(std::min<std::size_t>(r.frame.length, 8)), row);
+  return row + '\n';
+}
+
 }  // namespace
 
 std::string bus_row(const io::Reader& message) {
   const io::Header& header = message.header();
+  if (header.kind == io::Kind::can_transfer) return frame_row(message);
   const bool spi = header.kind == io::Kind::spi_transaction;
   if (!spi && header.kind != io::Kind::i2c_transaction) return {};
   const auto t = message.as<io::BusTransaction>();

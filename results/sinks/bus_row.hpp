@@ -1,4 +1,4 @@
-// A transfer as a row of bus.csv.
+// A transfer, or a frame on CAN, as a row of bus.csv.
 #pragma once
 #include <string>
 
@@ -9,7 +9,7 @@ namespace whirl::results {
 inline constexpr const char* kBus_columns =
     "start_s,stop_s,bus,address,direction,acknowledged,length,bytes\n";
 
-// Empty: it is no transfer on I2C or SPI.
+// Empty: it is no transfer on I2C or SPI and no frame.
 std::string bus_row(const io::Reader& message);
 
 }  // namespace whirl::results

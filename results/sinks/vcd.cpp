@@ -29,7 +29,9 @@ constexpr std::string_view kHeader =
     "byte (evenly spaced, as\n"
     "  fast as the closest two bytes of the transfer), the address byte of I2C, SPI's mode (0), "
     "the start of a serial\n"
-    "  chunk (bytes back to back at the board file's baud rate), the 50 us of a data-ready pulse.\n"
+    "  chunk (bytes back to back at the board file's baud rate), the bits of a CAN frame from its "
+    "fields, start and end, "
+    "the 50 us of a data-ready pulse.\n"
     "  NOT DRAWN: of a transfer on SPI the bytes behind the 16th, serial lines whose rate the "
     "board file does not state.\n"
     "$end\n"
@@ -80,6 +82,9 @@ class Waves {
       case io::Kind::uart_delivered:
         draw_chunk(message);
         break;
+      case io::Kind::can_transfer:
+        draw_frame(message);
+        break;
       case io::Kind::data_ready:
         if (const auto line = ready_.find(header.port); line != ready_.end()) {
           waiting_.push_back({header.t_ns, line->second, true});
@@ -95,7 +100,7 @@ class Waves {
       case io::Kind::pulse_train:
         start_pulses(message);
         break;
-      default:  // no wire of these; those of a new bus are drawn by a case of their own
+      default:  // no wire of these
         break;
     }
   }
@@ -133,6 +138,10 @@ class Waves {
     double baud_Hz;
     std::int64_t tx_free_ns = 0, rx_free_ns = 0;
   };
+  struct Can {
+    std::uint16_t wire = 0;
+    std::int64_t bit_ns = 0;  // of the last good frame
+  };
   struct Pulses {
     std::uint16_t wire = 0;
     io::PulseTrain train{.period_ns = 0};  // none yet
@@ -161,6 +170,10 @@ class Waves {
       }
       selects_[number] = wire(bus + "_cs_" + device, '1');
     } else {
+      const auto can = number_behind(bus, "can");
+      if (can && can_.count(static_cast<std::uint16_t>(*can)) == 0) {
+        can_[static_cast<std::uint16_t>(*can)].wire = wire(bus, '1');
+      }
       return;
     }
     ready_[number] = wire("ready_" + device, '0');  // of what never tells it the wire stays low
@@ -197,6 +210,16 @@ class Waves {
     copper::SpiWireNumbers wires = bus->second;
     wires.select = select->second;
     copper::draw_spi(t, wires, waiting_);
+  }
+
+  void draw_frame(const io::Reader& message) {
+    const auto bus = can_.find(message.header().port);
+    if (bus == can_.end()) {
+      ++nowhere_;
+      return;
+    }
+    bus->second.bit_ns = copper::draw_can(message.as<io::CanRecord>(), message.header().t_ns,
+                                          bus->second.bit_ns, bus->second.wire, waiting_);
   }
 
   void draw_chunk(const io::Reader& message) {
@@ -258,6 +281,7 @@ class Waves {
   std::vector<char> levels_;
   std::map<std::uint16_t, copper::I2cDrawing> i2c_;
   std::map<std::uint16_t, copper::SpiWireNumbers> spi_;
+  std::map<std::uint16_t, Can> can_;
   std::map<std::uint16_t, std::uint16_t> selects_, ready_;  // by device
   std::map<std::uint16_t, Uart> uarts_;
   std::map<std::uint16_t, Pulses> pulses_;  // by motor

@@ -21,8 +21,8 @@ class Wires : public testing::Test {
  protected:
   Wires() {
     NodeHead& node = head_.nodes.emplace_back();
-    node.devices = {"imu", "card", "esc1", "radio", "receiver"};
-    node.buses = {"spi1", "spi1", "i2c3", "usart2", "PA8"};
+    node.devices = {"imu", "card", "esc1", "radio", "receiver", "stand"};
+    node.buses = {"spi1", "spi1", "i2c3", "usart2", "PA8", "can2"};
     node.pins = {"led"};
     node.bauds_Hz = {{2, 57600.0}};
     node.throttles = {1};
@@ -63,8 +63,18 @@ class Wires : public testing::Test {
     batch_.add(io::Kind::uart_delivered, 2, 4 * kMs, text, 2);
     batch_.add(io::Kind::pulse_train, 1, 2 * kMs, io::PulseTrain{1'500'000, 4 * kMs, 0, 0});
   }
+  // A frame of 1 Mbit/s; its end is that of its last bit.
+  void can(std::int64_t start, const io::CanMessage& frame) {
+    io::CanRecord record;
+    record.start_ns = start;
+    record.frame = frame;
+    const std::int64_t bits = static_cast<std::int64_t>(copper::can_bits(frame).size()) + 10;
+    batch_.add(io::Kind::can_transfer, 2, start + bits * 1000, record);
+  }
   std::string drawn() {
     fill();
+    can(5 * kMs, {.id = 0x123, .flags = 0, .length = 2, .pad = {}, .data = {0x00, 0xFF}});
+    can(6 * kMs, {.id = 0x1004060A, .flags = 1, .length = 4, .pad = {}, .data = {0, 0, 0, 0xC0}});
     MessageWriter out(folder_.file("messages.whirl"), head_);
     for (int i = 0; i <= 10; ++i) {
       out.add_row(i * kMs, {});
@@ -145,6 +155,10 @@ TEST_F(Wires, SigroksOwnDecodersReadTheSameBytes) {
             "uart-1: 6F\nuart-1: 6B\nuart-1: 0A\n");
   EXPECT_EQ(sigrok_cli(path, "-P uart:rx=usart2_rx:baudrate=57600:format=hex -A uart=rx-data"),
             "uart-1: 6F\nuart-1: 6B\n");
+  EXPECT_EQ(
+      sigrok_cli(
+          path, "-P can:can_rx=can2:nominal_bitrate=1000000 -A can=id:ext-id:full-id:data:warning"),
+      "can-1: Identifier: 291 (0x123)\n");
   EXPECT_NE(sigrok_cli(path, "-P pwm:data=pulses_1 -A pwm=duty-cycle").find("37.5"),
             std::string::npos);
 }
