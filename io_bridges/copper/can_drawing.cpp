@@ -5,7 +5,7 @@ namespace whirl::copper {
 namespace {
 
 constexpr int kBase_bits = 11, kExtended_bits = 18, kCrc_bits = 15, kEqual_bits = 5, kFlag_bits = 6;
-constexpr int kTail_bits = 10;  // delimiter of the CRC, acknowledge and its delimiter, end of frame
+constexpr std::int64_t kIntermission_bits = 3;
 constexpr std::uint32_t kPolynomial = 0x4599;
 
 struct Bits {
@@ -56,14 +56,15 @@ std::vector<bool> can_bits(const io::CanMessage& frame) {
   return stuffed;
 }
 
-std::int64_t draw_can(const io::CanRecord& frame, std::int64_t end_ns, std::int64_t bit_ns,
-                      std::uint16_t wire, std::vector<Edge>& edges) {
+void draw_can(const io::CanRecord& frame, std::int64_t end_ns, std::uint16_t wire,
+              std::vector<Edge>& edges) {
+  const std::int64_t passed_ns = end_ns - frame.start_ns;
+  const std::int64_t bit_ns = (frame.busy_ns - passed_ns) / kIntermission_bits;
+  if (bit_ns <= 0) return;
   std::vector<bool> bits = can_bits(frame.frame);
   if (frame.error == 0) {
-    bit_ns = (end_ns - frame.start_ns) / static_cast<std::int64_t>(bits.size() + kTail_bits);
     bits.insert(bits.end(), {true, false, true});  // somebody has acknowledged it
   } else {
-    if (bit_ns == 0) return 0;
     bits.resize(frame.bit, true);
     bits.insert(bits.end(), kFlag_bits, false);
     bits.push_back(true);
@@ -71,7 +72,6 @@ std::int64_t draw_can(const io::CanRecord& frame, std::int64_t end_ns, std::int6
   for (std::size_t i = 0; i < bits.size(); ++i) {
     edges.push_back({frame.start_ns + static_cast<std::int64_t>(i) * bit_ns, wire, bits[i]});
   }
-  return bit_ns;
 }
 
 }  // namespace whirl::copper

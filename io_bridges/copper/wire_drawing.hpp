@@ -6,7 +6,7 @@
 //            allow; a byte without neighbours fills the time that its transfer has. The address byte of I2C stands
 //            directly before the first data byte. SPI is drawn in mode 0. The bytes of a UART's chunk stand back to back
 //            before its end, at the baud rate that the board file states
-//            The bits of a CAN frame come of its fields; their length of its start and end
+//            The bits of a CAN frame come of its fields
 //   Not      drawn: bytes that the run did not keep (of SPI those behind the first 16 pairs)
 #pragma once
 #include <cstdint>
@@ -60,10 +60,10 @@ std::int64_t draw_uart(std::span<const std::uint8_t> bytes, std::int64_t last_st
                        double baud_Hz, std::uint16_t wire, std::int64_t after_ns,
                        std::vector<Edge>& edges);
 
-// A frame on CAN, as its receivers see the bus. Bits are as long as start, end and intermission say; of a frame that
-// broke off, `bit` of them stand, then six dominant ones. 0: no bit time can be told, and nothing is drawn.
-std::int64_t draw_can(const io::CanRecord& frame, std::int64_t end_ns, std::int64_t bit_ns,
-                      std::uint16_t wire, std::vector<Edge>& edges);
+// A frame on CAN, as its receivers see the bus. A bit is a third of the intermission; of a frame that broke off, `bit`
+// of them stand, then six dominant ones: how long the error flags overlapped is not told.
+void draw_can(const io::CanRecord& frame, std::int64_t end_ns, std::uint16_t wire,
+              std::vector<Edge>& edges);
 // Its bits from start of frame to the end of its CRC, stuffed.
 std::vector<bool> can_bits(const io::CanMessage& frame);
 

@@ -138,10 +138,6 @@ class Waves {
     double baud_Hz;
     std::int64_t tx_free_ns = 0, rx_free_ns = 0;
   };
-  struct Can {
-    std::uint16_t wire = 0;
-    std::int64_t bit_ns = 0;  // of the last good frame
-  };
   struct Pulses {
     std::uint16_t wire = 0;
     io::PulseTrain train{.period_ns = 0};  // none yet
@@ -172,7 +168,7 @@ class Waves {
     } else {
       const auto can = number_behind(bus, "can");
       if (can && can_.count(static_cast<std::uint16_t>(*can)) == 0) {
-        can_[static_cast<std::uint16_t>(*can)].wire = wire(bus, '1');
+        can_[static_cast<std::uint16_t>(*can)] = wire(bus, '1');
       }
       return;
     }
@@ -218,8 +214,7 @@ class Waves {
       ++nowhere_;
       return;
     }
-    bus->second.bit_ns = copper::draw_can(message.as<io::CanRecord>(), message.header().t_ns,
-                                          bus->second.bit_ns, bus->second.wire, waiting_);
+    copper::draw_can(message.as<io::CanRecord>(), message.header().t_ns, bus->second, waiting_);
   }
 
   void draw_chunk(const io::Reader& message) {
@@ -281,7 +276,7 @@ class Waves {
   std::vector<char> levels_;
   std::map<std::uint16_t, copper::I2cDrawing> i2c_;
   std::map<std::uint16_t, copper::SpiWireNumbers> spi_;
-  std::map<std::uint16_t, Can> can_;
+  std::map<std::uint16_t, std::uint16_t> can_;
   std::map<std::uint16_t, std::uint16_t> selects_, ready_;  // by device
   std::map<std::uint16_t, Uart> uarts_;
   std::map<std::uint16_t, Pulses> pulses_;  // by motor

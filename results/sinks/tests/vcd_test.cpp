@@ -69,6 +69,7 @@ class Wires : public testing::Test {
     record.start_ns = start;
     record.frame = frame;
     const std::int64_t bits = static_cast<std::int64_t>(copper::can_bits(frame).size()) + 10;
+    record.busy_ns = static_cast<std::uint32_t>((bits + 3) * 1000);
     batch_.add(io::Kind::can_transfer, 2, start + bits * 1000, record);
   }
   std::string drawn() {
