@@ -103,6 +103,7 @@ void show_functions(const Wanted& all, const std::vector<std::uint32_t>& pcs) {
     ++counts[function == nullptr ? "(no function of the image)" : function->name];
   }
   std::vector<std::pair<int, std::string>> order;
+  order.reserve(counts.size());
   for (const auto& [name, count] : counts) order.emplace_back(count, name);
   std::sort(order.rbegin(), order.rend());
   constexpr std::size_t kShown = 12;

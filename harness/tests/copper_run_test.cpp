@@ -120,6 +120,31 @@ TEST_F(CopperRun, TheBusesOfAFlightControllerHaveTheSameVerdictsAndALostClockIsN
             std::string::npos);
 }
 
+// The throttle line of a stand, named as a pin: its pulses are judged by the board's own edges and by the capture's.
+TEST_F(CopperRun, PulsesOnAPinHaveTheSameVerdicts) {
+  std::string board =
+      read_whole_file(std::string(WHIRL_ROOT) + "/test_plans/boards/esc32v2.lua").value();
+  const std::size_t watch = board.find("  watch =");
+  board.insert(watch, "  pins = { { name = \"throttle_pin\", pin = \"PA8\" } },\n");
+  ASSERT_TRUE(write_text(folder_.file("b.lua"), board));
+  const std::string plan = folder_.file("p.lua");
+  ASSERT_TRUE(write_text(
+      plan, "plan \"p\" { image = \"" + std::string(WHIRL_ROOT) +
+                "/build/firmware/esc.elf\", board = \"b.lua\", timeout = \"3 s\",\n"
+                "stand = { prop = \"hk_10x4.5\", battery = \"4s_2200\", throttle = \"pwm\" },\n"
+                "run = function(t) t:wait \"100 ms\"\n"
+                "t:bus { pin = \"throttle_pin\", period = \"20 ms\", tolerance = \"1 us\", "
+                "high = \"1 ms\", during = \"500 ms\" }\n"
+                "t:wait \"600 ms\" end }\n"));
+  shell("run " + plan, 0);
+  const std::string own = fs::canonical(folder_.file("results/runs/latest")).string();
+  shell("export " + own + " --vcd", 0);
+  shell("run " + plan + " --copper " + own + "/wires.vcd", 0);
+  const std::string seen = fs::canonical(folder_.file("results/runs/latest")).string();
+  expect_same_verdicts(report(own), report(seen));
+  ASSERT_EQ(report(own)["expectations"].size(), 2u);
+}
+
 TEST_F(CopperRun, WhatIsNoCaptureOfThisBoardIsRefusedInOneLine) {
   ASSERT_TRUE(write_text(folder_.file("words.vcd"), "these are words\n"));
   const std::string plan =
