@@ -40,6 +40,22 @@ Result<Done> check_links(const plan::Plan& plan, const BoardDescription& board,
 
 }  // namespace
 
+Result<bench::BenchDescription> bench_named(const std::string& name, const char* command,
+                                            const std::string& root) {
+  const auto file = find_file(name, {".", command}, {root + "/test_plans/benches"}, ".lua");
+  if (!file) return file.error();
+  return read_bench(shown_path(file.value()));
+}
+
+Result<Done> check_copper_options(const RunOptions& options) {
+  if (options.copper.empty()) return Done{};
+  if (options.gdb) return refused("--copper", "is of another run than one that is held by gdb");
+  if (options.jobs > 1 || options.seeds.size() > 1) {
+    return refused("--copper", "is a capture of one run, and several are asked for");
+  }
+  return Done{};
+}
+
 Result<Done> check_bench_options(const RunOptions& options) {
   if (options.target.empty()) return Done{};
   if (!options.target.starts_with(kPrefix) || options.target.size() == kPrefix.size()) {

@@ -5,13 +5,15 @@
 
 #include "base/output_file.hpp"
 #include "base/whole_file.hpp"
-#include "harness/catalogue/bench_file.hpp"
+#include "harness/cli/bench_choice.hpp"
 #include "harness/cli/console.hpp"
-#include "harness/cli/find_file.hpp"
 #include "harness/cli/find_plans.hpp"
+#include "harness/cli/probe_command.hpp"
 #include "harness/pacing/pacer.hpp"
 #include "harness/pacing/real_time.hpp"
+#include "harness/target/bench/analyser_link.hpp"
 #include "harness/target/bench/serial_links.hpp"
+#include "io_bridges/openocd/core_probe.hpp"
 #include "io_bridges/protocols/esc_codec.hpp"
 #include "results/parity.hpp"
 #include "results/read_run.hpp"
@@ -58,6 +60,8 @@ class Check {
              : missing(link.name, opened.error());
     }
     for (const auto& instrument : bench_.instruments) check(instrument);
+    if (bench_.analyser) check(*bench_.analyser);
+    if (bench_.probe) check(*bench_.probe);
     check_pacer();
     std::printf(
         "not shown without a run: that a set-point turns the rotor, the instruments' scales and\n"
@@ -138,6 +142,23 @@ class Check {
     say(instrument.name, text);
   }
 
+  void check(const bench::AnalyserClips& clips) {
+    const auto source = bench::sigrok_source(clips);
+    const auto opened = source->open();
+    opened ? say("analyser", source->version()) : missing("analyser", opened.error());
+    const auto marker = bench::rts_marker(clips.marker)->open();
+    marker ? say("marker", clips.marker + " has RTS; the clip on it is seen in a run")
+           : missing("marker", marker.error());
+  }
+
+  void check(const bench::DebugProbe& probe) {
+    const auto server = connect_probe(probe);
+    if (!server) return missing("probe", server.error());
+    const auto pc = openocd::CoreProbe(server.value()->client()).sample_pc();
+    pc ? say("probe", probe.interface + ", the core of " + probe.target + " answers")
+       : missing("probe", pc.error());
+  }
+
   // A kilohertz of nothing: what this host could hold at best, beside what the pacer makes of it.
   void check_pacer() {
     const pacing::RealTime got = pacing::take_real_time();
@@ -184,10 +205,7 @@ Result<results::Report> report_of(const std::string& run) {
 }  // namespace
 
 int bench_check_command(const BenchOptions& options, const Composition& composition) {
-  const auto file = find_file(options.name, {".", "whirl bench check"},
-                              {composition.root + "/test_plans/benches"}, ".lua");
-  if (!file) return complain(file.error());
-  const auto bench = read_bench(shown_path(file.value()));
+  const auto bench = bench_named(options.name, "whirl bench check", composition.root);
   if (!bench) return complain(bench.error());
   std::printf("%s: %s on %s\n", bench.value().file.c_str(), bench.value().name.c_str(),
               bench.value().board.c_str());

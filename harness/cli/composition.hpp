@@ -29,6 +29,8 @@ struct Setup {  // of a run; of one board of it, where a target is made
   Settings settings = {};
   std::string folder = {};  // of the run, for what the board's parts leave; empty: nothing is left
   const bench::BenchDescription* bench = nullptr;  // null: the virtual board
+  std::string copper = {};                         // a capture; empty: the board tells of its buses
+  double copper_rate_Hz = 0.0;
 };
 
 struct Composition {

@@ -15,9 +15,11 @@
 #include "harness/plan/needs.hpp"
 #include "harness/stand/bench_stand.hpp"
 #include "harness/stand/stand_world.hpp"
+#include "harness/target/bench/analyser_link.hpp"
 #include "harness/target/bench/bench_target.hpp"
 #include "harness/target/bench/bridge_link.hpp"
 #include "harness/target/bench/serial_links.hpp"
+#include "harness/target/copper_target.hpp"
 #include "harness/target/virtual_board.hpp"
 #include "io_bridges/protocols/esc_codec.hpp"
 
@@ -143,6 +145,11 @@ Result<std::unique_ptr<Target>> bench_target(const cli::Setup& setup,
     links.push_back(std::make_unique<bench::InstrumentLine>(instrument, port));
     port = static_cast<std::uint16_t>(port + instrument.readings.size());
   }
+  if (bench.analyser) {
+    links.push_back(std::make_unique<bench::AnalyserLink>(
+        "analyser", bench::sigrok_source(*bench.analyser),
+        bench::rts_marker(bench.analyser->marker), copper_names(setup.board)));
+  }
   return std::unique_ptr<Target>(std::make_unique<bench::BenchTarget>(
       bench::BenchOptions{.bench = bench, .operator_stops = enter_pressed}, std::move(links),
       host_clock()));
@@ -166,7 +173,11 @@ Result<std::unique_ptr<Target>> make_target(const cli::Setup& setup,
     if (!set) return set.error();
   }
   options.any_qemu_version = std::getenv("WHIRL_ANY_QEMU") != nullptr;
-  return std::unique_ptr<Target>(std::make_unique<VirtualBoard>(std::move(options)));
+  auto board = std::make_unique<VirtualBoard>(std::move(options));
+  if (setup.copper.empty()) return std::unique_ptr<Target>(std::move(board));
+  return std::unique_ptr<Target>(std::make_unique<CopperTarget>(
+      CopperOptions{setup.copper, setup.copper_rate_Hz, copper_names(setup.board)},
+      std::move(board)));
 }
 
 }  // namespace

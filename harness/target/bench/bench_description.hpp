@@ -7,6 +7,7 @@
 #pragma once
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -58,6 +59,30 @@ struct Safety {
       0;  // of the host: silence of our own loop after which the links make safe
 };
 
+struct AnalyserClips {     // of a logic analyser
+  std::string driver;      // of libsigrok: "fx2lafw"
+  std::string connection;  // "1.4", empty: the first that is found
+  std::string model;       // that it must be; empty: any
+  double rate_Hz = 24e6;
+  std::map<std::string, std::string>
+      channels;        // {"D0", "i2c2_scl"}: names as in io_bridges/copper/channel_name.hpp
+  std::string marker;  // the serial line whose RTS pulses mark the time
+
+  bool sees(const std::string& wires) const {  // "i2c2": has a channel of it; "pin_x": that one
+    for (const auto& [clip, wire] : channels) {
+      if (wire == wires || wire.starts_with(wires + "_")) return true;
+    }
+    return false;
+  }
+};
+
+struct DebugProbe {               // by openocd
+  std::string interface, target;  // its configuration files
+  std::string serial;             // of the probe; empty: the only one
+  double speed_Hz = 4e6;
+  std::string idle;  // function in which the image idles; empty: wherever it waits for an interrupt
+};
+
 struct BenchDescription {
   std::string file, name, board;  // the board's name, as plans write it
   double pace = 1.0;
@@ -66,6 +91,8 @@ struct BenchDescription {
   std::vector<SerialLink> serials;
   std::vector<BridgeLink> bridges;
   std::vector<Instrument> instruments;
+  std::optional<AnalyserClips> analyser;
+  std::optional<DebugProbe> probe;
   std::map<std::string, std::string> signals;  // other names: {"speed", "told_speed"}
   Safety safety;
 

@@ -134,9 +134,21 @@ void BenchTarget::stop(io::Batch& happened) {
   if (!started_ || stopped_) return;
   stopped_ = true;
   for (const auto& link : links_) link->make_safe();
+  // Times are known from the first step on.
+  const VirtualTime virtual_ns = [this](std::int64_t host_ns) {
+    return pacer_.virtual_ns(host_ns);
+  };
+  for (const auto& link : links_) link->finish(virtual_ns, until_ns_, happened);
   for (const auto& link : links_) link->close();
-  std::ignore = happened;
   if (options_.real_time) pacing::give_back_real_time();
+}
+
+Offers BenchTarget::offers() const {
+  return options_.bench.analyser ? Offers{Offer::bus_log} : Offers{};
+}
+
+bool BenchTarget::sees(const std::string& wires) const {
+  return options_.bench.analyser && options_.bench.analyser->sees(wires);
 }
 
 std::vector<std::pair<std::string, std::string>> BenchTarget::versions() const {
