@@ -20,13 +20,14 @@ plant/motor              base/ plant/base/ plant/motor/
 plant/rotor              base/ plant/rotor/
 plant/sensors            base/ plant/base/ plant/sensors/
 io_bridges/board_description base/ io_bridges/board_description/
-io_bridges/messages      base/ io_bridges/messages/
+io_bridges/messages      base/ io_bridges/messages/ io_bridges/protocols/can_frame.hpp
 io_bridges/protocols     base/ io_bridges/protocols/
 io_bridges/devices       base/ io_bridges/protocols/ io_bridges/devices/
 io_bridges/hid           base/ io_bridges/hid/
 io_bridges/hid/emulated  base/ io_bridges/devices/ io_bridges/hid/hid_port.hpp io_bridges/hid/emulated/
 io_bridges/link          base/ io_bridges/link/
 io_bridges/serial        base/ io_bridges/serial/
+io_bridges/socketcan     base/ io_bridges/protocols/ io_bridges/socketcan/
 io_bridges/rack          base/ io_bridges/board_description/ io_bridges/devices/ io_bridges/messages/ io_bridges/rack/
 io_bridges/rack/models   base/ io_bridges/devices/ io_bridges/messages/ io_bridges/rack/models/ plant/
 io_bridges/rack/devices  base/ io_bridges/devices/ io_bridges/messages/ io_bridges/protocols/ io_bridges/rack/ plant/

@@ -8,7 +8,7 @@ namespace whirl::io {
 void CanMonitor::on_arrival(const CanArrival& arrival) {
   counts_.dropped += arrival.dropped;
   if (!arrival.trouble) {
-    ++counts_.received;
+    ++(arrival.own ? counts_.sent : counts_.received);
     return count(arrival.frame, arrival.host_ns);
   }
   const CanTrouble& t = *arrival.trouble;
@@ -20,11 +20,6 @@ void CanMonitor::on_arrival(const CanArrival& arrival) {
   counts_.bus_errors += t.protocol || t.bus_error;
   counts_.overflows += t.receive_overflow || t.transmit_overflow;
   if (t.state) counts_.state = *t.state;
-}
-
-void CanMonitor::on_sent(const CanFrame& frame, std::int64_t host_ns) {
-  ++counts_.sent;
-  count(frame, host_ns);
 }
 
 void CanMonitor::count(const CanFrame& frame, std::int64_t host_ns) {

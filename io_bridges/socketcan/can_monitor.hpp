@@ -12,9 +12,9 @@
 namespace whirl::io {
 
 struct CanCounts {
-  std::uint64_t received = 0, sent = 0;
-  std::uint64_t dropped = 0;     // by the kernel: we were too slow
-  std::uint64_t queue_full = 0;  // times that a frame had to wait for the controller
+  std::uint64_t received = 0, sent = 0;  // sent: and passed
+  std::uint64_t dropped = 0;             // by the kernel: we were too slow
+  std::uint64_t queue_full = 0;          // times that a frame had to wait for the controller
   std::uint64_t error_frames = 0;
   std::uint64_t bus_off = 0, restarted = 0, no_acknowledge = 0, lost_arbitration = 0;
   std::uint64_t bus_errors = 0, overflows = 0;
@@ -27,7 +27,6 @@ class CanMonitor {
   explicit CanMonitor(std::uint32_t bit_rate_bps) : bit_rate_bps_(bit_rate_bps) {}
 
   void on_arrival(const CanArrival& arrival);
-  void on_sent(const CanFrame& frame, std::int64_t host_ns);
   void on_queue_full() { ++counts_.queue_full; }
   const CanCounts& counts() const { return counts_; }
 

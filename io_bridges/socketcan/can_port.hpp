@@ -41,6 +41,7 @@ struct CanTrouble {
 struct CanArrival {
   std::int64_t host_ns = 0;
   bool hardware_stamp = false;
+  bool own = false;  // what this port has sent, once it has passed the bus
   CanFrame frame = {};
   std::optional<CanTrouble> trouble = {};  // an error frame: `frame` is nothing
   std::uint32_t dropped = 0;               // by the kernel before this one: our side was too slow

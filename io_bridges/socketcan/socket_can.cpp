@@ -70,6 +70,7 @@ Result<Done> SocketCan::ask_for_all() {
   const int stamps = SOF_TIMESTAMPING_RX_HARDWARE | SOF_TIMESTAMPING_RAW_HARDWARE |
                      SOF_TIMESTAMPING_RX_SOFTWARE | SOF_TIMESTAMPING_SOFTWARE;
   setsockopt(file_, SOL_CAN_RAW, CAN_RAW_ERR_FILTER, &all_errors, sizeof all_errors);
+  setsockopt(file_, SOL_CAN_RAW, CAN_RAW_RECV_OWN_MSGS, &on, sizeof on);
   setsockopt(file_, SOL_SOCKET, SO_RXQ_OVFL, &on, sizeof on);
   setsockopt(file_, SOL_SOCKET, SO_TIMESTAMPING, &stamps, sizeof stamps);
   sockaddr_can address{};
@@ -132,6 +133,7 @@ Result<std::optional<CanArrival>> SocketCan::receive() {
   if (size < 0) return gone(errno);
   if (size < static_cast<ssize_t>(sizeof in)) return std::optional<CanArrival>();
   CanArrival arrival;
+  arrival.own = (message.msg_flags & MSG_CONFIRM) != 0;
   read_control(message, arrival);
   if ((in.can_id & CAN_ERR_FLAG) != 0) {
     std::array<std::uint8_t, 8> data{};

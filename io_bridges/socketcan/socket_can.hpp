@@ -2,7 +2,7 @@
 //
 //   Refusals  bad_input with the cure, at open(): see can_interface.hpp
 //   Stamps    of the controller where it has any, else of the kernel's receive path
-//   Own       what this socket sends does not come back to it
+//   Own       what this socket sends comes back marked, when the controller says that it has passed
 #pragma once
 #include <cstdint>
 #include <string>

@@ -11,20 +11,28 @@ CanFrame long_frame() {
   return {.id = 0x1804060A, .extended = true, .length = 8};
 }
 
+CanArrival sent(std::int64_t host_ns) {
+  CanArrival arrival;
+  arrival.host_ns = host_ns;
+  arrival.own = true;
+  arrival.frame = long_frame();
+  return arrival;
+}
+
 // Eight bytes with a 29-bit identifier: 131 bits without stuff bits, 160 with the most (ISO 11898-1).
 TEST(CanMonitor, TheLoadLiesBetweenNoStuffBitsAndTheMost) {
   CanMonitor monitor(1'000'000);
-  for (int n = 0; n < 2000; ++n) monitor.on_sent(long_frame(), n * std::int64_t{500'000});
+  for (int n = 0; n < 2000; ++n) monitor.on_arrival(sent(n * std::int64_t{500'000}));
   const auto load = monitor.load_between(0, 1'000'000'000);
   EXPECT_TRUE(near(load.least, 0.262, round_off(8, 1.0)));
   EXPECT_TRUE(near(load.most, 0.320, round_off(8, 1.0)));
-  monitor.on_sent(long_frame(), 1'000'000'000);  // the second is over
+  monitor.on_arrival(sent(1'000'000'000));  // the second is over
   EXPECT_TRUE(near(monitor.fullest_second().least, 0.262, round_off(8, 1.0)));
 }
 
 TEST(CanMonitor, AVirtualBusHasNoLoad) {
   CanMonitor monitor(0);
-  monitor.on_sent(long_frame(), 0);
+  monitor.on_arrival(sent(0));
   EXPECT_EQ(monitor.load_between(0, 1'000'000'000).most, 0.0);
 }
 

@@ -26,7 +26,7 @@ int main(int argc, char** argv) {
     if (poll(&file, 1, 10'000) != 1) return 1;
     const auto got = port.receive();
     if (!got) return 1;
-    if (!got.value() || got.value()->trouble) continue;
+    if (!got.value() || got.value()->trouble || got.value()->own) continue;
     CanFrame frame = got.value()->frame;
     log << candump_line(got.value()->host_ns, argv[1], frame) << "\n";
     ++frame.id;
