@@ -12,6 +12,7 @@
 #include "harness/catalogue/board_file.hpp"
 #include "harness/plan/plan_file.hpp"
 #include "harness/target/bench/bridge_link.hpp"
+#include "harness/target/bench/can_link.hpp"
 #include "harness/target/target.hpp"
 #include "harness/world/world.hpp"
 
@@ -37,6 +38,7 @@ struct Composition {
   std::string root;
   std::string results;                  // folder of runs and history
   bench::BridgeMaker bridge = nullptr;  // USB to I2C, of a bench
+  bench::CanMaker can = nullptr;        // its CAN buses
 };
 
 // The whole program but its composition. Returns the exit code.
