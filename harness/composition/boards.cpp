@@ -10,6 +10,7 @@
 #include "harness/catalogue/stand_table.hpp"
 #include "harness/catalogue/surroundings_table.hpp"
 #include "harness/catalogue/vehicle_file.hpp"
+#include "harness/composition/stand_in_command.hpp"
 #include "harness/flight/flight_world.hpp"
 #include "harness/pacing/host_clock.hpp"
 #include "harness/plan/needs.hpp"
@@ -184,7 +185,8 @@ cli::Composition boards_and_worlds(const std::string& root, const std::string& r
           root,
           results,
           bridge,
-          can};
+          can,
+          [root](const cli::StandInRequest& request) { return stand_in_command(request, root); }};
 }
 
 }  // namespace whirl
