@@ -9,6 +9,7 @@ plan "thrust_rise_dronecan" {
   tags = { "quick", "esc", "can" },
   timeout = "20 s",
   run = function(t)
+    t:wait "500 ms" -- it is silent until it has been spoken to
     t:can { bus = "can1", from = "mcu", message = 1034, period = "50 ms", tolerance = "1.5 ms", during = "4 s" }
     t:can { bus = "can1", load = "5 %", during = "4 s" }
     rise(t)
