@@ -34,8 +34,16 @@ void read_link(const lua::Table& t, bench::BenchDescription& bench) {
     bench.bridges.push_back(std::move(link));
   } else if (number && (bus.starts_with("usart") || bus.starts_with("uart"))) {
     bench.serials.push_back({name, t.text("path"), port, read_baud(t)});
+  } else if (number && bus.starts_with("can")) {
+    bench::CanBusLink link;
+    link.name = name;
+    link.interface = t.text("interface");
+    link.bus = port;
+    link.bit_rate_bps = static_cast<std::uint32_t>(
+        t.quantity_or("rate", Dimension::baud, link.bit_rate_bps, lua::between(10e3, 1e6)));
+    bench.cans.push_back(std::move(link));
   } else {
-    t.refuse("bus", "'" + bus + "' is no bus that a bench can join", "i2c1.., usart1..");
+    t.refuse("bus", "'" + bus + "' is no bus that a bench can join", "i2c1.., usart1.., can1..");
   }
 }
 
@@ -172,6 +180,11 @@ void check_names(const lua::Table& t, const bench::BenchDescription& bench) {
     once(names, "links", link.name);
     once(places, "links", "usart" + std::to_string(link.uart));
     once(places, "links", link.path);
+  }
+  for (const auto& link : bench.cans) {
+    once(names, "links", link.name);
+    once(places, "links", "can" + std::to_string(link.bus));
+    once(places, "links", link.interface);
   }
   for (const auto& instrument : bench.instruments) {
     once(names, "instruments", instrument.name);

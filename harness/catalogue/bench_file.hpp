@@ -3,6 +3,7 @@
 //   return { bench = "esc_stand", board = "esc32v2", pace = 1,
 //            late = "200 us", late_share = "1 %",
 //            links = { { name = "throttle", bus = "i2c2", bridge = "mcp2221a", serial = "0002137245", rate = "100 kHz" },
+//                      { name = "bus", bus = "can1", interface = "can0", rate = "1000000 baud" },
 //                      { name = "terminal", bus = "usart1", path = "/dev/serial/by-id/...", baud = "921600 baud" } },
 //            instruments = { { name = "cell", path = "/dev/ttyUSB1", baud = "115200 baud", delay = "4 ms",
 //                              readings = { { signal = "thrust", column = 1, scale = "9.80665e-3 N", zero = 0 } } } },

@@ -10,8 +10,10 @@
 
 #include "base/result.hpp"
 #include "harness/catalogue/board_file.hpp"
+#include "harness/cli/stand_in_request.hpp"
 #include "harness/plan/plan_file.hpp"
 #include "harness/target/bench/bridge_link.hpp"
+#include "harness/target/bench/can_link.hpp"
 #include "harness/target/target.hpp"
 #include "harness/world/world.hpp"
 
@@ -39,6 +41,8 @@ struct Composition {
   std::string root;
   std::string results;                  // folder of runs and history
   bench::BridgeMaker bridge = nullptr;  // USB to I2C, of a bench
+  bench::CanMaker can = nullptr;        // its CAN buses
+  std::function<int(const StandInRequest&)> stand_in = nullptr;
 };
 
 // The whole program but its composition. Returns the exit code.

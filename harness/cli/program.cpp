@@ -41,6 +41,7 @@ constexpr const char* kExamples = R"(Examples:
   whirl run test_plans/flight/hover.lua --gdb  then: gdb-multiarch build/firmware/flight.elf
   whirl run test_plans/bench --target bench/esc_stand --arm "the propeller is clear"
                                                the same plan on a physical board, in real time
+  whirl standin esc32v2                        a virtual board as if it were metal, for a bench to find
   whirl fly --pace 1                           a flight in real time for QGroundControl or another
                                                MAVLink client, on UDP 127.0.0.1:14550
   whirl list                                   what plans there are
@@ -260,6 +261,23 @@ CLI::App* add_decode(CLI::App& app, DecodeOptions& options) {
   return decode;
 }
 
+CLI::App* add_stand_in(CLI::App& app, StandInRequest& request) {
+  auto* stand_in = app.add_subcommand(
+      "standin", "a virtual board as if it were metal: its lines on this host, in real time");
+  stand_in->add_option("board", request.board, "of test_plans/boards, or a file (esc32v2)");
+  stand_in->add_option("--image", request.image, "of build/firmware, or an ELF (esc)");
+  stand_in->add_option("--stand", request.stand, "the stand's table, as a plan writes it");
+  stand_in->add_option("--pace", request.pace, "of the host's time (1)")
+      ->check(CLI::Range(0.001, 10.0));
+  stand_in->add_option("--folder", request.folder,
+                       "where its lines and its bench file stand (standin)");
+  stand_in->add_option("--serial", request.serial, "number of the played bridge");
+  stand_in->add_flag("!--no-bridge", request.bridge, "play no USB bridge (no /dev/uhid)");
+  stand_in->add_option("--can", request.can, "interface that its CAN is joined to: vcan0");
+  stand_in->add_option("--seconds", request.seconds, "end after so long (default: a signal)");
+  return stand_in;
+}
+
 CLI::App* add_parity(CLI::App& app, ParityOptions& options) {
   auto* parity = app.add_subcommand("parity", "two runs of one plan, figure by figure");
   parity->add_option("first", options.first, "a run's folder: of the virtual board")->required();
@@ -335,6 +353,8 @@ int run_chosen(int argc, char** argv, Composition composition) {
   const BenchCommands benches(app);
   DecodeOptions decoding;
   auto* decode = add_decode(app, decoding);
+  StandInRequest standing;
+  auto* stand_in = add_stand_in(app, standing);
   ParityOptions pair;
   auto* parity = add_parity(app, pair);
 
@@ -373,6 +393,7 @@ int run_chosen(int argc, char** argv, Composition composition) {
   }
   if (const auto code = benches.run(composition)) return *code;
   if (*decode) return decode_command(decoding, composition);
+  if (*stand_in) return composition.stand_in(standing);
   if (*parity) return parity_command(pair);
   if (*fuzz) return fuzz_command(fuzzing);
   if (*job) return job_command(composition);

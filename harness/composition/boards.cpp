@@ -10,6 +10,7 @@
 #include "harness/catalogue/stand_table.hpp"
 #include "harness/catalogue/surroundings_table.hpp"
 #include "harness/catalogue/vehicle_file.hpp"
+#include "harness/composition/stand_in_command.hpp"
 #include "harness/flight/flight_world.hpp"
 #include "harness/pacing/host_clock.hpp"
 #include "harness/plan/needs.hpp"
@@ -120,8 +121,16 @@ bool enter_pressed() {
   return isatty(STDIN_FILENO) == 1 && poll(&terminal, 1, 0) == 1;
 }
 
+std::unique_ptr<bench::Link> can_link(const cli::Setup& setup, const bench::CanBusLink& link,
+                                      const bench::CanMaker& maker) {
+  bench::CanOptions options{.link = link, .heartbeat_ns = setup.bench->safety.heartbeat_ns};
+  if (!setup.folder.empty()) options.log = setup.folder + "/" + link.name + ".log";
+  return std::make_unique<bench::CanLink>(std::move(options), maker);
+}
+
 Result<std::unique_ptr<Target>> bench_target(const cli::Setup& setup,
-                                             const bench::BridgeMaker& bridge) {
+                                             const bench::BridgeMaker& bridge,
+                                             const bench::CanMaker& can) {
   const auto params = stand_of(setup);
   if (!params) return params.error();
   const bench::BenchDescription& bench = *setup.bench;
@@ -136,6 +145,9 @@ Result<std::unique_ptr<Target>> bench_target(const cli::Setup& setup,
                              .safe = {params.value().esc.address, {zero.begin(), zero.end()}, 0},
                              .heartbeat_ns = bench.safety.heartbeat_ns},
         std::move(port.value())));
+  }
+  for (const bench::CanBusLink& link : bench.cans) {
+    links.push_back(can_link(setup, link, can));
   }
   for (const bench::SerialLink& link : bench.serials) {
     links.push_back(std::make_unique<bench::BoardSerial>(link));
@@ -156,8 +168,9 @@ Result<std::unique_ptr<Target>> bench_target(const cli::Setup& setup,
 }
 
 Result<std::unique_ptr<Target>> make_target(const cli::Setup& setup,
-                                            const bench::BridgeMaker& bridge) {
-  if (setup.bench != nullptr) return bench_target(setup, bridge);
+                                            const bench::BridgeMaker& bridge,
+                                            const bench::CanMaker& can) {
+  if (setup.bench != nullptr) return bench_target(setup, bridge, can);
   VirtualBoardOptions options;
   options.board = {setup.board,
                    {.image = setup.image,
@@ -183,9 +196,14 @@ Result<std::unique_ptr<Target>> make_target(const cli::Setup& setup,
 }  // namespace
 
 cli::Composition boards_and_worlds(const std::string& root, const std::string& results,
-                                   const bench::BridgeMaker& bridge) {
-  return {make_world, [bridge](const cli::Setup& setup) { return make_target(setup, bridge); },
-          root, results, bridge};
+                                   const bench::BridgeMaker& bridge, const bench::CanMaker& can) {
+  return {make_world,
+          [bridge, can](const cli::Setup& setup) { return make_target(setup, bridge, can); },
+          root,
+          results,
+          bridge,
+          can,
+          [root](const cli::StandInRequest& request) { return stand_in_command(request, root); }};
 }
 
 }  // namespace whirl

@@ -1,7 +1,7 @@
 // A bench: a physical board, what of this host its buses hang on, and when all of it is made safe.
 //
 //   Links        each stands for a part of the board file that is the world's end of a bus: an i2c_master by a USB
-//                bridge, a `serial` by a serial line
+//                bridge, a `serial` by a serial line; a CAN bus by a network interface
 //   Instruments  lines of text with numbers, each a signal: load cell, tachometer, meters
 //   Safety       limits on signals, a limit on time, the phrase that who runs it has to say
 #pragma once
@@ -29,6 +29,12 @@ struct BridgeLink {  // USB to I2C
   double rate_Hz = 100e3;
   std::int64_t timeout_ns =
       20'000'000;  // of the host; the ESC's longest answer takes one millisecond
+};
+
+struct CanBusLink {             // a network interface of SocketCAN
+  std::string name, interface;  // "bus", "can0"
+  std::uint16_t bus = 1;
+  std::uint32_t bit_rate_bps = 1'000'000;  // that it must have; a virtual one has none
 };
 
 struct Reading {  // the n-th number of a line, (number - zero) * scale
@@ -90,6 +96,7 @@ struct BenchDescription {
   double late_share = 0.0;   // of the steps: more makes a run inconclusive
   std::vector<SerialLink> serials;
   std::vector<BridgeLink> bridges;
+  std::vector<CanBusLink> cans;
   std::vector<Instrument> instruments;
   std::optional<AnalyserClips> analyser;
   std::optional<DebugProbe> probe;

@@ -139,7 +139,14 @@ void BenchTarget::stop(io::Batch& happened) {
     return pacer_.virtual_ns(host_ns);
   };
   for (const auto& link : links_) link->finish(virtual_ns, until_ns_, happened);
-  for (const auto& link : links_) link->close();
+  for (const auto& link : links_) {
+    link->close();
+    for (const std::string& finding : link->findings()) {
+      const std::string text = link->name() + '\0' + finding;
+      happened.add(io::Kind::finding, 0, until_ns_, text.data(),
+                   static_cast<std::uint32_t>(text.size()));
+    }
+  }
   if (options_.real_time) pacing::give_back_real_time();
 }
 

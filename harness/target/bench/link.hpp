@@ -52,6 +52,8 @@ class Link {
                       io::Batch& /*happened*/) {}
   virtual void close() = 0;
   virtual std::vector<std::pair<std::string, std::string>> versions() const { return {}; }
+  // What went wrong at it, for who reads the run. Pre: closed.
+  virtual std::vector<std::string> findings() const { return {}; }
 };
 
 }  // namespace whirl::bench
