@@ -40,7 +40,12 @@ const char* bitten(const std::vector<results::ResetRecord>& resets) {
 
 // What only an image that runs brings about: bytes on a bus, a watched function, a set-point, or the
 // end of an interrupt's latency. A core that spins on a flag for ever does none of these.
-bool is_act_of_firmware(io::Kind kind) {
+bool is_act_of_firmware(const io::Reader& message) {
+  const io::Kind kind = message.header().kind;
+  if (kind == io::Kind::can_transfer) {  // of its own: the harness's nodes send, too
+    const auto frame = message.as<io::CanRecord>();
+    return frame.sender == -1 && frame.error == 0;
+  }
   return kind == io::Kind::i2c_transaction || kind == io::Kind::spi_transaction ||
          kind == io::Kind::uart_received || kind == io::Kind::function_call ||
          kind == io::Kind::esc_setpoint || kind == io::Kind::interrupt_latency ||
@@ -338,7 +343,7 @@ class Run {
       if (board >= logs_.size()) {
         return end_for({ErrorKind::internal, "", "a message of a board that is not there", ""});
       }
-      acted_[board] = acted_[board] || is_act_of_firmware(r.header().kind);
+      acted_[board] = acted_[board] || is_act_of_firmware(r);
       logs_[board].add(r);
     }
     if (r.complete()) return true;

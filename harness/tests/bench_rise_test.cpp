@@ -28,7 +28,7 @@ TEST(Bench, TheThrustRiseOfTheRealImageIsMeasuredOverItsWires) {
   const auto wire = [&](const bench::BridgeLink&) -> Result<std::unique_ptr<bench::I2cPort>> {
     return std::unique_ptr<bench::I2cPort>(std::make_unique<WireOfStandIn>(*metal.stand_in));
   };
-  expect_a_rise(run_on_bench(folder, metal, R"(bus = "i2c2", bridge = "cp2112")", {wire}));
+  expect_a_rise(run_on_bench(folder, metal, R"(bus = "i2c2", bridge = "cp2112")", {wire}), metal);
 }
 
 // The same over DroneCAN: the board's CAN and the bench's on one bus in memory, in place of an interface.
@@ -40,8 +40,7 @@ TEST(Bench, TheThrustRiseOfTheRealImageIsMeasuredOverCan) {
     return bus.join();
   };
   expect_a_rise(
-      run_on_bench(folder, metal, R"(bus = "can1", interface = "memory")", {nullptr, can}));
-  EXPECT_GT(bus.seen().size(), 100u);
+      run_on_bench(folder, metal, R"(bus = "can1", interface = "memory")", {nullptr, can}), metal);
 }
 
 }  // namespace
