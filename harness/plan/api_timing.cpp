@@ -148,16 +148,6 @@ int budget(lua_State* L) {
   return 1;
 }
 
-// A frame that an analyser saw and could not read may be the one that a figure misses.
-bool unread_between(const results::EventLog& log, bool spi, int bus, std::int64_t from,
-                    std::int64_t to) {
-  return std::any_of(log.unread.begin(), log.unread.end(), [&](const results::UnreadRecord& u) {
-    return u.spi == spi && u.bus == bus && u.stop_ns >= from && u.start_ns <= to;
-  });
-}
-
-constexpr const char* kUnread = "frames on this bus could not be read";
-
 struct BusWindow {
   std::string name, place;
   bool spi = false, any_direction = true, read = false;

@@ -1,5 +1,6 @@
 #include "harness/plan/timing_window.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -74,6 +75,13 @@ void must_see(lua_State* L, Script& self, const std::string& wires) {
   if (!self.stage().sees || self.stage().sees(wires)) return;
   raise(L, "no clip of the bench's analyser is on " + wires,
         "analyser = { channels = ... } of the bench's file");
+}
+
+bool unread_between(const results::EventLog& log, bool spi, int bus, std::int64_t from,
+                    std::int64_t to) {
+  return std::any_of(log.unread.begin(), log.unread.end(), [&](const results::UnreadRecord& u) {
+    return u.spi == spi && u.bus == bus && u.stop_ns >= from && u.start_ns <= to;
+  });
 }
 
 }  // namespace whirl::plan

@@ -33,4 +33,9 @@ void must_offer(lua_State* L, Script& self, const std::string& call);
 // "i2c3", "pin_NAME": of a log of buses that sees some of them only.
 void must_see(lua_State* L, Script& self, const std::string& wires);
 
+inline constexpr const char* kUnread = "frames on this bus could not be read";
+// A frame that an analyser saw and could not read may be the one that a figure misses.
+bool unread_between(const results::EventLog& log, bool spi, int bus, std::int64_t from,
+                    std::int64_t to);
+
 }  // namespace whirl::plan

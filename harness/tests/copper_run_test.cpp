@@ -153,7 +153,7 @@ TEST_F(CopperRun, WhatIsNoCaptureOfThisBoardIsRefusedInOneLine) {
   EXPECT_NE(shell(plan + folder_.file("nowhere.vcd"), 2).find("cannot be opened"),
             std::string::npos);
   const std::string strange =
-      "$timescale 1 ns $end\n$var wire 1 ! D0 $end\n$enddefinitions $end\n#0\n1!\n#5\n0!\n";
+      "$timescale 1 ns $end\n$var wire 1 ! D0 $end\n$enddefinitions $end\n#0\n1!\n#5000\n0!\n";
   ASSERT_TRUE(write_text(folder_.file("strange.vcd"), strange));
   EXPECT_NE(shell(plan + folder_.file("strange.vcd"), 2).find("has no wire of this board"),
             std::string::npos);

@@ -156,10 +156,13 @@ TEST_F(Wires, SigroksOwnDecodersReadTheSameBytes) {
             "uart-1: 6F\nuart-1: 6B\nuart-1: 0A\n");
   EXPECT_EQ(sigrok_cli(path, "-P uart:rx=usart2_rx:baudrate=57600:format=hex -A uart=rx-data"),
             "uart-1: 6F\nuart-1: 6B\n");
-  EXPECT_EQ(
-      sigrok_cli(
-          path, "-P can:can_rx=can2:nominal_bitrate=1000000 -A can=id:ext-id:full-id:data:warning"),
-      "can-1: Identifier: 291 (0x123)\n");
+  EXPECT_EQ(sigrok_cli(
+                path, "-P can:can_rx=can2:nominal_bitrate=1000000 -A can=id:full-id:data:warnings"),
+            "can-1: Identifier: 291 (0x123)\n"
+            "can-1: Data byte 0: 0x00\ncan-1: Data byte 1: 0xff\n"
+            "can-1: Identifier: 1025 (0x401)\ncan-1: Full Identifier: 268699146 (0x1004060a)\n"
+            "can-1: Data byte 0: 0x00\ncan-1: Data byte 1: 0x00\ncan-1: Data byte 2: 0x00\n"
+            "can-1: Data byte 3: 0xc0\n");
   EXPECT_NE(sigrok_cli(path, "-P pwm:data=pulses_1 -A pwm=duty-cycle").find("37.5"),
             std::string::npos);
 }
