@@ -1,12 +1,11 @@
-// Register map of the MPU-6000, transcribed by hand from RM-MPU-6000A-00 rev 4.2. The firmware has
+// Register map of the MPU-6000, transcribed by hand from RM-MPU-6000A-00 rev 4.2. The flight image has
 // a transcription of its own: a typo shared by both would agree with itself.
 #pragma once
 #include <cstdint>
-#include <span>
 
-#include "io_bridges/devices/register_file.hpp"
+#include "io_bridges/devices/core/register_file.hpp"
 
-namespace whirl::io::mpu {
+namespace whirl::core::mpu {
 
 enum Address : std::uint8_t {
   PRODUCT_ID = 0x0C,
@@ -49,16 +48,6 @@ inline constexpr std::uint8_t kDEVICE_RESET = 0x80, kSLEEP = 0x40, kCYCLE = 0x20
 inline constexpr std::uint8_t kTEMP_FIFO_EN = 0x80, kXG_FIFO_EN = 0x40, kYG_FIFO_EN = 0x20,
                               kZG_FIFO_EN = 0x10, kACCEL_FIFO_EN = 0x08;
 
-std::span<const RegisterSpec> register_map();
+extern const RegisterMap kMap;
 
-// CONFIG.DLPF_CFG: bandwidth and delay of both sensors, and the gyro's output rate.
-struct DlpfRow {
-  double accel_Hz, accel_delay_s, gyro_Hz, gyro_delay_s;
-  int gyro_rate_kHz;
-};
-const DlpfRow& dlpf_row(unsigned cfg);  // 0..7; 7 is reserved and taken as 0
-
-inline constexpr double kAccel_counts_per_g[] = {16384, 8192, 4096, 2048};
-inline constexpr double kGyro_counts_per_degps[] = {131, 65.5, 32.8, 16.4};
-
-}  // namespace whirl::io::mpu
+}  // namespace whirl::core::mpu
