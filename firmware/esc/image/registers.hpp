@@ -29,7 +29,8 @@ struct RCC {
   static constexpr std::uint32_t AFIOEN = bit(0), IOPAEN = bit(2), IOPBEN = bit(3), ADC1EN = bit(9),
                                  ADC2EN = bit(10), TIM1EN = bit(11), USART1EN = bit(14);
   static constexpr std::uint32_t DMA1EN = bit(0);
-  static constexpr std::uint32_t TIM2EN = bit(0), TIM4EN = bit(2), I2C2EN = bit(22), CANEN = bit(25);
+  static constexpr std::uint32_t TIM2EN = bit(0), TIM4EN = bit(2), I2C2EN = bit(22),
+                                 CANEN = bit(25);
 };
 
 struct UID {  // 96 bits, each part's own

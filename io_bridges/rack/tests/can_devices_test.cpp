@@ -1,0 +1,113 @@
+// Devices on CAN as another node of their bus finds them.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "io_bridges/devices/dronecan_node.hpp"
+#include "io_bridges/protocols/dronecan/esc.hpp"
+#include "io_bridges/protocols/dronecan/esc_extended.hpp"
+#include "io_bridges/rack/tests/bench_rack.hpp"
+
+namespace whirl::rack {
+namespace {
+
+using namespace io::dronecan;
+
+struct Bench {
+  BenchRack rack;
+  io::DroneCanNode flight{rack.queue, rack.can_bus, {"flight", "org.test", -1, 10, 1e6}};
+  std::vector<EscStatus> told;
+  std::vector<EscStatusExtended> flags;
+
+  Bench() {
+    BoardDevice esc{.name = "esc3", .type = "esc_dronecan", .bus = "can1", .motor = 3};
+    EXPECT_NE(rack.add(esc), nullptr) << rack.error;
+    flight.on<EscStatus>([this](const EscStatus& s, auto, auto) { told.push_back(s); });
+    flight.on<EscStatusExtended>([this](const auto& s, auto, auto) { flags.push_back(s); });
+    rack.run_ms(1);
+  }
+  std::vector<io::EscSetpoint> command(std::initializer_list<int> raw) {
+    rack.posted.clear();
+    RawCommand message;
+    for (const int one : raw) message.commands.add(static_cast<std::int16_t>(one));
+    flight.send(message, 5);
+    rack.run_ms(1);
+    std::vector<io::EscSetpoint> setpoints;
+    for (io::Reader reader(rack.posted.bytes()); reader.next();) {
+      if (reader.header().kind != io::Kind::esc_setpoint) continue;
+      EXPECT_EQ(reader.header().port, 3);
+      setpoints.push_back(reader.as<io::EscSetpoint>());
+    }
+    return setpoints;
+  }
+};
+
+TEST(EscOnCan, TakesItsPlaceInTheCommandByFourSteps) {
+  Bench b;
+  for (const auto& [raw, v] : {std::pair{0, 0}, {4, 1}, {7, 1}, {4096, 1024}, {8191, 2047}}) {
+    const auto setpoints = b.command({100, 200, raw, 300});
+    ASSERT_EQ(setpoints.size(), 1u);
+    EXPECT_EQ(setpoints[0].value, v);
+    EXPECT_EQ(setpoints[0].valid, 1);
+    EXPECT_LT(setpoints[0].start_ns, b.rack.queue.now());
+  }
+}
+
+TEST(EscOnCan, AnArrayTooShortForItSaysZeroAndANegativeOneIsRefused) {
+  Bench b;
+  EXPECT_EQ(b.command({4000, 4000}).at(0).value, 0);
+  const auto refused = b.command({0, 0, -4});
+  ASSERT_EQ(refused.size(), 1u);
+  EXPECT_EQ(refused[0].valid, 0);
+  b.rack.run_ms(100);
+  ASSERT_GE(b.flags.size(), 2u);
+  EXPECT_EQ(b.flags.front().flags, 0x80u);  // once
+  EXPECT_EQ(b.flags.back().flags, 0u);
+}
+
+TEST(EscOnCan, TellsItsStateTwentyTimesASecond) {
+  Bench b;
+  io::BodyMotion motion;
+  motion.bus_voltage_V = 15.5;
+  b.rack.send(motion);
+  io::EscState state;
+  state.bus_current_A = -0.25;
+  state.speed_rpm = 4321.4;
+  state.flags = 3;
+  b.rack.send(io::Kind::esc_state, state);
+  b.rack.run_ms(1000);
+  ASSERT_GE(b.told.size(), 19u);
+  EXPECT_LE(b.told.size(), 21u);
+  const EscStatus& last = b.told.back();
+  EXPECT_EQ(last.index, 2);
+  EXPECT_EQ(last.speed_rpm, 4321);
+  EXPECT_EQ(last.voltage_V, 15.5f);
+  EXPECT_EQ(last.current_A, -0.25f);
+  EXPECT_TRUE(std::isnan(last.temperature_K));
+  EXPECT_EQ(b.flags.back().flags, 3u);
+}
+
+TEST(CanPort, SendsOrdersFromTheirTimeOnInTheirOrder) {
+  BenchRack rack;
+  ASSERT_NE(rack.add({.name = "port", .type = "can_port", .bus = "can1"}), nullptr) << rack.error;
+  io::DroneCanNode other(rack.queue, rack.can_bus, {"other", "org.test", -1, 11, 1e6});
+  std::vector<io::CanTransfer> log;
+  rack.can_bus.on_transfer([&log](const io::CanTransfer& t) { log.push_back(t); });
+  rack.run_ms(5);
+  for (const std::uint32_t id : {0x300u, 0x100u}) {  // not by priority: one node, one queue
+    io::CanMessage order;
+    order.id = id;
+    order.length = 2;
+    rack.send(io::Kind::can_order, order);
+  }
+  rack.run_ms(1);
+  ASSERT_EQ(log.size(), 2u);
+  EXPECT_EQ(log[0].frame.id, 0x300u);
+  EXPECT_FALSE(log[0].frame.extended);
+  EXPECT_EQ(log[0].start_ns, 5'000'000);
+  EXPECT_EQ(log[1].frame.id, 0x100u);
+  EXPECT_EQ(log[0].sender, 0);
+}
+
+}  // namespace
+}  // namespace whirl::rack
