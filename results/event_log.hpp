@@ -21,6 +21,16 @@ struct BusRecord {
   std::int64_t stop_ns = 0;
 };
 
+struct UnreadRecord {  // a frame that an analyser saw and could not read
+  bool spi = false;
+  std::uint16_t bus = 0;
+  std::int64_t start_ns = 0, stop_ns = 0;
+};
+
+struct PulseRecord {                       // a pin was high
+  std::int64_t rise_ns = 0, fall_ns = -1;  // -1: it is so still
+};
+
 // A frame on CAN, good or not.
 struct CanFrameRecord {
   std::uint16_t bus = 0;
@@ -85,6 +95,8 @@ class EventLog {
   void add(const io::Reader& message);  // where the reader stands
 
   std::vector<BusRecord> bus;
+  std::vector<UnreadRecord> unread;
+  std::map<std::uint16_t, std::vector<PulseRecord>> pulses;  // by pin number
   std::vector<CanFrameRecord> can;
   std::map<std::uint16_t, std::vector<CallRecord>> calls;            // by watch number
   std::map<std::uint16_t, LatencyRecord> latencies;                  // by exception number
@@ -103,6 +115,9 @@ class EventLog {
 
  private:
   void add_bus(const io::Reader& reader, bool spi);
+  void add_pin(const io::Header& header, bool level);
+
+  std::map<std::uint16_t, bool> pin_levels_;
 };
 
 }  // namespace whirl::results

@@ -1,4 +1,4 @@
-// The parameters as a DroneCAN node tells them (link/dronecan_node.hpp): by their place in the table.
+// The parameters as a DroneCAN node tells them (dronecan/node.hpp): by their place in the table.
 #pragma once
 #include "firmware/config/parameters.hpp"
 

@@ -10,8 +10,8 @@
 #include <tuple>
 #include <utility>
 
+#include "firmware/dronecan/node.hpp"
 #include "firmware/esc/core/protocol.hpp"
-#include "firmware/link/dronecan_node.hpp"
 
 namespace fw {
 

@@ -6,12 +6,9 @@
 //   Watch   the watchdog is fed when each task has run since the last time
 #include <tuple>
 
-#include "firmware/config/parameter_access.hpp"
 #include "firmware/config/parameter_store.hpp"
 #include "firmware/config/vehicle.hpp"
 #include "firmware/drivers/cppm_receiver.hpp"
-#include "firmware/drivers/esc_bus.hpp"
-#include "firmware/drivers/esc_can.hpp"
 #include "firmware/drivers/hmc5883l.hpp"
 #include "firmware/drivers/mpu6000.hpp"
 #include "firmware/drivers/ms5611.hpp"
@@ -20,7 +17,6 @@
 #include "firmware/flight/flight.hpp"
 #include "firmware/flight/schedule.hpp"
 #include "firmware/hal/battery_adc.hpp"
-#include "firmware/hal/can_link.hpp"
 #include "firmware/hal/clock.hpp"
 #include "firmware/hal/edge_capture.hpp"
 #include "firmware/hal/fault_record.hpp"
@@ -32,6 +28,7 @@
 #include "firmware/hal/time_base.hpp"
 #include "firmware/hal/uart_link.hpp"
 #include "firmware/hal/watchdog.hpp"
+#include "firmware/images/flight_escs.hpp"
 #include "firmware/link/telemetry.hpp"
 #include "firmware/log/flight_log.hpp"
 
@@ -43,11 +40,6 @@ constinit Health health;
 namespace {
 
 constinit Mpu6000<hal::ImuLink> imu(hal::imu_link);
-constinit EscBus<hal::I2cMaster<hal::EscI2c>> escs(hal::i2c3);
-using Can = hal::BxCan<hal::HeaderCan>;
-constinit ParameterAccess access;
-constinit dronecan::Node<Can, ParameterAccess> node(hal::can2, access);
-constinit EscCan<Can, ParameterAccess> can_escs(hal::can2, node);
 constinit Ms5611<hal::I2cMaster<hal::SensorI2c>> barometer(hal::i2c2);
 constinit Hmc5883l<hal::I2cMaster<hal::SensorI2c>> magnetometer(hal::i2c2);
 constinit UbloxGps<hal::UartLink<hal::GpsUart>> gps(hal::gps_uart);
@@ -113,10 +105,6 @@ void fallback_tick() {
 
 void receiver_edge(std::uint32_t edge_us) {
   if (receiver.edge(edge_us)) sticks_came = true;
-}
-
-void esc_job_done(const hal::I2cJob& job, Status status) {
-  escs.job_done(job, status);
 }
 
 void sensor_job_done(const hal::I2cJob& job, Status status) {
@@ -224,56 +212,10 @@ static std::uint32_t uptime_ms() {
   return ms;
 }
 
-// The ESCs of either bus: what they told since the last time, then what is due.
-template <typename Escs>
-static void serve(Escs& bus, std::uint32_t tick) {
-  for (unsigned motor = 0; motor < 4; ++motor) {
-    if (bus.take_answered(motor)) flight().on_esc_answered(motor);
-    esc::protocol::Status status;
-    if (bus.take_status(motor, status)) flight().on_esc_status(motor, status);
-  }
-  if (schedule::setpoints(tick)) {
-    std::ignore = bus.write(flight().send_setpoints());
+__attribute__((noinline)) void esc_task(std::uint32_t tick) {
+  if (serve_escs(flight(), faults, tick, uptime_ms() / 1000u)) {
     TickTimes::keep_worst(times.setpoint_us, hal::now_us() - data_ready_us);
   }
-  const int motor = schedule::status_read(tick);
-  if (motor >= 0) std::ignore = bus.request_status(static_cast<unsigned>(motor));
-  faults.esc_no_answer = bus.failures();
-  faults.esc_bad_status = bus.bad_status();
-}
-
-// Once the parameter asks for it; the bus stays on from then.
-static bool start_can() {
-  static constinit bool started = false;
-  if (started) return true;
-  constexpr std::uint8_t kNodeId = 10;
-  constexpr std::array<hal::CanFilter, 3> filters{
-      EscCan<Can, ParameterAccess>::kFilters[0], EscCan<Can, ParameterAccess>::kFilters[1],
-      dronecan::Node<Can, ParameterAccess>::services_to(kNodeId)};
-  node.be({kNodeId, "org.whirlstand.flight", hal::unique_id()});
-  access.join(flight().parameters());
-  started = hal::can2.init(filters) == Status::ok;
-  return started;
-}
-
-static void can_node_tick(std::uint32_t tick) {
-  constexpr std::uint32_t kPeriod_ticks = 1000;
-  access.set_armed(flight().state() != FlightState::disarmed);
-  can_escs.tick();
-  if (tick % kPeriod_ticks != 0) return;
-  const bool bad = flight().emergency();
-  node.publish_status(uptime_ms() / 1000u, bad ? dronecan::Health::critical : dronecan::Health::ok);
-}
-
-__attribute__((noinline)) void esc_task(std::uint32_t tick) {
-  if (flight().parameters().is_on(Parameter::esc_bus) && start_can()) {
-    can_node_tick(tick);
-    serve(can_escs, tick);
-  } else {
-    serve(escs, tick);
-  }
-  faults.i2c_recoveries = hal::i2c3.counters().recoveries;
-  faults.i2c_timeouts = hal::i2c3.counters().timeouts;
 }
 
 __attribute__((noinline)) void telemetry_task() {

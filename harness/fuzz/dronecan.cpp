@@ -49,10 +49,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   std::int64_t now_ns = 0;
   for (std::size_t at = 0; at + 14 <= size; at += 14) {
     const std::uint8_t* p = data + at;
-    CanFrame frame{.id = p[0] | p[1] << 8 | p[2] << 16 | static_cast<std::uint32_t>(p[3] & 0x1F) << 24,
-                   .extended = (p[3] & 0x80) == 0,
-                   .remote = (p[3] & 0x40) != 0,
-                   .length = static_cast<std::uint8_t>(p[4] & 0x0F)};
+    CanFrame frame{
+        .id = p[0] | p[1] << 8 | p[2] << 16 | static_cast<std::uint32_t>(p[3] & 0x1F) << 24,
+        .extended = (p[3] & 0x80) == 0,
+        .remote = (p[3] & 0x40) != 0,
+        .length = static_cast<std::uint8_t>(p[4] & 0x0F)};
     now_ns += p[5] * std::int64_t{10'000'000};
     std::copy_n(p + 6, 8, frame.data.begin());
     if (const Transfer* transfer = assembler.take(frame, now_ns)) check_all(transfer->payload);

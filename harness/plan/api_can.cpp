@@ -67,6 +67,7 @@ void read_place(lua_State* L, Script& self, const lua::Table& given, CanWindow& 
   if (std::none_of(board.devices.begin(), board.devices.end(), on_it)) {
     raise(L, "no device of " + board.name + " is on " + at.rest);
   }
+  must_see(L, self, at.rest);
   w.name = text;
   w.node = at.node;
   w.bus = *number;

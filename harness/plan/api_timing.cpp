@@ -148,6 +148,16 @@ int budget(lua_State* L) {
   return 1;
 }
 
+// A frame that an analyser saw and could not read may be the one that a figure misses.
+bool unread_between(const results::EventLog& log, bool spi, int bus, std::int64_t from,
+                    std::int64_t to) {
+  return std::any_of(log.unread.begin(), log.unread.end(), [&](const results::UnreadRecord& u) {
+    return u.spi == spi && u.bus == bus && u.stop_ns >= from && u.start_ns <= to;
+  });
+}
+
+constexpr const char* kUnread = "frames on this bus could not be read";
+
 struct BusWindow {
   std::string name, place;
   bool spi = false, any_direction = true, read = false;
@@ -169,13 +179,18 @@ void judge_bus(Script& self, const BusWindow& w, std::int64_t from, std::int64_t
     starts.push_back(r.start_ns);
     refused += r.acked ? 0 : 1;
   }
+  auto figure = Script::Figure::extreme;
+  if (unread_between(self.stage().logs[w.node], w.spi, w.bus, from, to)) {
+    self.not_seen_whole(kUnread);
+    figure = Script::Figure::of_all;
+  }
   if (w.period) {
     judge_spread(self, deviations(starts, from, to, w.period->value_SI), *w.tolerance,
-                 w.name + " period deviation", w.place, to);
+                 w.name + " period deviation", w.place, to, figure);
   }
   if (w.spi) return;  // SPI has no acknowledge
   const double count = starts.empty() ? std::nan("") : static_cast<double>(refused);
-  self.judge_in_window({count, Dimension::none, w.name + " NACKs"}, Script::Figure::extreme,
+  self.judge_in_window({count, Dimension::none, w.name + " NACKs"}, figure,
                        Limit{static_cast<double>(w.nacks), ""}, w.place, seconds(to),
                        std::to_string(starts.size()) + " transactions");
 }
@@ -186,12 +201,51 @@ int numbered_bus(lua_State* L, const BoardDevice& device) {
   return *number;
 }
 
+// t:bus { pin = "throttle", period = "20 ms", tolerance = "50 us", high = "1.5 ms" }: from rise to rise, and how long
+// it is high.
+int pin_window(lua_State* L, Script& self, const lua::Table& given) {
+  const std::string name = given.text("pin");
+  const NodePlace at = node_at(L, self, name);
+  const BoardDescription& board = self.stage().nodes[at.node].board;
+  const auto pin = std::find_if(board.pins.begin(), board.pins.end(),
+                                [&](const BoardPin& p) { return p.name == at.rest; });
+  if (pin == board.pins.end())
+    raise(L, "'" + at.rest + "' is no pin that " + board.name + " names");
+  must_see(L, self, "pin_" + at.rest);
+  const auto number = static_cast<std::uint16_t>(pin - board.pins.begin());
+  const auto period = optional_limit(given, "period", Dimension::time);
+  const auto tolerance = optional_limit(given, "tolerance", Dimension::time);
+  const auto high = optional_limit(given, "high", Dimension::time);
+  const std::int64_t end = window_end(self, given);
+  check_finish(L, given);
+  if (!period || !tolerance) raise(L, "a pin is judged by its period and tolerance");
+  const std::string place = place_of(L);
+  self.add_window(end, [=](Script& script, std::int64_t from, std::int64_t to) {
+    const auto& pulses = script.stage().logs[at.node].pulses;
+    std::vector<std::int64_t> rises;
+    std::vector<double> off;
+    if (const auto found = pulses.find(number); found != pulses.end()) {
+      for (const results::PulseRecord& pulse : found->second) {
+        if (pulse.rise_ns < from || pulse.rise_ns > to) continue;
+        rises.push_back(pulse.rise_ns);
+        if (!high || pulse.fall_ns < 0 || pulse.fall_ns > to) continue;
+        off.push_back(std::abs(seconds(pulse.fall_ns - pulse.rise_ns) - high->value_SI));
+      }
+    }
+    judge_spread(script, deviations(rises, from, to, period->value_SI), *tolerance,
+                 name + " period deviation", place, to);
+    if (high) judge_spread(script, off, *tolerance, name + " width deviation", place, to);
+  });
+  return 0;
+}
+
 // t:bus { device = "esc1", direction = "write", period = "20 ms", tolerance = "0.5 ms" }
 // bytes = n judges the transactions of that length only: a driver may check a register in between.
 int bus(lua_State* L) {
   Script& self = Script::of(L);
   must_offer(L, self, "bus");
   const lua::Table given = check_table(L, 2);
+  if (given.has("pin")) return pin_window(L, self, given);
   const std::string name = given.text("device");
   const NodePlace at = node_at(L, self, name);
   const BoardDescription& board = self.stage().nodes[at.node].board;
@@ -206,6 +260,7 @@ int bus(lua_State* L) {
     raise(L, name + " is on " + device->bus + ", not I2C or SPI",
           "frames on CAN are judged by t:can");
   w.bus = numbered_bus(L, *device);
+  must_see(L, self, device->bus);
   w.address = w.spi ? board.number(at.rest) : device->address;
   if (!w.spi && w.address < 0) raise(L, name + " has no address on its bus: nobody calls it");
   for (const char* key : {"direction", "nacks"}) {
@@ -288,11 +343,17 @@ void judge_latency(Script& self, const LatencyWindow& w, std::int64_t from, std:
   const auto d = metrics::distribution(histogram.samples);
   // A write that cannot be traced has no known latency: that is not a pass.
   const double worst = untraced > 0 ? std::nan("") : d.max;
+  auto figure = Script::Figure::extreme;
+  for (const Actuator& actuator : w.actuators) {
+    if (!unread_between(events, false, actuator.bus, from, to)) continue;
+    self.not_seen_whole(kUnread);
+    figure = Script::Figure::of_all;
+  }
   std::string note = spread(d, w.limit.unit);
   if (untraced > 0)
     note += "; " + std::to_string(untraced) + " writes cannot be traced to a sample";
-  self.judge_in_window({worst, Dimension::time, w.name}, Script::Figure::extreme, w.limit, w.place,
-                       seconds(to), note);
+  self.judge_in_window({worst, Dimension::time, w.name}, figure, w.limit, w.place, seconds(to),
+                       note);
   self.stage().report.histograms.push_back(std::move(histogram));
 }
 

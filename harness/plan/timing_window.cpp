@@ -50,10 +50,11 @@ std::vector<double> deviations(std::span<const std::int64_t> times, std::int64_t
 }
 
 void judge_spread(Script& self, std::span<const double> values, const Limit& limit,
-                  const std::string& name, const std::string& place, std::int64_t to_ns) {
+                  const std::string& name, const std::string& place, std::int64_t to_ns,
+                  Script::Figure figure) {
   const auto d = metrics::distribution(values);
-  self.judge_in_window({d.max, Dimension::time, name}, Script::Figure::extreme, limit, place,
-                       seconds(to_ns), spread(d, limit.unit));
+  self.judge_in_window({d.max, Dimension::time, name}, figure, limit, place, seconds(to_ns),
+                       spread(d, limit.unit));
 }
 
 NodePlace node_at(lua_State* L, Script& self, const std::string& text) {
@@ -67,6 +68,12 @@ void must_offer(lua_State* L, Script& self, const std::string& call) {
     if (self.stage().offers.has(offer)) continue;
     raise(L, not_offered("t:" + call, offer));
   }
+}
+
+void must_see(lua_State* L, Script& self, const std::string& wires) {
+  if (!self.stage().sees || self.stage().sees(wires)) return;
+  raise(L, "no clip of the bench's analyser is on " + wires,
+        "analyser = { channels = ... } of the bench's file");
 }
 
 }  // namespace whirl::plan

@@ -24,10 +24,13 @@ std::int64_t window_end(Script& self, const lua::Table& given);
 std::vector<double> deviations(std::span<const std::int64_t> times, std::int64_t from,
                                std::int64_t to, double nominal_s);
 void judge_spread(Script& self, std::span<const double> values, const Limit& limit,
-                  const std::string& name, const std::string& place, std::int64_t to_ns);
+                  const std::string& name, const std::string& place, std::int64_t to_ns,
+                  Script::Figure figure = Script::Figure::extreme);
 
 NodePlace node_at(lua_State* L, Script& self, const std::string& text);
 // Also for calls that stand where no text shows them: in a function of another file.
 void must_offer(lua_State* L, Script& self, const std::string& call);
+// "i2c3", "pin_NAME": of a log of buses that sees some of them only.
+void must_see(lua_State* L, Script& self, const std::string& wires);
 
 }  // namespace whirl::plan

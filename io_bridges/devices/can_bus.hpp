@@ -136,6 +136,8 @@ class CanBus {
   bool sends(const CanStation& station) const { return sender_ == &station; }
 
  private:
+  // Counters: above the first a node is passive, above the second off the bus; REC stays at the third.
+  static constexpr int kPassive = 127, kBusOff = 255, kHighest = 135;
   struct Verdict {
     CanError error = CanError::none;
     int bit = 0;                  // the last one before the first error flag

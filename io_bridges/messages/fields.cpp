@@ -168,6 +168,10 @@ constexpr Field kPinEdge[] = {
 constexpr Field kInstrumentReading[] = {
     WHIRL_FIELD(InstrumentReading, value),
 };
+constexpr Field kBusUnread[] = {
+    WHIRL_FIELD(BusUnread, start_ns),
+    WHIRL_FIELD(BusUnread, spi),
+};
 
 #undef WHIRL_FIELD
 
@@ -208,6 +212,7 @@ constexpr KindInfo kKinds[] = {
     {Kind::shoot_through, "shoot_through", false, kShootThrough, sizeof(ShootThrough), Tail::none},
     {Kind::uart_delivered, "uart_delivered", false, {}, 0, Tail::bytes},
     {Kind::gnss_solution, "gnss_solution", false, kGnssSolution, sizeof(GnssSolution), Tail::none},
+    {Kind::bus_unread, "bus_unread", false, kBusUnread, sizeof(BusUnread), Tail::text},
     {Kind::pin_edge, "pin_edge", false, kPinEdge, sizeof(PinEdge), Tail::none},
     {Kind::signals, "signals", false, {}, 0, Tail::none},
 };

@@ -56,6 +56,9 @@ enum class Kind : std::uint8_t {
   gnss_solution = 55,  // GnssSolution, port = device number: a GNSS receiver has computed its place
   pin_edge = 50,       // PinEdge, port = number of the pin among those that the board file names
   instrument_reading = 51,  // InstrumentReading, port = place in the bench's list of readings
+  bus_unread =
+      60,  // BusUnread + text, why; port = bus number: a frame that an analyser saw and could
+           // not read; t_ns: its end
   can_transfer =
       52,  // CanRecord, port = bus number: a frame has passed, good or not; t_ns: its end
   // Only in a run's file of messages (results/messages).
@@ -246,6 +249,12 @@ struct PinEdge {
 
 struct InstrumentReading {  // of a bench: what was measured when (t_ns), in SI
   double value = 0.0;
+};
+
+struct BusUnread {
+  std::int64_t start_ns = 0;
+  std::uint8_t spi = 0;
+  std::uint8_t pad[7] = {};
 };
 
 struct ShootThrough {

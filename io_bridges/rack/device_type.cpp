@@ -87,6 +87,12 @@ void DeviceSlot::join_uart(io::UartPeer& peer) {
   }
 }
 
+io::SpiSlave& DeviceSlot::spi_slave() {
+  if (io::SpiSlave* slave = rack_.spi_slave(bus_number())) return *slave;
+  fail("the part has no bus '" + device_.bus + "' for it");
+  return no_slave_;
+}
+
 void DeviceSlot::set_analog(const std::string& pin, std::function<double(Nanoseconds)> volts) {
   if (!rack_.set_analog(pin, std::move(volts))) fail("the part has no analog pin '" + pin + "'");
 }

@@ -17,6 +17,7 @@
 #include "io_bridges/devices/can_bus.hpp"
 #include "io_bridges/devices/faults.hpp"
 #include "io_bridges/devices/i2c_bus.hpp"
+#include "io_bridges/devices/spi_slave.hpp"
 #include "io_bridges/devices/wire.hpp"
 #include "io_bridges/messages/messages.hpp"
 #include "io_bridges/rack/device_key.hpp"
@@ -61,6 +62,8 @@ class Rack {
   virtual bool join_spi(int bus, io::Wire& chip_select, io::SpiTarget& target,
                         const BoardDevice& device, int number) = 0;
   virtual bool join_uart(int number, io::UartPeer& peer) = 0;
+  // The microcontroller's SPI as the slave of a device that is a master.
+  virtual io::SpiSlave* spi_slave(int /*number*/) { return nullptr; }
 };
 
 struct DeviceType;
@@ -96,6 +99,7 @@ class DeviceSlot {
   void join_i2c(io::I2cTarget& target) { i2c().add(target); }
   void join_spi(io::SpiTarget& target);
   void join_uart(io::UartPeer& peer);
+  io::SpiSlave& spi_slave();
   void set_analog(const std::string& pin, std::function<double(Nanoseconds)> volts);
 
   // True where the result is a failure, which is kept.
@@ -117,6 +121,10 @@ class DeviceSlot {
   io::Wire nowhere_{"nowhere"};
   io::I2cBus no_bus_{"nowhere"};
   std::unique_ptr<io::CanBus> no_can_;
+  struct NoSlave final : io::SpiSlave {
+    Nanoseconds shift_out(Nanoseconds) override { return kNothing; }
+    std::uint8_t sampled(std::uint8_t, int, Nanoseconds) override { return 0xFF; }
+  } no_slave_;
 };
 
 struct DeviceType {

@@ -35,6 +35,8 @@ unmoved("CAN: the wire held dominant for 50 ms", { kind = "can_stuck_dominant", 
 unmoved("CAN: no acknowledge for 50 ms", { kind = "can_no_ack", bus = "can2", duration = "50 ms" })
 unmoved("CAN: an ESC cut off for 100 ms", { kind = "can_cut", device = "esc3", duration = "100 ms" })
 unmoved("CAN: an ESC that misses frames for 100 ms", { kind = "can_lost", device = "esc3", duration = "100 ms" })
+unmoved("CAN: frames that wait 5 ms before they may start",
+        { kind = "can_late", bus = "can2", duration = "1 s", value = "5 ms" })
 unmoved("CAN: one frame spoiled is sent again", { kind = "can_bit_error", bus = "can2", duration = "1 s", value = 7 },
         function(t) t:can { bus = "can2", errors = 1, during = "1 s" } end)
 -- Set-points have priority 5, the babbling node 0: they get the gaps it leaves.

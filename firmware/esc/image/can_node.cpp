@@ -3,11 +3,11 @@
 #include <array>
 #include <limits>
 
+#include "firmware/dronecan/node.hpp"
 #include "firmware/esc/core/protocol.hpp"
 #include "firmware/esc/image/registers.hpp"
 #include "firmware/hal/bxcan.hpp"
 #include "firmware/hal/interrupts.hpp"
-#include "firmware/link/dronecan_node.hpp"
 
 namespace fw::esc::can_node {
 namespace {

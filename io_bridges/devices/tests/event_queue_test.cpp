@@ -124,7 +124,8 @@ class RestlessEvents {
       EXPECT_EQ(events_[other]->pending(), keys_[other] != Key{});
     }
     if (random_() % 2 == 0) {
-      EXPECT_EQ(queue_.next_deadline(), expected_.empty() ? kNever : expected_.begin()->first.first);
+      EXPECT_EQ(queue_.next_deadline(),
+                expected_.empty() ? kNever : expected_.begin()->first.first);
     }
   }
 

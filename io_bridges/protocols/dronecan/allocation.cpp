@@ -36,8 +36,8 @@ std::optional<Allocation> Allocator::on_request(const Allocation& request, std::
 }
 
 std::uint8_t Allocator::choose(const UniqueId& id, std::uint8_t wanted) {
-  const auto known = std::find_if(given_.begin(), given_.end(),
-                                  [&](const auto& one) { return one.first == id; });
+  const auto known =
+      std::find_if(given_.begin(), given_.end(), [&](const auto& one) { return one.first == id; });
   if (known != given_.end()) return known->second;
   const int from = wanted == 0 ? kHighest_id : std::min<int>(wanted, kHighest_id);
   const auto give = [&](int node_id) {

@@ -31,7 +31,8 @@ const Transfer* Assembler::take(const CanFrame& frame, std::int64_t now_ns) {
   Session& session = session_of(*header, now_ns);
   session.used_ns = now_ns;
   const bool start = (tail & tail::kStart) != 0, end = (tail & tail::kEnd) != 0;
-  if (start ? !begin(session, *header, frame, now_ns) : !goes_on(session, tail, now_ns)) return nullptr;
+  if (start ? !begin(session, *header, frame, now_ns) : !goes_on(session, tail, now_ns))
+    return nullptr;
   if (!end && frame.length < 8) return drop(session, counts_.short_frame), nullptr;
   if (!add(session, *type, frame.bytes().first(frame.length - 1u))) return nullptr;
   session.toggle = !session.toggle;
@@ -48,17 +49,16 @@ bool Assembler::meant_for_us(const Header& header) {
 
 Assembler::Session& Assembler::session_of(const Header& header, std::int64_t now_ns) {
   const std::uint64_t key = key_of(header);
-  const auto found = std::find_if(sessions_.begin(), sessions_.end(),
-                                  [&](const Key& k) { return k.key == key; });
+  const auto found =
+      std::find_if(sessions_.begin(), sessions_.end(), [&](const Key& k) { return k.key == key; });
   if (found != sessions_.end()) return *found->session;
   if (sessions_.size() < kMost_sessions) {
     sessions_.push_back({key, std::make_unique<Session>()});
     return *sessions_.back().session;
   }
-  const auto oldest =
-      std::min_element(sessions_.begin(), sessions_.end(), [](const Key& a, const Key& b) {
-        return a.session->used_ns < b.session->used_ns;
-      });
+  const auto oldest = std::min_element(
+      sessions_.begin(), sessions_.end(),
+      [](const Key& a, const Key& b) { return a.session->used_ns < b.session->used_ns; });
   if (oldest->session->under_way) {
     const bool late = now_ns - oldest->session->first_ns > kTime_out_ns;
     ++(late ? counts_.timed_out : counts_.crowded_out);

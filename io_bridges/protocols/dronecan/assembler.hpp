@@ -27,7 +27,8 @@ struct Transfer {
 
 struct TransferCounts {
   std::uint64_t frames = 0, transfers = 0;
-  std::uint64_t not_dronecan = 0;   // 11-bit identifiers, requests for data, identifiers no node sends
+  std::uint64_t not_dronecan =
+      0;  // 11-bit identifiers, requests for data, identifiers no node sends
   std::uint64_t unknown_type = 0;   // whose signature we do not know: not ours to judge
   std::uint64_t not_for_us = 0;     // services of others
   std::uint64_t own_id = 0;         // another node sends under our id

@@ -4,8 +4,8 @@
 //   RPMCommand  revolutions per minute of the shaft (the protocol's unit)
 //   Status      temperature in kelvin; error_count restarts with the motor
 #pragma once
-#include "io_bridges/protocols/dronecan/fields.hpp"
 #include "io_bridges/protocols/dronecan/data_type.hpp"
+#include "io_bridges/protocols/dronecan/fields.hpp"
 
 namespace whirl::io::dronecan {
 

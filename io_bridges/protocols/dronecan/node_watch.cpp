@@ -16,7 +16,8 @@ std::optional<NodeEvent> NodeWatch::on_status(std::uint8_t node_id, const NodeSt
   const bool first = !node.seen, was_online = online(node_id, now_ns);
   const bool fell = !first && status.uptime_s < node.status.uptime_s;
   const std::int64_t started_ns = now_ns - std::int64_t{status.uptime_s} * 1'000'000'000;
-  const bool as_before = node.fell && std::abs(started_ns - node.started_before_ns) <= kSame_start_ns &&
+  const bool as_before = node.fell &&
+                         std::abs(started_ns - node.started_before_ns) <= kSame_start_ns &&
                          std::abs(started_ns - node.started_ns) > kSame_start_ns;
   if (fell) {
     node.started_before_ns = node.started_ns;

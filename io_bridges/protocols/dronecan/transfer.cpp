@@ -63,8 +63,7 @@ TransferFrames::TransferFrames(const Header& header, std::uint64_t signature,
       transfer_id_(header.transfer_id & tail::kTransfer_id),
       many_(payload.size() > kIn_frame) {
   WHIRL_CHECK(payload.size() <= kMost_payload, payload.size());
-  WHIRL_CHECK(header.source != 0 ||
-                  (header.kind == Kind::message && !many_ && header.type_id <= 3),
+  WHIRL_CHECK(header.source != 0 || (header.kind == Kind::message && !many_ && header.type_id <= 3),
               header.type_id);
   if (many_) crc_ = transfer_crc(signature, payload);
 }

@@ -14,12 +14,24 @@ namespace whirl::io::dronecan {
 namespace {
 
 constexpr DataType kTypes[] = {
-    GetNodeInfoRequest::kType, GetNodeInfoResponse::kType, GetSetRequest::kType,
-    GetSetResponse::kType,     Allocation::kType,          NodeStatus::kType,
-    RawCommand::kType,         RpmCommand::kType,          EscStatus::kType,
-    RawImu::kType,             MagneticFieldStrength2::kType, StaticPressure::kType,
-    StaticTemperature::kType,  Fix2::kType,                BatteryInfo::kType,
-    ArmingStatus::kType,       Imu14::kType,               Imu16::kType,
+    GetNodeInfoRequest::kType,
+    GetNodeInfoResponse::kType,
+    GetSetRequest::kType,
+    GetSetResponse::kType,
+    Allocation::kType,
+    NodeStatus::kType,
+    RawCommand::kType,
+    RpmCommand::kType,
+    EscStatus::kType,
+    RawImu::kType,
+    MagneticFieldStrength2::kType,
+    StaticPressure::kType,
+    StaticTemperature::kType,
+    Fix2::kType,
+    BatteryInfo::kType,
+    ArmingStatus::kType,
+    Imu14::kType,
+    Imu16::kType,
 };
 
 }  // namespace
@@ -29,9 +41,9 @@ std::span<const DataType> all_types() {
 }
 
 const DataType* known_type(Kind kind, std::uint16_t type_id) {
-  const auto* found = std::find_if(
-      std::begin(kTypes), std::end(kTypes),
-      [&](const DataType& type) { return type.kind == kind && type.id == type_id; });
+  const auto* found = std::find_if(std::begin(kTypes), std::end(kTypes), [&](const DataType& type) {
+    return type.kind == kind && type.id == type_id;
+  });
   return found == std::end(kTypes) ? nullptr : found;
 }
 

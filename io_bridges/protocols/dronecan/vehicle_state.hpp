@@ -6,8 +6,7 @@
 namespace whirl::io::dronecan {
 
 struct BatteryInfo {
-  static constexpr DataType kType{Kind::message, 1092, 0x249C26548A711966, 54,
-                                  "power.BatteryInfo"};
+  static constexpr DataType kType{Kind::message, 1092, 0x249C26548A711966, 54, "power.BatteryInfo"};
   static constexpr std::uint8_t kUnknown_pct = 127;
   float temperature_K = 0, voltage_V = 0, current_A = 0, mean_power_10s_W = 0;
   float remaining_Wh = 0, full_Wh = 0, hours_to_full = 0;

@@ -61,8 +61,8 @@ std::optional<Message> expect_both_ways(const Message& message, std::uint8_t sou
                                         std::uint8_t transfer_id, std::uint8_t priority,
                                         std::uint32_t id, const std::string& frames) {
   const DataType& type = Message::kType;
-  const Header header{.type_id = type.id, .priority = priority, .source = source,
-                      .transfer_id = transfer_id};
+  const Header header{
+      .type_id = type.id, .priority = priority, .source = source, .transfer_id = transfer_id};
   const Payload payload = encode(message);
   const auto made = frames_of(header, type.signature, payload.bytes());
   EXPECT_EQ(printed(made), frames);
@@ -110,14 +110,17 @@ TEST(DronecanGolden, RawCommandOfFourEscsIsOneFrame) {
 
 TEST(DronecanGolden, RpmCommandOfFourEscsIsTwoFrames) {
   const RpmCommand speeds{list<std::int32_t, kMost_escs>({5000, 6000, -7000, 8000})};
-  const auto got =
-      expect_both_ways(speeds, 10, 2, 8, 0x0804070A, "a82688131c05ca82 / 8e4d007c62");
+  const auto got = expect_both_ways(speeds, 10, 2, 8, 0x0804070A, "a82688131c05ca82 / 8e4d007c62");
   EXPECT_EQ(got->speeds_rpm, speeds.speeds_rpm);
 }
 
 TEST(DronecanGolden, EscStatus) {
-  const EscStatus status{.voltage_V = 16, .current_A = 10, .temperature_K = 300,
-                         .speed_rpm = 5000, .power_pct = 50, .index = 2};
+  const EscStatus status{.voltage_V = 16,
+                         .current_A = 10,
+                         .temperature_K = 300,
+                         .speed_rpm = 5000,
+                         .power_pct = 50,
+                         .index = 2};
   const auto got = expect_both_ways(status, 20, 7, 16, 0x10040A14,
                                     "33a5000000000087 / 4c0049b05c881327 / 190847");
   EXPECT_EQ(got->voltage_V, 16);
@@ -146,7 +149,8 @@ TEST(DronecanGolden, MagneticFieldStrength2) {
 }
 
 TEST(DronecanGolden, RawImuIsSevenFrames) {
-  const RawImu imu{.time_us = 1'000'000, .rate_radps = {0.01f, -0.02f, 0.03f},
+  const RawImu imu{.time_us = 1'000'000,
+                   .rate_radps = {0.01f, -0.02f, 0.03f},
                    .acceleration_mps2 = {0, 0, -9.8125f}};
   const auto got = expect_both_ways(imu, 30, 0, 16, 0x1003EB1E,
                                     "b5d040420f000080 / 0000000000001f20 / 211fa5ae27000000 / "
@@ -157,10 +161,15 @@ TEST(DronecanGolden, RawImuIsSevenFrames) {
 }
 
 TEST(DronecanGolden, Fix2) {
-  const Fix2 fix{.gnss_time_us = 1'700'000'000'000'000, .time_standard = Fix2::utc,
-                 .longitude_1e8_deg = 854'100'000, .latitude_1e8_deg = 4'737'700'000,
-                 .height_ellipsoid_mm = 500'000, .height_sea_mm = 452'000,
-                 .v_WB_W_mps = {1, 2, -0.5f}, .satellites = 12, .status = Fix2::fix_3d,
+  const Fix2 fix{.gnss_time_us = 1'700'000'000'000'000,
+                 .time_standard = Fix2::utc,
+                 .longitude_1e8_deg = 854'100'000,
+                 .latitude_1e8_deg = 4'737'700'000,
+                 .height_ellipsoid_mm = 500'000,
+                 .height_sea_mm = 452'000,
+                 .v_WB_W_mps = {1, 2, -0.5f},
+                 .satellites = 12,
+                 .status = Fix2::fix_3d,
                  .pdop = 1.5f};
   const auto got = expect_both_ways(fix, 40, 0, 16, 0x10042728,
                                     "d1f6000000000080 / 000000401e182420 / 0a06400000208800 / "
@@ -199,7 +208,9 @@ TEST(DronecanGolden, GetSetRequestByHand) {
 
 TEST(DronecanGolden, GetSetResponseByHand) {
   // 00000 010 float 1.5; 00000 011 true; 000000 10 float 2; 000000 00 nothing; "g".
-  const std::string bytes = "020000c03f0301020000004000" "67";
+  const std::string bytes =
+      "020000c03f0301020000004000"
+      "67";
   const auto got = decode<GetSetResponse>(from_hex(bytes));
   ASSERT_TRUE(got);
   EXPECT_EQ(got->value.as_real, 1.5f);

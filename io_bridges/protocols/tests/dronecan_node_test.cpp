@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "io_bridges/protocols/dronecan/allocation.hpp"
+#include "io_bridges/protocols/dronecan/esc.hpp"
+#include "io_bridges/protocols/dronecan/local_node.hpp"
 #include "io_bridges/protocols/dronecan/node_watch.hpp"
 
 namespace whirl::io::dronecan {
@@ -96,6 +98,63 @@ TEST(DronecanNodeWatch, ANodeIsOfflineAfterThreeSeconds) {
   EXPECT_TRUE(watch.online(20, 3 * kSecond));
   EXPECT_FALSE(watch.online(20, 3 * kSecond + 1));
   EXPECT_EQ(watch.on_status(20, at(11), 10 * kSecond), NodeEvent::back_online);
+}
+
+struct Pair {  // two nodes on one wire
+  std::vector<CanFrame> from_a, from_b;
+  LocalNode a{10, "org.example.a", [this](const CanFrame& frame) { from_a.push_back(frame); }};
+  LocalNode b{20, "org.example.b", [this](const CanFrame& frame) { from_b.push_back(frame); }};
+
+  const Transfer* to_b(std::int64_t now_ns) { return give(b, from_a, now_ns); }
+  const Transfer* to_a(std::int64_t now_ns) { return give(a, from_b, now_ns); }
+  static const Transfer* give(LocalNode& node, std::vector<CanFrame>& frames, std::int64_t now_ns) {
+    const Transfer* last = nullptr;
+    for (const CanFrame& frame : std::exchange(frames, {})) last = node.on_frame(frame, now_ns);
+    return last;
+  }
+};
+
+TEST(DronecanLocalNode, TellsItsStatusEachSecondAndIsSeen) {
+  Pair pair;
+  for (std::int64_t t_ns = 0; t_ns < 3 * kSecond; t_ns += kMillisecond) {
+    pair.a.poll(t_ns);
+    pair.to_b(t_ns);
+  }
+  EXPECT_EQ(pair.b.counts().transfers, 3u);
+  EXPECT_TRUE(pair.b.watch().online(10, 3 * kSecond));
+  EXPECT_EQ(pair.b.watch().node(10).status.uptime_s, 2u);
+}
+
+TEST(DronecanLocalNode, AnswersWhoItIsToWhomAsks) {
+  Pair pair;
+  pair.b.poll(0);
+  pair.from_b.clear();
+  pair.a.request(GetNodeInfoRequest{}, 20);
+  EXPECT_EQ(pair.to_b(5 * kSecond), nullptr);
+  const Transfer* answer = pair.to_a(5 * kSecond);
+  ASSERT_TRUE(answer != nullptr);
+  EXPECT_EQ(answer->header.source, 20);
+  const auto info = pair.a.read<GetNodeInfoResponse>(*answer);
+  ASSERT_TRUE(info);
+  EXPECT_EQ(info->name_text(), "org.example.b");
+  EXPECT_EQ(info->status.uptime_s, 5u);
+  pair.a.request(GetNodeInfoRequest{}, 21);  // somebody else
+  pair.to_b(5 * kSecond);
+  EXPECT_TRUE(pair.from_b.empty());
+}
+
+TEST(DronecanLocalNode, CountsWhatIsWholeButOfNoLayout) {
+  Pair pair;
+  Payload payload;
+  payload.size = 13;  // esc.Status has 14
+  const Header header{.type_id = EscStatus::kType.id, .source = 20};
+  const Transfer* transfer = nullptr;
+  for (const CanFrame& frame : frames_of(header, EscStatus::kType.signature, payload.bytes())) {
+    transfer = pair.a.on_frame(frame, 0);
+  }
+  ASSERT_TRUE(transfer != nullptr);
+  EXPECT_FALSE(pair.a.read<EscStatus>(*transfer));
+  EXPECT_EQ(pair.a.counts().malformed, 1u);
 }
 
 }  // namespace

@@ -54,8 +54,8 @@ TEST(DronecanTransfer, EveryLengthComesBack) {
   RandomStream random(2, "payload");
   std::vector<std::uint8_t> payload;
   for (std::size_t size = 0; size <= kMost_payload; ++size) {
-    const Header header{.type_id = 777, .source = 9,
-                        .transfer_id = static_cast<std::uint8_t>(size % 32)};
+    const Header header{
+        .type_id = 777, .source = 9, .transfer_id = static_cast<std::uint8_t>(size % 32)};
     const auto frames = frames_of(header, type.signature, payload);
     EXPECT_EQ(frames.size(), size <= 7 ? 1 : (size + 2 + 6) / 7);
     const Transfer* transfer = nullptr;
@@ -96,7 +96,9 @@ TEST(DronecanTransfer, ALostFrameShowsAndTheNextTransferIsWhole) {
     bus.take(status_frames(20, 2, 222));
     EXPECT_EQ(bus.speeds_rpm, std::vector<std::int32_t>{222});
     const TransferCounts& c = bus.counts();
-    EXPECT_EQ(c.missed_start + c.wrong_toggle + c.bad_crc + c.unfinished, lost == 0 ? 2u : lost == 1 ? 2u : 1u)
+    EXPECT_EQ(c.missed_start + c.wrong_toggle + c.bad_crc + c.unfinished, lost == 0   ? 2u
+                                                                          : lost == 1 ? 2u
+                                                                                      : 1u)
         << lost;
   }
 }
@@ -222,13 +224,16 @@ TEST(DronecanTransfer, FramesOfNoSenseNeverCrashAndAllAreAccountedFor) {
   while (bus.counts().frames < frames) {
     bus.now_ns += random.bits() % (40 * kMillisecond);
     if (random.bits() % 4 != 0) {
-      CanFrame frame{.id = random.bits() & 0x1FFFFFFF, .extended = random.bits() % 16 != 0,
+      CanFrame frame{.id = random.bits() & 0x1FFFFFFF,
+                     .extended = random.bits() % 16 != 0,
                      .length = static_cast<std::uint8_t>(random.bits() % 9)};
       if (random.bits() % 2 == 0) {  // of a type that we know
         const auto types = all_types();
         const DataType& type = types[random.bits() % types.size()];
-        Header header{.kind = type.kind, .type_id = type.id,
-                      .source = static_cast<std::uint8_t>(random.bits() % 128), .destination = 1};
+        Header header{.kind = type.kind,
+                      .type_id = type.id,
+                      .source = static_cast<std::uint8_t>(random.bits() % 128),
+                      .destination = 1};
         if (header.source <= 1) header.source = 2;
         frame.id = can_id(header, {});
       }
@@ -236,13 +241,22 @@ TEST(DronecanTransfer, FramesOfNoSenseNeverCrashAndAllAreAccountedFor) {
       bus.take(frame);
       continue;
     }
-    auto some = status_frames(static_cast<std::uint8_t>(2 + random.bits() % 4), transfer_id++ % 32, 7);
+    auto some =
+        status_frames(static_cast<std::uint8_t>(2 + random.bits() % 4), transfer_id++ % 32, 7);
     CanFrame& one = some[random.bits() % some.size()];
     switch (random.bits() % 4) {
-      case 0: one.length = static_cast<std::uint8_t>(random.bits() % 9); break;
-      case 1: one.data[random.bits() % 8] ^= static_cast<std::uint8_t>(random.bits()); break;
-      case 2: some.erase(some.begin() + random.bits() % some.size()); break;
-      default: some.push_back(some[random.bits() % some.size()]); break;
+      case 0:
+        one.length = static_cast<std::uint8_t>(random.bits() % 9);
+        break;
+      case 1:
+        one.data[random.bits() % 8] ^= static_cast<std::uint8_t>(random.bits());
+        break;
+      case 2:
+        some.erase(some.begin() + random.bits() % some.size());
+        break;
+      default:
+        some.push_back(some[random.bits() % some.size()]);
+        break;
     }
     bus.take(some);
   }

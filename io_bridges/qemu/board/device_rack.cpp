@@ -50,6 +50,7 @@ class DeviceRack::Wiring final : public rack::Rack {
   bool join_spi(int bus, io::Wire& chip_select, io::SpiTarget& target, const BoardDevice& device,
                 int number) override;
   bool join_uart(int number, io::UartPeer& peer) override;
+  io::SpiSlave* spi_slave(int number) override { return site_.chip.spi_slave(number); }
 
  private:
   Result<Done> check(const BoardDescription& board) const;

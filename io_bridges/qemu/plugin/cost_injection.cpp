@@ -298,7 +298,8 @@ class CostInjection::Writer {
           ahead.op32(op.add32, ahead.op32(op.load_half32, low), tcg::number32(undone));
       ahead.put(op.st16, left, low);
       ahead.put(op.st32, again, tcg::address(owner_.count_.next_flags()));
-      ahead.put(op.add32, pc, pc, tcg::number32(static_cast<std::int32_t>(cost_.offsets[exit_->n])));
+      ahead.put(op.add32, pc, pc,
+                tcg::number32(static_cast<std::int32_t>(cost_.offsets[exit_->n])));
       ahead.put(op.exit_block, 0);
     }
     tcg::remove(end);

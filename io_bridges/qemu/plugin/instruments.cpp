@@ -35,7 +35,8 @@ bool loads_sp(const Code& code) {
 std::optional<std::uint32_t> called_by(const Code& code, std::uint32_t address) {
   if (!code.wide || (code.first & 0xF800) != 0xF000 || (code.second & 0xD000) != 0xD000) return {};
   const std::uint32_t sign = (code.first >> 10) & 1;
-  const std::uint32_t i1 = ~((code.second >> 13) ^ sign) & 1, i2 = ~((code.second >> 11) ^ sign) & 1;
+  const std::uint32_t i1 = ~((code.second >> 13) ^ sign) & 1,
+                      i2 = ~((code.second >> 11) ^ sign) & 1;
   const std::uint32_t offset = (0u - sign) << 24 | i1 << 23 | i2 << 22 |
                                (code.first & 0x3FFu) << 12 | (code.second & 0x7FFu) << 1;
   return address + kLongest + offset;

@@ -53,8 +53,8 @@ class Instruments {
   std::multimap<std::uint32_t, std::uint16_t> functions_;  // address, watch number
   std::set<std::uint32_t> return_sites_;
   std::set<std::uint32_t> starts_;  // of the blocks that are translated
-  std::vector<Site> found_;  // in the block that is being translated
-  std::deque<Site> sites_;   // translated code points at them
+  std::vector<Site> found_;         // in the block that is being translated
+  std::deque<Site> sites_;          // translated code points at them
   bool handler_mode_ = false;
   bool ccm_reported_ = false;
 };

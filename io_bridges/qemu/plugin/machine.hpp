@@ -145,7 +145,7 @@ class Machine final : public board::Emulator {
   static constexpr io::Nanoseconds kNothing_wanted = -1;
   io::Nanoseconds wanted_ns_ = kNothing_wanted;  // by what is accessed
   int accesses_ = 0;                             // under way: one, or within it by DMA another
-  Timer jump_;  // under gdb: moves the clock of a core that sleeps
+  Timer jump_;                                   // under gdb: moves the clock of a core that sleeps
   std::unique_ptr<CoreClock> clock_;
   ExitRequest exit_request_;
   ClassCasts class_casts_;

@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <utility>
 
+#include "io_bridges/qemu/stm32/bxcan_bits.hpp"
 #include "io_bridges/qemu/stm32/register_access.hpp"
 
 namespace whirl::stm32 {
+
+using namespace bxcan;
 
 namespace {
 
@@ -23,23 +26,6 @@ enum : std::uint32_t {
   FILTERS = 0x200,
   END = 0x320,
 };
-// MCR
-constexpr std::uint32_t INRQ = 1, SLEEP = 2, TXFP = 4, RFLM = 8, NART = 16, AWUM = 32, ABOM = 64,
-                        RESET = 1u << 15;
-// MSR
-constexpr std::uint32_t INAK = 1, SLAK = 2, ERRI = 4, WKUI = 8, SLAKI = 16;
-// Mailbox 0's part of TSR; the others 8 bits further up each
-constexpr std::uint32_t RQCP = 1, TXOK = 2, ALST = 4, TERR = 8, ABRQ = 128;
-constexpr std::uint32_t TXRQ = 1;
-// RFxR
-constexpr std::uint32_t FULL = 8, FOVR = 16, RFOM = 32;
-// IER
-constexpr std::uint32_t TMEIE = 1, FMPIE0 = 2, FFIE0 = 4, FOVIE0 = 8, FMPIE1 = 16, FFIE1 = 32,
-                        FOVIE1 = 64, EWGIE = 1u << 8, EPVIE = 1u << 9, BOFIE = 1u << 10,
-                        LECIE = 1u << 11, ERRIE = 1u << 15, WKUIE = 1u << 16, SLKIE = 1u << 17;
-constexpr std::uint32_t LBKM = 1u << 30, SILM = 1u << 31;
-constexpr std::uint32_t EWGF = 1, EPVF = 2, BOFF = 4;
-constexpr int kAfterInit = 1, kAfterBusOff = 128;  // runs of eleven recessive bits
 
 }  // namespace
 
@@ -222,19 +208,6 @@ void BxCan::enter_or_leave() {
   }
 }
 
-void BxCan::leave(int idles) {
-  leaving_ = true;
-  if (idles == kAfterBusOff) init_acknowledged_ = false;  // BOFF says what it waits for
-  set_bit_time();
-  (loops_back() ? loop_ : *bus_).connect(station(), idles);
-}
-
-void BxCan::joined(Nanoseconds /*now*/) {
-  leaving_ = init_acknowledged_ = false;
-  note_levels();
-  update_lines();
-}
-
 void BxCan::write_tsr(std::uint32_t value) {
   for (std::uint32_t i = 0; i < 3; ++i) {
     const std::uint32_t shift = 8 * i;
@@ -299,96 +272,6 @@ io::CanFrame BxCan::frame_of(const Mailbox& mailbox) const {
     frame.data[i] = static_cast<std::uint8_t>(mailbox.word[2 + i / 4] >> (8 * (i % 4)));
   }
   return frame;
-}
-
-const io::CanFrame* BxCan::offered() {
-  offered_ = next_mailbox();
-  if (offered_ < 0 || (mcr_ & INRQ) != 0) return nullptr;
-  out_ = frame_of(mailbox_[static_cast<std::size_t>(offered_)]);
-  return &out_;
-}
-
-void BxCan::begun(Nanoseconds /*now*/) {
-  in_flight_ = offered_;
-}
-
-void BxCan::sent(Nanoseconds /*now*/) {
-  lec_ = 0;
-  finish(std::exchange(in_flight_, -1), TXOK);
-  abort_in_flight_ = false;
-  note_levels();
-  enter_or_leave();
-  update_lines();
-}
-
-void BxCan::lost_arbitration(Nanoseconds /*now*/) {
-  attempt_failed(ALST);
-}
-
-// The request stays, unless it is to be tried once only or was aborted meanwhile.
-void BxCan::attempt_failed(std::uint32_t why) {
-  const int mailbox = std::exchange(in_flight_, -1);
-  if (mailbox < 0) return;
-  if (abort_in_flight_) {
-    finish(mailbox, 0);
-  } else if ((mcr_ & NART) != 0) {
-    finish(mailbox, why);
-  } else {
-    const auto shift = 8 * static_cast<std::uint32_t>(mailbox);
-    tsr_flags_ = (tsr_flags_ & ~((ALST | TERR) << shift)) | why << shift;
-  }
-  abort_in_flight_ = false;
-  enter_or_leave();
-  update_lines();
-}
-
-void BxCan::failed(io::CanError error, bool sending, Nanoseconds /*now*/) {
-  lec_ = static_cast<std::uint32_t>(error);
-  if ((ier_ & LECIE) != 0) msr_flags_ |= ERRI;
-  note_levels();
-  if (sending) attempt_failed(TERR);
-  update_lines();
-}
-
-// A flag that has come up since the last time is an interrupt where it is enabled.
-void BxCan::note_levels() {
-  const std::uint32_t levels = esr() & (EWGF | EPVF | BOFF), risen = levels & ~levels_;
-  levels_ = levels;
-  if (((risen & EWGF) != 0 && (ier_ & EWGIE) != 0) ||
-      ((risen & EPVF) != 0 && (ier_ & EPVIE) != 0) ||
-      ((risen & BOFF) != 0 && (ier_ & BOFIE) != 0)) {
-    msr_flags_ |= ERRI;
-  }
-}
-
-void BxCan::bus_off(Nanoseconds /*now*/) {
-  note_levels();
-  if ((mcr_ & ABOM) != 0) leave(kAfterBusOff);
-  update_lines();
-}
-
-void BxCan::finish(int mailbox, std::uint32_t outcome) {
-  const auto n = static_cast<std::uint32_t>(mailbox);
-  mailbox_[n].pending = false;
-  mailbox_[n].word[0] &= ~TXRQ;
-  tsr_flags_ = (tsr_flags_ & ~(0xFu << (8 * n))) | (RQCP | outcome) << (8 * n);
-}
-
-void BxCan::stirred(Nanoseconds /*now*/) {
-  if (!sleeping_) return;
-  msr_flags_ |= WKUI;
-  if ((mcr_ & AWUM) != 0) {
-    mcr_ &= ~SLEEP;
-    enter_or_leave();
-  }
-  update_lines();
-}
-
-void BxCan::receive(const io::CanFrame& frame, Nanoseconds /*now*/) {
-  lec_ = 0;
-  note_levels();
-  store(frame);
-  update_lines();
 }
 
 void BxCan::store(const io::CanFrame& frame) {

@@ -23,6 +23,7 @@
   TYPE(serial)                   \
   TYPE(i2c_master)               \
   TYPE(can_port)                 \
+  TYPE(pod_replay)               \
   TYPE(power_stage)              \
   TYPE(pulse_source)             \
   TYPE(volts)                    \
