@@ -8,7 +8,9 @@
 //            induced velocity
 //   Size     0.15 of hover's induced velocity (1 sigma) at the strongest, and a memory of five radii's way
 //            at it. Both are set by hand: [ShettySelig] and [Veismann] say that the fluctuation is large
-//            and where, but their figures' numbers were not at hand. A bound to fly against, no prediction
+//            and where, but their figures' numbers were not at hand. The inflow follows it, so that in flight
+//            1 to 2 % of the thrust remain at the strongest (tests/windmill_test.cpp): a floor of what
+//            was measured, no prediction
 //   Valid    descents that last; each rotor has its own stream, though rings of neighbours may agree
 #pragma once
 #include <cstdint>

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "base/near.hpp"
 #include "base/random.hpp"
@@ -174,6 +175,39 @@ TEST(Windmill, PropellersCutAtSpeedRunDown) {
   fall.run(1.0);
   EXPECT_LT(fall.v.state().motors[0].speed_radps, 50.0);
   EXPECT_LT(fall.most_gained_J, 1e-9);
+}
+
+// One rotor's thrust over a second of a descent that a hand holds, its motor at hover's duty.
+std::vector<double> thrusts_in_descent(double descent_mps, std::uint64_t seed) {
+  const VehicleParams params = hp_quad();
+  Vehicle v(params, blade_element_rotors(hobbyking(), params.airframe), seed);
+  for (int i = 0; i < 4; ++i) v.set_motor_speed(i, 413.0), v.command(i, {0.345, Freewheel::diode});
+  std::vector<double> thrusts_N;
+  double height_m = 50.0;
+  for (int k = 0; k < 2000; ++k) {
+    height_m -= descent_mps * kStep_s;
+    v.carry({.p_WB_W_m = {0, 0, -height_m}, .v_WB_W_mps = {0, 0, descent_mps}});
+    v.step(kStep_s);
+    if (k >= 1000) thrusts_N.push_back(v.state().motors[0].thrust_N);
+  }
+  return thrusts_N;
+}
+
+double sigma_share(const std::vector<double>& x) {
+  double mean = 0.0, squares = 0.0;
+  for (const double y : x) mean += y / static_cast<double>(x.size());
+  for (const double y : x) squares += (y - mean) * (y - mean) / static_cast<double>(x.size());
+  return std::sqrt(squares) / mean;
+}
+
+TEST(VortexRingInFlight, ThrustFluctuatesThereByTheSeedAndNowhereElse) {
+  const double landing = sigma_share(thrusts_in_descent(0.8, 1));
+  const auto ring = thrusts_in_descent(5.4, 1);
+  EXPECT_LT(landing, 0.005);
+  EXPECT_GT(sigma_share(ring), 0.01);
+  EXPECT_LT(sigma_share(ring), 0.02);
+  EXPECT_EQ(ring, thrusts_in_descent(5.4, 1));
+  EXPECT_NE(ring, thrusts_in_descent(5.4, 2));
 }
 
 }  // namespace
