@@ -70,7 +70,7 @@ TEST(PlanCalls, RefuseWhatTheyCannotUse) {
       {"t:latency { from = 'imu', through = { 'fw::nobody' }, to = 'esc1', at_most = '1 ms' }",
        "is not watched"},
       {"t:latency { from = 'imu', through = {}, to = 'imu', at_most = '1 ms' }",
-       "no I2C device 'imu'"},
+       "no device 'imu' on I2C or CAN"},
       {"t:fault { kind = 'gremlins' }", "unknown kind of fault 'gremlins'"},
       {"t:fault { kind = 'i2c_nack', device = 'nobody' }", "unknown device 'nobody'"},
       {"t:fault { kind = 'i2c_nack', bus = 'i2c' }", "'i2c' is no bus"},

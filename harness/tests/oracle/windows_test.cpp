@@ -296,11 +296,11 @@ TEST(Windows, RefuseDevicesThatAreOnNoBusOfTheirs) {
       {"t:bus { device = 'odd' }", "odd is on 'i2cx', which is no bus"},
       {"t:fault { kind = 'i2c_nack', device = 'odd' }", "'i2cx' is no bus"},
       {"t:latency { from = 'imu', through = {}, to = 'radio', at_most = '1 ms' }",
-       "no I2C device 'radio' on played"},
+       "no device 'radio' on I2C or CAN of played"},
       {"t:latency { from = 'imu', through = {}, to = 'odd', at_most = '1 ms' }",
        "odd is on 'i2cx', which is no bus"},
       {"t:latency { from = 'imu', through = {}, to = 'esc', at_most = '1 ms' }",
-       "no I2C device 'esc' on played"},
+       "no device 'esc' on I2C or CAN of played"},
       {"t:fault { kind = 'i2c_nack', address = -1 }", "address"},
   };
   for (const Refused& refused : kAll) {
