@@ -51,7 +51,8 @@ bool take_all(std::istringstream& words, Vector& v) {
 
 std::string known_text(const KnownBlades& known) {
   std::string text =
-      "# Made by `whirl validate` from the measurements beside this file; not to be edited.\n"
+      "# Made from the measurements beside this file: `whirl validate` leaves it in "
+      "results/validation.\n"
       "# blade NAME drawn|read, 8 numbers of shape, then pull and certainty of the traits\n"
       "# (plant/rotor/known_blades.hpp); at the end the spread of the traits.\n";
   for (const KnownBlade& b : known.blades()) {
