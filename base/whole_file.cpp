@@ -26,7 +26,12 @@ Result<std::string> read_whole_file(const std::string& path) {
   }
   std::ifstream in(path, std::ios::binary);
   if (!in) return refused("no such file, or not readable");
-  return std::string(std::istreambuf_iterator<char>(in), {});
+  const std::uintmax_t size = fs::file_size(path, status);
+  std::string text(status ? 0 : static_cast<std::size_t>(size), '\0');
+  in.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(in.gcount()));
+  if (in) text.append(std::istreambuf_iterator<char>(in), {});  // what has no size, or has grown
+  return text;
 }
 
 }  // namespace whirl

@@ -38,13 +38,19 @@ function(fw_image name)
     COMMAND sh ${gate} $<TARGET_FILE:${name}> ${ARG_FLASH} ${ARG_RAM})
 endfunction()
 
-set(FLIGHT_SOURCES images/flight.cpp ${FW_CORE} hal/clock.cpp hal/time_base.cpp hal/spi_master.cpp
-    hal/i2c_master.cpp hal/uart_link.cpp hal/battery_adc.cpp hal/edge_capture.cpp hal/flash.cpp)
+set(FLIGHT_SOURCES images/flight.cpp images/flight_escs.cpp ${FW_CORE} hal/clock.cpp hal/time_base.cpp hal/spi_master.cpp
+    hal/i2c_master.cpp hal/can_link.cpp hal/uart_link.cpp hal/battery_adc.cpp hal/edge_capture.cpp hal/flash.cpp)
 # Of the RAM, 19 KiB are the card's: 16 that bridge its longest pause, and a block each way.
 fw_image(flight FLASH 128 RAM 32 FOLDER . SOURCES ${FLIGHT_SOURCES})
 # The same for ESCs in mode 5, whose set-points span another range.
 fw_image(flight_st FLASH 128 RAM 32 FOLDER . SOURCES ${FLIGHT_SOURCES})
 target_compile_definitions(flight_st PRIVATE FW_ESC_MODE=thrust_by_power)
+# On a bare board with a crystal of 8 MHz; the parts that it plays are the virtual boards'.
+include(${PROJECT_SOURCE_DIR}/io_bridges/devices/core/sources.cmake)
+list(TRANSFORM WHIRL_CORE_SOURCES PREPEND ${PROJECT_SOURCE_DIR}/io_bridges/devices/core/)
+fw_image(pod FLASH 24 RAM 8 FOLDER . SOURCES images/pod.cpp pod/pod_time.cpp pod/spi_slave.cpp pod/imu.cpp pod/host_uart.cpp
+         pod/host_link.cpp pod/ram_vectors.cpp pod/i2c_slave.cpp pod/sensors.cpp pod/escs.cpp hal/clock.cpp ${WHIRL_CORE_SOURCES})
+target_compile_definitions(pod PRIVATE FW_CRYSTAL_MHZ=8)
 foreach(image hardfault silent sleeper starved)
   fw_image(${image} FLASH 4 RAM 1 FOLDER images SOURCES images/${image}.cpp)
 endforeach()

@@ -31,7 +31,8 @@ struct MotorState {
   double winding_peak_A = 0.0;   // largest magnitude within the step
   double bus_current_A = 0.0;    // mean over the step; negative when it feeds the pack
   double shaft_torque_Nm = 0.0;  // taken by the air: the rotor's, not the powertrain's to fill in
-  double thrust_N = 0.0;         // likewise
+  double thrust_N = 0.0;         // likewise, and so what its blades do:
+  double coning_rad = 0.0, flap_back_rad = 0.0, flap_left_rad = 0.0;
   double winding_temperature_K = 293.15;
   bool blocked = false;  // the propeller struck the ground and has stopped, or is being stopped
 };

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <string>
 #include <vector>
 
 #include "base/check.hpp"
@@ -12,6 +14,7 @@
 #include "plant/base/frames.hpp"
 #include "plant/motor/averaged_motor.hpp"
 #include "plant/rotor/rotor.hpp"
+#include "plant/rotor/vortex_ring.hpp"
 
 namespace whirl::plant {
 namespace {
@@ -55,6 +58,9 @@ struct Vehicle::Parts {
                 vehicle.airframe.rotors.size());
     WHIRL_CHECK(rotors.size() == powertrain->count(), rotors.size(), powertrain->count());
     state.motors.resize(rotors.size());
+    for (std::size_t i = 0; i < rotors.size(); ++i) {
+      rings.emplace_back(seed, "rotor" + std::to_string(i + 1) + ".vortex_ring");
+    }
   }
 
   std::size_t count() const { return rotors.size(); }
@@ -66,6 +72,7 @@ struct Vehicle::Parts {
   void feel_motion(const BodyState& before, double dt_s);
   void strike();
   void publish_air();
+  double fluctuation_mps(std::size_t i, const RotorConditions& conditions, double dt_s);
   Vector3d spin_B() const;
   Vector3d hub_W(std::size_t i) const {
     return body.p_WB_W_m + body.q_WB * params.airframe.rotors[i].p_BP_B_m;
@@ -82,6 +89,7 @@ struct Vehicle::Parts {
   std::vector<RotorLoads> loads;
   std::vector<double> loads_at_radps;
   std::vector<ShaftLoad> shaft;
+  std::vector<VortexRing> rings;
   std::vector<Dip> dips;
   std::vector<Push> pushes;
   std::optional<CarriedBody> carried;  // of the next step
@@ -113,6 +121,16 @@ void Vehicle::Parts::set_dip() {
   powertrain->set_dip(below_V);
 }
 
+// What the vortex ring adds to a rotor's descent; its strength goes with the thrust of the step before.
+double Vehicle::Parts::fluctuation_mps(std::size_t i, const RotorConditions& c, double dt_s) {
+  const double down_mps = c.v_AP_P_mps.z(), radius_m = params.airframe.rotors[i].radius_m;
+  const double thrust_N = loads[i].thrust_N;
+  if (!(down_mps > 0.0 && thrust_N > 0.0 && radius_m > 0.0)) return 0.0;
+  const double hover_mps =
+      std::sqrt(thrust_N / (2.0 * c.density_kgpm3 * std::numbers::pi * radius_m * radius_m));
+  return rings[i].step({down_mps, c.v_AP_P_mps.head<2>().norm(), hover_mps}, radius_m, dt_s);
+}
+
 Forcing Vehicle::Parts::run_rotors(double dt_s) {
   Forcing sum;
   const Eigen::Matrix3d R_BW = body.q_WB.conjugate().toRotationMatrix();
@@ -126,6 +144,7 @@ Forcing Vehicle::Parts::run_rotors(double dt_s) {
     const Vector3d p_W = hub_W(i);
     conditions.omega_radps = state.motors[i].speed_radps;
     conditions.v_AP_P_mps = v_WB_B + body.w_WB_B_radps.cross(arm_B) - R_BW * air.wind_W_mps(p_W);
+    conditions.v_AP_P_mps.z() += fluctuation_mps(i, conditions, dt_s);
     conditions.height_m = height_above_m(params.obstacles, p_W);
     loads[i] = rotors[i](conditions, dt_s);
     loads_at_radps[i] = conditions.omega_radps;
@@ -136,6 +155,9 @@ Forcing Vehicle::Parts::run_rotors(double dt_s) {
     sum.tau_B_Nm += loads[i].tau_P_Nm + arm_B.cross(f_B);
     state.motors[i].thrust_N = loads[i].thrust_N;
     state.motors[i].shaft_torque_Nm = loads[i].shaft_torque_Nm;
+    state.motors[i].coning_rad = loads[i].flap_rad.x();
+    state.motors[i].flap_back_rad = loads[i].flap_rad.y();
+    state.motors[i].flap_left_rad = loads[i].flap_rad.z();
   }
   const Vector3d against_B = v_WB_B - R_BW * state.wind_W_mps;
   sum.f_B_N -= 0.5 * state.air_density_kgpm3 * against_B.norm() *

@@ -1,5 +1,6 @@
 #include "results/event_log.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace whirl::results {
@@ -23,6 +24,15 @@ void EventLog::add_bus(const io::Reader& reader, bool spi) {
                  head.length, head.start_ns, reader.header().t_ns});
 }
 
+// The first message of a pin is the level that it has at the start, and no edge.
+void EventLog::add_pin(const io::Header& header, bool level) {
+  const auto [before, first] = pin_levels_.try_emplace(header.port, level);
+  std::vector<PulseRecord>& all = pulses[header.port];
+  if (!first && level && !before->second) all.push_back({header.t_ns, -1});
+  if (!level && !all.empty() && all.back().fall_ns < 0) all.back().fall_ns = header.t_ns;
+  before->second = level;
+}
+
 bool EventLog::add(const io::Batch& batch) {
   io::Reader reader(batch.bytes());
   while (reader.next()) add(reader);
@@ -38,9 +48,24 @@ void EventLog::add(const io::Reader& reader) {
     case io::Kind::spi_transaction:
       add_bus(reader, true);
       break;
+    case io::Kind::can_transfer: {
+      const auto r = reader.as<io::CanRecord>();
+      const std::size_t last = std::clamp<std::size_t>(r.frame.length, 1, 8) - 1;
+      can.push_back({header.port, r.sender, r.frame.id, (r.frame.flags & 1) != 0, r.error == 0,
+                     (r.frame.data[last] & 0x80) != 0, r.busy_ns, r.tec, r.start_ns, header.t_ns});
+      break;
+    }
     case io::Kind::data_ready:
       data_ready_ns[header.port].push_back(header.t_ns);
       break;
+    case io::Kind::pin_edge:
+      add_pin(header, reader.as<io::PinEdge>().level != 0);
+      break;
+    case io::Kind::bus_unread: {
+      const auto gap = reader.as<io::BusUnread>();
+      unread.push_back({gap.spi != 0, header.port, gap.start_ns, header.t_ns});
+      break;
+    }
     case io::Kind::finding:
       findings.push_back(finding_of(header.t_ns, text_of(reader.payload())));
       break;
@@ -83,6 +108,7 @@ void EventLog::add(const io::Reader& reader) {
     case io::Kind::shaft_load:
     case io::Kind::shaft_state:
     case io::Kind::i2c_order:
+    case io::Kind::can_order:
     case io::Kind::pulse_train:
     case io::Kind::rc_channels:
     case io::Kind::i2c_reply:
@@ -90,7 +116,6 @@ void EventLog::add(const io::Reader& reader) {
     case io::Kind::uart_delivered:
     case io::Kind::uart_frame:
     case io::Kind::uart_received:
-    case io::Kind::pin_edge:
     case io::Kind::instrument_reading:
     case io::Kind::emergency_stop:
     case io::Kind::gnss_solution:

@@ -21,6 +21,32 @@ struct BusRecord {
   std::int64_t stop_ns = 0;
 };
 
+struct UnreadRecord {  // a frame that an analyser saw and could not read
+  bool spi = false;
+  std::uint16_t bus = 0;
+  std::int64_t start_ns = 0, stop_ns = 0;
+};
+
+struct PulseRecord {                       // a pin was high
+  std::int64_t rise_ns = 0, fall_ns = -1;  // -1: it is so still
+};
+
+// A frame on CAN, good or not.
+struct CanFrameRecord {
+  std::uint16_t bus = 0;
+  std::int32_t sender = -1;  // its number on the board; -1: the microcontroller
+  std::uint32_t id = 0;
+  bool extended = false, good = true;
+  bool begins = false;  // its last byte is that of a DroneCAN transfer's first frame
+  std::uint32_t busy_ns = 0, tec = 0;
+  std::int64_t start_ns = 0, end_ns = 0;
+
+  // A message, and no service, of that data type of DroneCAN.
+  bool is_message(std::uint32_t type) const {
+    return extended && (id & 0x80) == 0 && (id >> 8 & 0xFFFF) == type;
+  }
+};
+
 struct CallRecord {
   std::int64_t entry_ns = 0;
   std::int64_t return_ns = 0;
@@ -69,6 +95,9 @@ class EventLog {
   void add(const io::Reader& message);  // where the reader stands
 
   std::vector<BusRecord> bus;
+  std::vector<UnreadRecord> unread;
+  std::map<std::uint16_t, std::vector<PulseRecord>> pulses;  // by pin number
+  std::vector<CanFrameRecord> can;
   std::map<std::uint16_t, std::vector<CallRecord>> calls;            // by watch number
   std::map<std::uint16_t, LatencyRecord> latencies;                  // by exception number
   std::map<std::uint16_t, std::vector<std::int64_t>> open_calls_ns;  // entries: never returned
@@ -86,6 +115,9 @@ class EventLog {
 
  private:
   void add_bus(const io::Reader& reader, bool spi);
+  void add_pin(const io::Header& header, bool level);
+
+  std::map<std::uint16_t, bool> pin_levels_;
 };
 
 }  // namespace whirl::results

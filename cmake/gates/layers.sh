@@ -20,13 +20,18 @@ plant/motor              base/ plant/base/ plant/motor/
 plant/rotor              base/ plant/rotor/
 plant/sensors            base/ plant/base/ plant/sensors/
 io_bridges/board_description base/ io_bridges/board_description/
-io_bridges/messages      base/ io_bridges/messages/
-io_bridges/protocols     base/ io_bridges/protocols/
+io_bridges/messages      base/ io_bridges/messages/ io_bridges/protocols/can_frame.hpp
+io_bridges/protocols     base/ io_bridges/protocols/ io_bridges/devices/core/
 io_bridges/devices       base/ io_bridges/protocols/ io_bridges/devices/
+io_bridges/devices/core  io_bridges/devices/core/
+io_bridges/copper        base/ io_bridges/copper/ io_bridges/messages/
+io_bridges/sigrok        base/ io_bridges/copper/edge.hpp io_bridges/copper/edge_sink.hpp io_bridges/sigrok/
+io_bridges/openocd       base/ io_bridges/openocd/
 io_bridges/hid           base/ io_bridges/hid/
 io_bridges/hid/emulated  base/ io_bridges/devices/ io_bridges/hid/hid_port.hpp io_bridges/hid/emulated/
 io_bridges/link          base/ io_bridges/link/
 io_bridges/serial        base/ io_bridges/serial/
+io_bridges/socketcan     base/ io_bridges/protocols/ io_bridges/socketcan/
 io_bridges/rack          base/ io_bridges/board_description/ io_bridges/devices/ io_bridges/messages/ io_bridges/rack/
 io_bridges/rack/models   base/ io_bridges/devices/ io_bridges/messages/ io_bridges/rack/models/ plant/
 io_bridges/rack/devices  base/ io_bridges/devices/ io_bridges/messages/ io_bridges/protocols/ io_bridges/rack/ plant/
@@ -38,9 +43,9 @@ results                  base/ io_bridges/messages/ results/
 results/messages         base/ io_bridges/messages/ results/messages/
 results/flight_log       base/ results/flight_log/
 results/spread           base/ io_bridges/messages/ results/
-results/sinks            base/ io_bridges/messages/ results/messages/ results/sinks/
+results/sinks            base/ io_bridges/copper/wire_drawing.hpp io_bridges/copper/edge.hpp io_bridges/messages/ results/messages/ results/sinks/
 harness                  base/ harness/cli/ harness/composition/ harness/target/bench/
-harness/composition      base/ harness/catalogue/ harness/cli/composition.hpp harness/composition/ harness/flight/ harness/pacing/ harness/plan/needs.hpp harness/stand/ harness/target/ io_bridges/protocols/
+harness/composition      base/ harness/catalogue/ harness/cli/composition.hpp harness/cli/console.hpp harness/cli/find_file.hpp harness/cli/stand_in_request.hpp harness/composition/ harness/flight/ harness/pacing/ harness/plan/needs.hpp harness/stand/ harness/standin/ harness/target/ io_bridges/hid/emulated/ io_bridges/protocols/
 harness/job              base/ harness/job/
 harness/lua              base/ harness/lua/
 harness/pacing           base/ harness/pacing/
@@ -52,20 +57,21 @@ harness/target/bench     base/ harness/pacing/ harness/target/ io_bridges/
 harness/lockstep         base/ harness/lockstep/ harness/target/target.hpp harness/world/ io_bridges/messages/
 harness/plan             base/ harness/board/ harness/lua/ harness/metrics/ harness/plan/ harness/target/offers.hpp harness/world/ io_bridges/board_description/bus_name.hpp results/
 harness/executive        base/ harness/board/ harness/executive/ harness/lockstep/ harness/metrics/ harness/plan/ harness/target/ harness/world/ io_bridges/devices/faults.hpp io_bridges/messages/ results/
-harness/catalogue        base/ harness/calibrate/setup.hpp harness/catalogue/ harness/flight/ harness/lua/ harness/stand/ harness/target/bench/bench_description.hpp io_bridges/board_description/ io_bridges/protocols/ io_bridges/rack/ plant/ firmware/esc/core/
+harness/catalogue        base/ harness/calibrate/setup.hpp harness/catalogue/ harness/flight/ harness/lua/ harness/stand/ harness/target/bench/bench_description.hpp io_bridges/board_description/ io_bridges/copper/channel_name.hpp io_bridges/protocols/ io_bridges/rack/ plant/ firmware/esc/core/
 harness/flight           base/ harness/flight/ harness/world/ io_bridges/messages/ io_bridges/protocols/ plant/ firmware/esc/core/
-harness/standin          base/ harness/lockstep/ harness/pacing/ harness/standin/ harness/target/ harness/world/ io_bridges/messages/ io_bridges/serial/
+harness/standin          base/ harness/lockstep/ harness/pacing/ harness/standin/ harness/target/ harness/world/ io_bridges/messages/ io_bridges/serial/ io_bridges/socketcan/
 harness/stand            base/ harness/stand/ harness/world/ io_bridges/board_description/ io_bridges/messages/ io_bridges/protocols/ plant/
-harness/sweep            base/ harness/flight/flight_params.hpp harness/sweep/ plant/ results/
+harness/sweep            base/ harness/flight/controllers.hpp harness/flight/flight_params.hpp harness/sweep/ plant/ results/
 harness/timing           base/ harness/target/ harness/timing/
 harness/calibrate        base/ harness/calibrate/ harness/lockstep/ harness/target/ harness/world/ io_bridges/protocols/ results/ firmware/esc/core/
 harness/live             base/ harness/executive/companion.hpp harness/live/ harness/pacing/ harness/world/ io_bridges/messages/
-harness/cli              base/ harness/board/ harness/calibrate/ harness/catalogue/ harness/cli/ harness/executive/ harness/job/ harness/live/ harness/pacing/ harness/plan/ harness/sweep/ harness/target/ harness/timing/ harness/world/ io_bridges/board_description/ io_bridges/protocols/esc_codec.hpp io_bridges/rack/ plant/validation/ results/
+harness/cli              base/ harness/board/ harness/calibrate/ harness/catalogue/ harness/cli/ harness/executive/ harness/job/ harness/live/ harness/pacing/ harness/plan/ harness/sweep/ harness/target/ harness/timing/ harness/world/ io_bridges/board_description/ io_bridges/copper/decoding.hpp io_bridges/openocd/ io_bridges/protocols/esc_codec.hpp io_bridges/qemu/board/image.hpp io_bridges/sigrok/capture.hpp io_bridges/rack/ plant/validation/ results/
 harness/fuzz             base/ harness/calibrate/ harness/catalogue/ harness/fuzz/ harness/plan/ io_bridges/ plant/ results/
 cmake                    cmake/
 cmake/mutate             cmake/mutate/
 firmware                 firmware/
 firmware/esc/core        firmware/esc/core/
+firmware/pod             firmware/ io_bridges/devices/core/
 END
 }
 

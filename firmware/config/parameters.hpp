@@ -64,6 +64,7 @@ enum class Parameter : std::uint8_t {
   cal_motor_4x_uTpA,
   cal_motor_4y_uTpA,
   cal_motor_4z_uTpA,
+  esc_bus,  // 0: the ESCs hang on I2C3, 1: on CAN2 (drivers/esc_can.hpp)
 };
 
 enum class Numbers : std::uint8_t { real, whole };
@@ -143,6 +144,7 @@ inline constexpr ParameterRow kParameterTable[] = {
     {Parameter::cal_motor_4x_uTpA, "CAL_MAG_M4X", 0, -10, 10, Numbers::real, WhileArmed::refused},
     {Parameter::cal_motor_4y_uTpA, "CAL_MAG_M4Y", 0, -10, 10, Numbers::real, WhileArmed::refused},
     {Parameter::cal_motor_4z_uTpA, "CAL_MAG_M4Z", 0, -10, 10, Numbers::real, WhileArmed::refused},
+    {Parameter::esc_bus, "ESC_BUS", 0, 0, 1, Numbers::whole, WhileArmed::refused},
 };
 inline constexpr std::size_t kParameterCount = std::size(kParameterTable);
 

@@ -4,8 +4,9 @@
 //             the end of each transfer, both may come from interrupts
 //   Output    the newest burst (acceleration, temperature, rate), as it came off the wire, with its
 //             time; decode() scales it. Axes of the sensor: the mounting belongs to the caller
-//   Settings  +-2000 deg/s, +-16 g, 188 Hz low-pass, 1 kHz; written, read back, and one of
-//             them read again after each sample while flying (at the slow clock: the part's limit is 1 MHz)
+//   Settings  +-2000 deg/s, +-16 g, 188 Hz low-pass, 1 kHz; written, read back, and all of them read
+//             again in nine samples while flying: neighbours in one transfer, behind every third sample
+//             (at the slow clock: the part's limit is 1 MHz)
 //   Silence   10 ms without a sample while running: it is set up anew, for a part that has lost its
 //             supply sleeps
 //   Source    RM-MPU-6000A-00 rev 4.2 register map; PS-MPU-6000A-00 rev 3.4 for timing and scales
@@ -114,18 +115,36 @@ class Mpu6000 {
       {INT_PIN_CFG, 0x10},   // active high pulse, cleared by any read
       {INT_ENABLE, 0x01},    // data ready
   }};
+  // Registers side by side, which one transfer reads.
+  struct Neighbours {
+    Address first;
+    std::uint8_t count;
+  };
+  static constexpr std::array<Neighbours, 3> kNeighbours{
+      {{SMPLRT_DIV, 4}, {INT_PIN_CFG, 2}, {USER_CTRL, 3}}};
+  static constexpr unsigned kSamples_per_check = 3;
+  static_assert([] {
+    std::size_t checked = 0;
+    for (const Setting& s : kSettings) {
+      for (const Neighbours& n : kNeighbours) {
+        if (s.address >= n.first && s.address < n.first + n.count) ++checked;
+      }
+    }
+    return checked == kSettings.size();
+  }());
   static constexpr std::uint8_t kExpectedId = 0x68;
   static constexpr std::uint8_t kRead = 0x80;
   static constexpr unsigned kPowerUp_ms = 30, kSettle_ms = 100;
   static constexpr std::uint32_t kSilent_ms = 10;
 
   Status read_register(Address address) {
-    return start(Transfer::setup, {static_cast<std::uint8_t>(address | kRead), 0});
+    return start(Transfer::setup,
+                 std::array<std::uint8_t, 2>{static_cast<std::uint8_t>(address | kRead), 0});
   }
   Status write_register(Address address, std::uint8_t value) {
-    return start(Transfer::setup, {address, value});
+    return start(Transfer::setup, std::array<std::uint8_t, 2>{address, value});
   }
-  Status start(Transfer kind, std::array<std::uint8_t, 2> bytes) {
+  Status start(Transfer kind, std::span<const std::uint8_t> bytes) {
     const Status status = bus_.start(bytes, false);
     if (status == Status::ok) transfer_ = kind;
     return status;
@@ -145,7 +164,8 @@ class Mpu6000 {
   }
   Status identify();
   Status verify();
-  void check_one_setting();
+  void ask_for_neighbours();
+  void check_neighbours(std::span<const std::uint8_t> values);
 
   Bus& bus_;
   Phase phase_ = Phase::power_up;
@@ -155,6 +175,7 @@ class Mpu6000 {
   bool asked_ = false;
   unsigned wait_ms_ = 0;
   unsigned next_ = 0;
+  unsigned neighbours_ = 0, unchecked_ = 0;  // what is checked next, and the samples since the last
   std::uint8_t answer_ = 0;
   std::uint32_t reconfigured_ = 0;
   std::uint32_t started_us_ = 0, burst_time_us_ = 0;
@@ -241,25 +262,39 @@ bool Mpu6000<Bus>::transfer_done() {
     std::copy(in.begin() + 1, in.end(), burst_.bytes.begin());
     burst_time_us_ = started_us_;
     silent_ms_ = 0;
-    // Not an error if it does not start: the next sample's check does.
-    std::ignore =
-        start(Transfer::check, {static_cast<std::uint8_t>(kSettings[next_].address | kRead), 0});
+    if (++unchecked_ >= kSamples_per_check) ask_for_neighbours();
     return true;
   }
-  if (in.size() == 2) answer_ = in[1];
-  if (done == Transfer::check) check_one_setting();
+  if (done == Transfer::check) {
+    if (!in.empty()) check_neighbours(in.subspan(1));
+  } else if (in.size() == 2) {
+    answer_ = in[1];
+  }
   return false;
 }
 
+// Not an error if it does not start: behind the next sample it does.
 template <BackgroundSpi Bus>
-void Mpu6000<Bus>::check_one_setting() {
-  if (answer_ != kSettings[next_].value) {
+void Mpu6000<Bus>::ask_for_neighbours() {
+  const Neighbours& asked = kNeighbours[neighbours_];
+  std::array<std::uint8_t, 5> out{};
+  static_assert(kNeighbours[0].count < out.size());
+  out[0] = asked.first | kRead;
+  if (start(Transfer::check, std::span(out).first(1u + asked.count)) == Status::ok) unchecked_ = 0;
+}
+
+template <BackgroundSpi Bus>
+void Mpu6000<Bus>::check_neighbours(std::span<const std::uint8_t> values) {
+  const std::uint8_t first = kNeighbours[neighbours_].first;
+  for (const Setting& setting : kSettings) {
+    const unsigned at = static_cast<unsigned>(setting.address) - first;
+    if (at >= values.size() || values[at] == setting.value) continue;
     ++reconfigured_;
     error_ = Status::config_lost;
     std::ignore = begin(Phase::write);
     return;
   }
-  next_ = (next_ + 1) % kSettings.size();
+  neighbours_ = (neighbours_ + 1) % kNeighbours.size();
 }
 
 }  // namespace fw

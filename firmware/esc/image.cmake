@@ -3,7 +3,7 @@
 set(ESC_CPU -mcpu=cortex-m3 -mthumb)
 add_executable(esc
   esc/image/main.cpp esc/image/startup.cpp esc/image/clock.cpp esc/image/bridge.cpp
-  esc/image/sampling.cpp esc/image/motor_drive.cpp esc/image/i2c_slave.cpp esc/image/pulse_input.cpp esc/image/serial.cpp
+  esc/image/sampling.cpp esc/image/motor_drive.cpp esc/image/i2c_slave.cpp esc/image/can_node.cpp esc/image/pulse_input.cpp esc/image/serial.cpp
   esc/image/commands.cpp esc/image/text_number.cpp esc/image/stream.cpp
   esc/image/stream_frame.cpp esc/image/settings.cpp esc/image/float_arithmetic.cpp hal/fault_handler.cpp
   esc/core/commutation.cpp esc/core/core.cpp esc/core/filters.cpp esc/core/thrust_estimator.cpp

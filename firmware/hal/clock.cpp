@@ -7,8 +7,12 @@ namespace {
 
 using namespace hw;
 
-// 24 MHz / 12 = 2 MHz into the PLL, x 168 = 336 MHz, / 2 = 168 MHz; / 7 = 48 MHz for USB.
-constexpr std::uint32_t kPllM = 12, kPllN = 168, kPllP_div2 = 0, kPllQ = 7;
+#ifndef FW_CRYSTAL_MHZ
+#define FW_CRYSTAL_MHZ 24
+#endif
+
+// The crystal / M = 2 MHz into the PLL, x 168 = 336 MHz, / 2 = 168 MHz; / 7 = 48 MHz for USB.
+constexpr std::uint32_t kPllM = FW_CRYSTAL_MHZ / 2, kPllN = 168, kPllP_div2 = 0, kPllQ = 7;
 constexpr int kStartupPolls = 200'000;  // far beyond the crystal's 2 ms at 16 MHz
 
 template <typename Register>

@@ -1,4 +1,4 @@
-// Clock tree of the PX4FMU v1: 24 MHz crystal to SYSCLK 168 MHz, APB1 42 MHz, APB2 84 MHz.
+// Clock tree: the board's crystal (PX4FMU v1: 24 MHz; FW_CRYSTAL_MHZ of another) to SYSCLK 168 MHz, APB1 42 MHz, APB2 84 MHz.
 #pragma once
 #include <cstdint>
 

@@ -3,11 +3,22 @@
 //
 //   Names   registers and bits keep the spelling of the manuals
 //   Source  PM0214 and PM0056 (core), RM0090 and RM0008 (IWDG)
-//   Rule    the one reinterpret_cast for registers is in Reg32
+//   Rule    the one reinterpret_cast for registers is in RegBlock
 #pragma once
 #include <cstdint>
 
 namespace fw::hw {
+
+// Registers whose place in their block is only known at run time: one of several mailboxes.
+template <std::uint32_t kBase>
+struct RegBlock {
+  static std::uint32_t read(std::uint32_t offset) { return *at(kBase + offset); }
+  static void write(std::uint32_t offset, std::uint32_t value) { *at(kBase + offset) = value; }
+
+  static volatile std::uint32_t* at(std::uint32_t address) {
+    return reinterpret_cast<volatile std::uint32_t*>(address);  // NOLINT
+  }
+};
 
 template <std::uint32_t kAddress>
 struct Reg32 {
@@ -21,9 +32,7 @@ struct Reg32 {
   static bool has(std::uint32_t bits) { return (read() & bits) == bits; }
 
  private:
-  static volatile std::uint32_t* pointer() {
-    return reinterpret_cast<volatile std::uint32_t*>(kAddress);  // NOLINT
-  }
+  static volatile std::uint32_t* pointer() { return RegBlock<kAddress>::at(kAddress); }
 };
 
 constexpr std::uint32_t bit(unsigned n) {

@@ -8,6 +8,7 @@ enum Priority : std::uint32_t {
   kPriorityImu = 1,
   kPriorityTick = 2,
   kPriorityI2c = 3,
+  kPriorityCan = 3,
   kPriorityUart = 4
 };
 

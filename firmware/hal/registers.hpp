@@ -15,6 +15,7 @@ struct RCC {
   using CR = Reg32<base + 0x00>;
   using PLLCFGR = Reg32<base + 0x04>;
   using CFGR = Reg32<base + 0x08>;
+  using APB2RSTR = Reg32<base + 0x24>;
   using AHB1ENR = Reg32<base + 0x30>;
   using APB1ENR = Reg32<base + 0x40>;
   using APB2ENR = Reg32<base + 0x44>;
@@ -27,13 +28,19 @@ struct RCC {
   static constexpr std::uint32_t GPIOAEN = bit(0), GPIOBEN = bit(1), GPIOCEN = bit(2),
                                  CCMDATARAMEN = bit(20), DMA1EN = bit(21), DMA2EN = bit(22);
   static constexpr std::uint32_t TIM2EN = bit(0), TIM5EN = bit(3), TIM6EN = bit(4), TIM7EN = bit(5),
-                                 SPI3EN = bit(15), USART2EN = bit(17), I2C2EN = bit(22),
-                                 I2C3EN = bit(23), PWREN = bit(28);
-  static constexpr std::uint32_t TIM1EN = bit(0), USART6EN = bit(5), ADC1EN = bit(8),
-                                 SPI1EN = bit(12), SYSCFGEN = bit(14);
+                                 SPI3EN = bit(15), USART2EN = bit(17), I2C1EN = bit(21),
+                                 I2C2EN = bit(22), I2C3EN = bit(23), CAN1EN = bit(25),
+                                 CAN2EN = bit(26), PWREN = bit(28);
+  static constexpr std::uint32_t TIM1EN = bit(0), USART1EN = bit(4), USART6EN = bit(5),
+                                 ADC1EN = bit(8), SPI1EN = bit(12), SYSCFGEN = bit(14);
+  static constexpr std::uint32_t SPI1RST = bit(12);
   static constexpr std::uint32_t RMVF = bit(24), BORRSTF = bit(25), PADRSTF = bit(26),
                                  PORRSTF = bit(27), SFTRSTF = bit(28), WDGRSTF = bit(29),
                                  WWDGRSTF = bit(30), LPWRRSTF = bit(31);
+};
+
+struct UID {  // 96 bits, each part's own
+  static constexpr std::uint32_t base = 0x1FFF'7A10;
 };
 
 struct PWR {
@@ -87,6 +94,7 @@ struct ADC1 {
 
 struct SYSCFG {
   using EXTICR1 = Reg32<0x4001'3808>;  // lines 0..3, four bits each
+  using EXTICR4 = Reg32<0x4001'3814>;  // lines 12..15
 };
 
 struct EXTI {
@@ -106,7 +114,7 @@ struct Spi {
                                  SSI = bit(8), SSM = bit(9);
   static constexpr std::uint32_t BR_Msk = 7u << 3, BR_DIV2 = 0u << 3, BR_DIV8 = 2u << 3,
                                  BR_DIV128 = 6u << 3;
-  static constexpr std::uint32_t RXDMAEN = bit(0), TXDMAEN = bit(1);
+  static constexpr std::uint32_t RXDMAEN = bit(0), TXDMAEN = bit(1), RXNEIE = bit(6);
   static constexpr std::uint32_t BSY = bit(7);
 };
 using SPI1 = Spi<0x4001'3000>;
@@ -116,6 +124,8 @@ template <std::uint32_t base>
 struct I2c {
   using CR1 = Reg32<base + 0x00>;
   using CR2 = Reg32<base + 0x04>;
+  using OAR1 = Reg32<base + 0x08>;
+  using OAR2 = Reg32<base + 0x0C>;
   using DR = Reg32<base + 0x10>;
   using SR1 = Reg32<base + 0x14>;
   using SR2 = Reg32<base + 0x18>;
@@ -125,11 +135,14 @@ struct I2c {
                                  SWRST = bit(15);
   static constexpr std::uint32_t ITERREN = bit(8), ITEVTEN = bit(9), ITBUFEN = bit(10),
                                  DMAEN = bit(11), LAST = bit(12);
-  static constexpr std::uint32_t SB = bit(0), ADDR = bit(1), BTF = bit(2), TXE = bit(7),
-                                 BERR = bit(8), ARLO = bit(9), AF = bit(10), OVR = bit(11);
-  static constexpr std::uint32_t BUSY = bit(1);
+  static constexpr std::uint32_t SB = bit(0), ADDR = bit(1), BTF = bit(2), STOPF = bit(4),
+                                 RXNE = bit(6), TXE = bit(7), BERR = bit(8), ARLO = bit(9),
+                                 AF = bit(10), OVR = bit(11);
+  static constexpr std::uint32_t BUSY = bit(1), TRA = bit(2), DUALF = bit(7);
   static constexpr std::uint32_t FS = bit(15);
+  static constexpr std::uint32_t ENDUAL = bit(0), OAR1_KEPT_ONE = bit(14);
 };
+using I2C1 = I2c<0x4000'5400>;
 using I2C2 = I2c<0x4000'5800>;
 using I2C3 = I2c<0x4000'5C00>;
 
@@ -143,8 +156,13 @@ struct Usart {
   static constexpr std::uint32_t RE = bit(2), TE = bit(3), UE = bit(13);
   static constexpr std::uint32_t DMAR = bit(6), DMAT = bit(7);
 };
+using USART1 = Usart<0x4001'1000>;
 using USART2 = Usart<0x4000'4400>;
 using USART6 = Usart<0x4001'1400>;
+
+// bxCAN; its registers: hal/bxcan_registers.hpp. The filters of both are CAN1's.
+using CAN1 = RegBlock<0x4000'6400>;
+using CAN2 = RegBlock<0x4000'6800>;
 
 template <std::uint32_t kBase>
 struct Timer {
@@ -199,6 +217,8 @@ using Spi1RxDma = DmaStream<kDma2, 0>;    // channel 3
 using Usart6RxDma = DmaStream<kDma2, 2>;  // channel 5
 using Spi1TxDma = DmaStream<kDma2, 3>;    // channel 3
 using Usart6TxDma = DmaStream<kDma2, 6>;  // channel 5
+using Usart1RxDma = DmaStream<kDma2, 5>;  // channel 4
+using Usart1TxDma = DmaStream<kDma2, 7>;  // channel 4
 
 // Interrupt numbers, RM0090 table 61.
 enum class Irq : std::uint8_t {
@@ -207,13 +227,21 @@ enum class Irq : std::uint8_t {
   DMA1_Stream3 = 14,
   DMA1_Stream6 = 17,
   TIM1_CC = 27,
+  I2C1_EV = 31,
+  I2C1_ER = 32,
   I2C2_EV = 33,
   I2C2_ER = 34,
+  SPI1_Global = 35,
+  EXTI15_10 = 40,
   TIM5_Global = 50,
   TIM6_DAC = 54,
   TIM7_Global = 55,
   DMA2_Stream0 = 56,
+  CAN2_TX = 63,
+  CAN2_RX0 = 64,
+  CAN2_SCE = 66,
   DMA2_Stream6 = 69,
+  DMA2_Stream7 = 70,
   I2C3_EV = 72,
   I2C3_ER = 73,
 };

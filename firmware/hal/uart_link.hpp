@@ -13,7 +13,7 @@
 
 namespace fw::hal {
 
-// Port: which block, pins and DMA streams (uart_link.cpp).
+// Port: which block, pins and DMA streams (uart_link.cpp), and what keeps its interrupt out meanwhile.
 template <typename Port>
 class UartLink {
  public:

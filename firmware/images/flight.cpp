@@ -9,7 +9,6 @@
 #include "firmware/config/parameter_store.hpp"
 #include "firmware/config/vehicle.hpp"
 #include "firmware/drivers/cppm_receiver.hpp"
-#include "firmware/drivers/esc_bus.hpp"
 #include "firmware/drivers/hmc5883l.hpp"
 #include "firmware/drivers/mpu6000.hpp"
 #include "firmware/drivers/ms5611.hpp"
@@ -29,6 +28,7 @@
 #include "firmware/hal/time_base.hpp"
 #include "firmware/hal/uart_link.hpp"
 #include "firmware/hal/watchdog.hpp"
+#include "firmware/images/flight_escs.hpp"
 #include "firmware/link/telemetry.hpp"
 #include "firmware/log/flight_log.hpp"
 
@@ -40,7 +40,6 @@ constinit Health health;
 namespace {
 
 constinit Mpu6000<hal::ImuLink> imu(hal::imu_link);
-constinit EscBus<hal::I2cMaster<hal::EscI2c>> escs(hal::i2c3);
 constinit Ms5611<hal::I2cMaster<hal::SensorI2c>> barometer(hal::i2c2);
 constinit Hmc5883l<hal::I2cMaster<hal::SensorI2c>> magnetometer(hal::i2c2);
 constinit UbloxGps<hal::UartLink<hal::GpsUart>> gps(hal::gps_uart);
@@ -106,10 +105,6 @@ void fallback_tick() {
 
 void receiver_edge(std::uint32_t edge_us) {
   if (receiver.edge(edge_us)) sticks_came = true;
-}
-
-void esc_job_done(const hal::I2cJob& job, Status status) {
-  escs.job_done(job, status);
 }
 
 void sensor_job_done(const hal::I2cJob& job, Status status) {
@@ -208,24 +203,6 @@ __attribute__((noinline)) void position_task() {
   flight().position_step();
 }
 
-__attribute__((noinline)) void esc_task(std::uint32_t tick) {
-  for (unsigned motor = 0; motor < 4; ++motor) {
-    if (escs.take_answered(motor)) flight().on_esc_answered(motor);
-    esc::protocol::Status status;
-    if (escs.take_status(motor, status)) flight().on_esc_status(motor, status);
-  }
-  if (schedule::setpoints(tick)) {
-    std::ignore = escs.write(flight().send_setpoints());
-    TickTimes::keep_worst(times.setpoint_us, hal::now_us() - data_ready_us);
-  }
-  const int motor = schedule::status_read(tick);
-  if (motor >= 0) std::ignore = escs.request_status(static_cast<unsigned>(motor));
-  faults.esc_no_answer = escs.failures();
-  faults.esc_bad_status = escs.bad_status();
-  faults.i2c_recoveries = hal::i2c3.counters().recoveries;
-  faults.i2c_timeouts = hal::i2c3.counters().timeouts;
-}
-
 // By the crystal: ticks come from the IMU's oscillator, which may be a percent off.
 static std::uint32_t uptime_ms() {
   static constinit std::uint32_t ms = 0, counted_us = 0;
@@ -233,6 +210,12 @@ static std::uint32_t uptime_ms() {
   ms += passed_ms;
   counted_us += passed_ms * 1000u;
   return ms;
+}
+
+__attribute__((noinline)) void esc_task(std::uint32_t tick) {
+  if (serve_escs(flight(), faults, tick, uptime_ms() / 1000u)) {
+    TickTimes::keep_worst(times.setpoint_us, hal::now_us() - data_ready_us);
+  }
 }
 
 __attribute__((noinline)) void telemetry_task() {

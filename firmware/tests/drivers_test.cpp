@@ -140,12 +140,17 @@ TEST(Mpu6000Driver, NoticesALostSettingInFlightAndRestoresIt) {
   ASSERT_GT(ticks_until_running(imu, spi, 400), 0);
   for (int i = 0; i < 100; ++i) sample(imu, spi);
   EXPECT_EQ(imu.reconfigured(), 0u);
-  spi.registers[0x1B] = 0x00;
-  for (int i = 0; i < 90; ++i) sample(imu, spi);  // nine settings, one every tenth sample
-  EXPECT_EQ(imu.reconfigured(), 1u);
-  EXPECT_FALSE(imu.running());
-  EXPECT_LT(ticks_until_running(imu, spi, 400), 30);  // no reset: back within 30 ms
-  EXPECT_EQ(spi.registers[0x1B], 0x18);
+  const std::map<std::uint8_t, std::uint8_t> as_set = spi.registers;
+  unsigned lost = 0;
+  for (const std::uint8_t address : {0x6B, 0x6A, 0x6C, 0x19, 0x1A, 0x1B, 0x1C, 0x37, 0x38}) {
+    spi.registers[address] ^= 0x02;
+    for (int i = 0; i < 9; ++i) sample(imu, spi);  // in which all are read again
+    EXPECT_EQ(imu.reconfigured(), ++lost) << int{address};
+    EXPECT_FALSE(imu.running());
+    EXPECT_LT(ticks_until_running(imu, spi, 400), 30);  // no reset: back within 30 ms
+    EXPECT_EQ(spi.registers, as_set);
+  }
+  EXPECT_EQ(spi.too_fast, 0);
 }
 
 TEST(Mpu6000Driver, APartThatFallsAsleepIsSetUpAnew) {

@@ -10,6 +10,9 @@ __attribute__((used)) void silent_line() {
 }
 FW_SILENT void systick_handler();
 FW_SILENT void adc1_2_handler();
+FW_SILENT void can_tx_handler();
+FW_SILENT void can_rx0_handler();
+FW_SILENT void can_sce_handler();
 FW_SILENT void tim2_handler();
 FW_SILENT void i2c2_ev_handler();
 FW_SILENT void i2c2_er_handler();

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <set>
 
 #include "harness/lua/table.hpp"
 #include "io_bridges/board_description/bus_name.hpp"
+#include "io_bridges/copper/channel_name.hpp"
 
 namespace whirl {
 namespace {
@@ -32,8 +34,16 @@ void read_link(const lua::Table& t, bench::BenchDescription& bench) {
     bench.bridges.push_back(std::move(link));
   } else if (number && (bus.starts_with("usart") || bus.starts_with("uart"))) {
     bench.serials.push_back({name, t.text("path"), port, read_baud(t)});
+  } else if (number && bus.starts_with("can")) {
+    bench::CanBusLink link;
+    link.name = name;
+    link.interface = t.text("interface");
+    link.bus = port;
+    link.bit_rate_bps = static_cast<std::uint32_t>(
+        t.quantity_or("rate", Dimension::baud, link.bit_rate_bps, lua::between(10e3, 1e6)));
+    bench.cans.push_back(std::move(link));
   } else {
-    t.refuse("bus", "'" + bus + "' is no bus that a bench can join", "i2c1.., usart1..");
+    t.refuse("bus", "'" + bus + "' is no bus that a bench can join", "i2c1.., usart1.., can1..");
   }
 }
 
@@ -86,6 +96,75 @@ bench::Safety read_safety(const lua::Table& t) {
   return safety;
 }
 
+// A bus's clock needs four samples to a period, or edges are lost that nobody can tell.
+void check_rate(const lua::Table& t, const bench::AnalyserClips& clips,
+                const std::map<std::string, double>& clocks_Hz) {
+  constexpr double kSamples_per_clock = 4.0;
+  for (const auto& [bus, clock_Hz] : clocks_Hz) {
+    if (!clips.sees(bus) || clips.rate_Hz >= kSamples_per_clock * clock_Hz) continue;
+    char text[160];
+    std::snprintf(text, sizeof text,
+                  "%g MHz is too slow for %s at %g kHz: four samples to a clock are wanted",
+                  clips.rate_Hz * 1e-6, bus.c_str(), clock_Hz * 1e-3);
+    t.refuse("rate", text, "a faster rate, or no clips on " + bus);
+  }
+}
+
+// links: read before; their rates are those of their buses.
+bench::AnalyserClips read_analyser(const lua::Table& t, const bench::BenchDescription& bench) {
+  bench::AnalyserClips clips;
+  clips.driver = t.text("driver");
+  clips.connection = t.text_or("connection", "");
+  clips.model = t.text_or("model", "");
+  clips.rate_Hz = t.quantity("rate", Dimension::frequency, lua::between(1e3, 10e9));
+  clips.marker = t.text("marker");
+  const lua::Table channels = t.table("channels");
+  std::set<std::string> wires;
+  for (const std::string& clip : channels.keys()) {
+    const std::string wire = channels.text(clip);
+    clips.channels[clip] = wire;
+    if (!copper::channel_name(wire)) {
+      channels.refuse(clip, "'" + wire + "' is no name of a wire",
+                      "i2c2_scl, spi1_cs_DEVICE, pin_NAME, marker");
+    }
+    if (!wires.insert(wire).second) channels.refuse(clip, "'" + wire + "' has two clips");
+  }
+  if (wires.count("marker") == 0) {
+    channels.refuse("marker",
+                    "no clip is on the marker: without it the analyser's times mean nothing",
+                    "D7 = \"marker\"");
+  }
+  std::map<std::string, double> clocks_Hz;
+  for (const auto& link : bench.bridges) clocks_Hz["i2c" + std::to_string(link.bus)] = link.rate_Hz;
+  for (const auto& link : bench.serials) clocks_Hz["usart" + std::to_string(link.uart)] = link.baud;
+  if (t.has("clocks")) {
+    const lua::Table clocks = t.table("clocks");
+    for (const std::string& bus : clocks.keys()) {
+      clocks_Hz[bus] = clocks.quantity(bus, Dimension::frequency, lua::between(1e3, 1e9));
+    }
+  }
+  check_rate(t, clips, clocks_Hz);
+  return clips;
+}
+
+bench::DebugProbe read_probe(const lua::Table& t) {
+  bench::DebugProbe probe;
+  probe.interface = t.text("interface");
+  probe.target = t.text("target");
+  probe.serial = t.text_or("serial", "");
+  probe.speed_Hz =
+      t.quantity_or("speed", Dimension::frequency, probe.speed_Hz, lua::between(1e3, 50e6));
+  probe.idle = t.text_or("idle", "");
+  for (const auto& [key, text] : {std::pair{"interface", &probe.interface},
+                                  {"target", &probe.target},
+                                  {"serial", &probe.serial}}) {
+    // They become a line of openocd's own language.
+    if (text->find_first_of("{}[]$;\"\\\n") != std::string::npos)
+      t.refuse(key, "holds a character that no name has");
+  }
+  return probe;
+}
+
 // Each name stands for one thing, and each end of a bus is joined once.
 void check_names(const lua::Table& t, const bench::BenchDescription& bench) {
   std::set<std::string> names, places;
@@ -96,10 +175,16 @@ void check_names(const lua::Table& t, const bench::BenchDescription& bench) {
     once(names, "links", link.name);
     once(places, "links", "i2c" + std::to_string(link.bus));
   }
+  if (bench.analyser) once(places, "analyser", bench.analyser->marker);
   for (const auto& link : bench.serials) {
     once(names, "links", link.name);
     once(places, "links", "usart" + std::to_string(link.uart));
     once(places, "links", link.path);
+  }
+  for (const auto& link : bench.cans) {
+    once(names, "links", link.name);
+    once(places, "links", "can" + std::to_string(link.bus));
+    once(places, "links", link.interface);
   }
   for (const auto& instrument : bench.instruments) {
     once(names, "instruments", instrument.name);
@@ -124,6 +209,8 @@ Result<bench::BenchDescription> read_bench(const std::string& path) {
   for (const lua::Table& entry : t.tables("instruments")) {
     bench.instruments.push_back(read_instrument(entry));
   }
+  if (t.has("analyser")) bench.analyser = read_analyser(t.table("analyser"), bench);
+  if (t.has("probe")) bench.probe = read_probe(t.table("probe"));
   for (bench::BridgeLink& link : bench.bridges) {  // a slow board answers late
     link.timeout_ns =
         std::llround(static_cast<double>(link.timeout_ns) / std::min(1.0, bench.pace));

@@ -3,14 +3,19 @@
 //   return { bench = "esc_stand", board = "esc32v2", pace = 1,
 //            late = "200 us", late_share = "1 %",
 //            links = { { name = "throttle", bus = "i2c2", bridge = "mcp2221a", serial = "0002137245", rate = "100 kHz" },
+//                      { name = "bus", bus = "can1", interface = "can0", rate = "1000000 baud" },
 //                      { name = "terminal", bus = "usart1", path = "/dev/serial/by-id/...", baud = "921600 baud" } },
 //            instruments = { { name = "cell", path = "/dev/ttyUSB1", baud = "115200 baud", delay = "4 ms",
 //                              readings = { { signal = "thrust", column = 1, scale = "9.80665e-3 N", zero = 0 } } } },
+//            analyser = { driver = "fx2lafw", rate = "24 MHz", marker = "/dev/ttyUSB2", clocks = { spi1 = "1 MHz" },
+//                         channels = { D0 = "i2c2_scl", D1 = "i2c2_sda", D7 = "marker" } },
+//            probe = { interface = "interface/stlink.cfg", target = "target/stm32f1x.cfg", idle = "fw::idle" },
 //            signals = { speed = "told_speed" },
 //            safety = { phrase = "the propeller is clear", longest = "120 s", heartbeat = "100 ms",
 //                       limits = { { signal = "bus_current", low = "-1 A", high = "22 A" } } } }
 //   Late     of the host: a step later than `late` counts; more than `late_share` of them, and the run is inconclusive
 //   Scale    what one count of a reading is, with its unit: the signal is (number - zero) x scale
+//   Clips    names of wires as io_bridges/copper/channel_name.hpp has them; `clocks` of buses that no link states
 //   Errors   bad_input, with file and line
 #pragma once
 #include <string>

@@ -1,5 +1,7 @@
 #include "harness/catalogue/feed.hpp"
 
+#include "harness/catalogue/battery_file.hpp"
+
 namespace whirl::catalogue {
 namespace {
 
@@ -7,19 +9,41 @@ using lua::between;
 
 const std::vector<std::string> kPacks = {"4s_2200"};
 
+plant::BatteryParams whose(const lua::Table& t) {
+  if (t.has("file") && t.has("pack")) {
+    t.refuse("file", "a file or one of the plant's packs is wanted, one of the two");
+  }
+  if (!t.has("file")) {
+    std::ignore = t.choice("pack", kPacks);
+    return plant::lipo_4s_2200();
+  }
+  const auto read = read_battery_file(t.sibling(t.text("file")));
+  if (read) return read.value();
+  t.refuse("file", read.error().message());
+  return plant::lipo_4s_2200();
+}
+
 plant::BatteryParams read_pack(const lua::Table& t) {
-  std::ignore = t.choice("pack", kPacks);
-  plant::BatteryParams b = plant::lipo_4s_2200();
+  plant::BatteryParams b = whose(t);
   b.capacity_C = t.quantity_or("capacity", Dimension::charge, b.capacity_C, lua::above(0.0));
   b.series_resistance_ohm = t.quantity_or("resistance", Dimension::resistance,
                                           b.series_resistance_ohm, lua::at_least(0.0));
   b.initial_depth_of_discharge = t.quantity_or("depth_of_discharge", Dimension::ratio,
                                                b.initial_depth_of_discharge, between(0.0, 1.0));
+  b.temperature_K = t.quantity_or("temperature", Dimension::temperature, b.temperature_K);
+  if (t.has("temperature") && b.resistance_over_temperature.empty()) {
+    t.refuse("temperature", "this pack tells nothing of its resistance over temperature",
+             "a file with resistance_over_temperature, or no temperature");
+  }
   const double share = t.quantity_or("share", Dimension::ratio, 1.0, between(0.01, 1.0));
   if (share > 0.0) {
     b.capacity_C *= share;
     b.series_resistance_ohm /= share;
     b.relaxation_resistance_ohm /= share;
+    b.slow_relaxation_resistance_ohm /= share;
+  }
+  if (const auto good = plant::validate(b, "battery"); !good) {
+    t.refuse(t.has("temperature") ? "temperature" : "pack", good.error().what);
   }
   return b;
 }

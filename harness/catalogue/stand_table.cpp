@@ -43,7 +43,7 @@ void read_stage_shunt(const lua::Table& t, stand::StageParams& stage) {
 }
 
 double read_pulse_rate(const lua::Table& t) {
-  const bool pulses = t.has("throttle") && t.choice("throttle", {"i2c", "pwm"}) == "pwm";
+  const bool pulses = t.has("throttle") && t.choice("throttle", {"i2c", "pwm", "can"}) == "pwm";
   if (!pulses) return 0.0;
   return t.quantity_or("pulse_rate", Dimension::frequency, 50.0, lua::between(50.0, 400.0));
 }
@@ -59,6 +59,9 @@ Result<stand::StandParams> read_stand(const lua::Table& t, const std::string& pr
   if (t.has("mode")) p.esc.mode = read_esc_mode(t, "mode").on_wire;
   p.esc.address = static_cast<std::uint8_t>(t.integer_or("address", p.esc.address, 0x08, 0x77));
   p.esc.pulse_rate_Hz = read_pulse_rate(t);
+  if (t.has("throttle") && t.choice("throttle", {"i2c", "pwm", "can"}) == "can") {
+    p.esc.can = static_cast<std::uint16_t>(t.integer_or("can", 1, 1, 2));
+  }
   p.esc.i2c = static_cast<std::uint16_t>(t.integer_or("i2c", p.esc.i2c, 1, 3));
   p.esc.serial = static_cast<std::uint16_t>(t.integer_or("serial", p.esc.serial, 1, 8));
   if (const auto good = t.finish(); !good) return good.error();

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "harness/catalogue/bench_file.hpp"
+#include "harness/catalogue/stand_table.hpp"
 #include "harness/cli/find_file.hpp"
 #include "harness/cli/find_plans.hpp"
 
@@ -15,9 +16,23 @@ Error refused(const std::string& place, const std::string& what, const std::stri
   return {ErrorKind::bad_input, place, what, cure};
 }
 
+// The CAN bus over which the plan commands, where it does.
+Result<Done> check_can(const plan::Plan& plan, std::uint16_t can,
+                       const bench::BenchDescription& bench) {
+  const bool joined = std::any_of(bench.cans.begin(), bench.cans.end(),
+                                  [&](const auto& link) { return link.bus == can; });
+  if (joined) return Done{};
+  const std::string bus = "can" + std::to_string(can);
+  return refused(bench.file, "nothing joins " + bus + ", over which " + plan.name + " commands",
+                 "links = { { bus = \"" + bus + "\", interface = \"can0\" } }");
+}
+
 // The world's end of each bus of the board, where the bench has something in its place.
 Result<Done> check_links(const plan::Plan& plan, const BoardDescription& board,
-                         const bench::BenchDescription& bench) {
+                         const bench::BenchDescription& bench, const std::string& root) {
+  const auto stand = catalogue::read_stand(*plan.stand, root + "/test_plans/propellers");
+  if (!stand) return stand.error();
+  if (stand.value().esc.can > 0) return check_can(plan, stand.value().esc.can, bench);
   for (const BoardDevice& device : board.devices) {
     const auto joins = [&](const std::string& kind, int number) {
       return device.bus == kind + std::to_string(number);
@@ -39,6 +54,22 @@ Result<Done> check_links(const plan::Plan& plan, const BoardDescription& board,
 }
 
 }  // namespace
+
+Result<bench::BenchDescription> bench_named(const std::string& name, const char* command,
+                                            const std::string& root) {
+  const auto file = find_file(name, {".", command}, {root + "/test_plans/benches"}, ".lua");
+  if (!file) return file.error();
+  return read_bench(shown_path(file.value()));
+}
+
+Result<Done> check_copper_options(const RunOptions& options) {
+  if (options.copper.empty()) return Done{};
+  if (options.gdb) return refused("--copper", "is of another run than one that is held by gdb");
+  if (options.jobs > 1 || options.seeds.size() > 1) {
+    return refused("--copper", "is a capture of one run, and several are asked for");
+  }
+  return Done{};
+}
 
 Result<Done> check_bench_options(const RunOptions& options) {
   if (options.target.empty()) return Done{};
@@ -70,7 +101,8 @@ Result<bench::BenchDescription> bench_for(const plan::Plan& plan, const std::vec
     return refused(plan.place, "the plan is for " + board.name + ", and on bench " +
                                    bench.value().name + " there is " + bench.value().board);
   }
-  if (const auto joined = check_links(plan, board, bench.value()); !joined) return joined.error();
+  if (const auto joined = check_links(plan, board, bench.value(), root); !joined)
+    return joined.error();
   if (options.arm != bench.value().safety.phrase) {
     return refused(bench.value().file,
                    options.arm.empty() ? "a rotor will turn: nobody has said that all is clear"

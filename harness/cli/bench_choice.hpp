@@ -15,6 +15,13 @@ namespace whirl::cli {
 // that kind; --gdb, --twice, several seeds or several runs at once
 Result<Done> check_bench_options(const RunOptions& options);
 
+// Of test_plans/benches, or a path. `command`: who asks, for the message.
+Result<bench::BenchDescription> bench_named(const std::string& name, const char* command,
+                                            const std::string& root);
+
+// Errors  bad_input: a capture beside what is not the one run that it is of
+Result<Done> check_copper_options(const RunOptions& options);
+
 // Errors  bad_input: no such bench, another board than the plan's, a bus that the plan uses and nothing joins,
 //         the phrase was not said; several boards, a vehicle; what check_bench_options() refuses
 Result<bench::BenchDescription> bench_for(const plan::Plan& plan, const std::vector<Node>& nodes,

@@ -5,13 +5,17 @@
 
 #include "base/output_file.hpp"
 #include "base/whole_file.hpp"
-#include "harness/catalogue/bench_file.hpp"
+#include "harness/cli/bench_choice.hpp"
 #include "harness/cli/console.hpp"
-#include "harness/cli/find_file.hpp"
 #include "harness/cli/find_plans.hpp"
+#include "harness/cli/probe_command.hpp"
 #include "harness/pacing/pacer.hpp"
 #include "harness/pacing/real_time.hpp"
+#include "harness/target/bench/analyser_link.hpp"
+#include "harness/target/bench/can_check.hpp"
 #include "harness/target/bench/serial_links.hpp"
+#include "harness/target/bench/spread.hpp"
+#include "io_bridges/openocd/core_probe.hpp"
 #include "io_bridges/protocols/esc_codec.hpp"
 #include "results/parity.hpp"
 #include "results/read_run.hpp"
@@ -21,20 +25,6 @@ namespace {
 
 constexpr std::int64_t kMs = 1'000'000;
 constexpr int kTransfers = 200;
-
-struct Spread {  // of times, in milliseconds
-  double p50 = 0, p99 = 0, most = 0;
-};
-
-Spread spread_of(std::vector<double> all) {
-  if (all.empty()) return {};
-  std::sort(all.begin(), all.end());
-  const auto at = [&](double share) {
-    return all[std::min(all.size() - 1,
-                        static_cast<std::size_t>(share * static_cast<double>(all.size())))];
-  };
-  return {at(0.5), at(0.99), all.back()};
-}
 
 double ms(std::int64_t ns) {
   return static_cast<double>(ns) * 1e-6;
@@ -46,11 +36,12 @@ void say(const std::string& name, const std::string& what) {
 
 class Check {
  public:
-  Check(const bench::BenchDescription& bench, double seconds, const bench::BridgeMaker& bridge)
-      : bench_(bench), seconds_(seconds), bridge_(bridge) {}
+  Check(const bench::BenchDescription& bench, double seconds, const Composition& composition)
+      : bench_(bench), seconds_(seconds), bridge_(composition.bridge), can_(composition.can) {}
 
   int all() {
     for (const auto& link : bench_.bridges) check(link);
+    for (const auto& link : bench_.cans) check(link);
     for (const auto& link : bench_.serials) {
       bench::BoardSerial line(link);
       const auto opened = line.open();
@@ -58,10 +49,12 @@ class Check {
              : missing(link.name, opened.error());
     }
     for (const auto& instrument : bench_.instruments) check(instrument);
+    if (bench_.analyser) check(*bench_.analyser);
+    if (bench_.probe) check(*bench_.probe);
     check_pacer();
     std::printf(
         "not shown without a run: that a set-point turns the rotor, the instruments' scales and\n"
-        "zeros, what is between a bridge's pins and the board\n");
+        "zeros, what is between a bridge's or an adapter's pins and the board\n");
     return missing_ == 0 ? 0 : 2;
   }
 
@@ -95,15 +88,26 @@ class Check {
       broken += got.value().acked && !io::unpack_status(found, got.value().bytes);
     }
     port.value()->close();
-    const Spread s = spread_of(took_ms);
+    const bench::Spread s = bench::spread_of(took_ms);
     char text[200];
     std::snprintf(text, sizeof text,
                   "%s: ESC %s; %d reads, %d unanswered, %d with a bad CRC; p50 %.2f, p99 %.2f, "
                   "most %.2f ms",
                   link.kind.c_str(), found == 0 ? "not found" : "answers", kTransfers, silent,
-                  broken, s.p50, s.p99, s.most);
+                  broken, s.p50_ms, s.p99_ms, s.most_ms);
     found == 0 ? missing(link.name, {ErrorKind::bad_input, "", text, "is the ESC powered?"})
                : say(link.name, text);
+  }
+
+  void check(const bench::CanBusLink& link) {
+    const auto port = can_(link);
+    if (!port) return missing(link.name, port.error());
+    say(link.name, port.value()->version());
+    const auto told = bench::check_can_bus(
+        *port.value(), clock_,
+        {.interface = link.interface, .bit_rate_bps = link.bit_rate_bps, .seconds = seconds_});
+    if (!told) return missing(link.name, told.error());
+    for (const std::string& line : told.value()) say(link.name, line);
   }
 
   void check(const bench::Instrument& instrument) {
@@ -129,13 +133,31 @@ class Check {
       return missing(instrument.name, {ErrorKind::bad_input, instrument.path, "says nothing",
                                        "its baud rate, or which line it is on?"});
     }
-    const Spread s = spread_of(between_ms);
+    const bench::Spread s = bench::spread_of(between_ms);
     char text[200];
     std::snprintf(text, sizeof text,
                   "%llu lines, %llu too short; between lines p50 %.2f, p99 %.2f, most %.2f ms",
                   static_cast<unsigned long long>(line.lines()),
-                  static_cast<unsigned long long>(line.short_lines()), s.p50, s.p99, s.most);
+                  static_cast<unsigned long long>(line.short_lines()), s.p50_ms, s.p99_ms,
+                  s.most_ms);
     say(instrument.name, text);
+  }
+
+  void check(const bench::AnalyserClips& clips) {
+    const auto source = bench::sigrok_source(clips);
+    const auto opened = source->open();
+    opened ? say("analyser", source->version()) : missing("analyser", opened.error());
+    const auto marker = bench::rts_marker(clips.marker)->open();
+    marker ? say("marker", clips.marker + " has RTS; the clip on it is seen in a run")
+           : missing("marker", marker.error());
+  }
+
+  void check(const bench::DebugProbe& probe) {
+    const auto server = connect_probe(probe);
+    if (!server) return missing("probe", server.error());
+    const auto pc = openocd::CoreProbe(server.value()->client()).sample_pc();
+    pc ? say("probe", probe.interface + ", the core of " + probe.target + " answers")
+       : missing("probe", pc.error());
   }
 
   // A kilohertz of nothing: what this host could hold at best, beside what the pacer makes of it.
@@ -168,6 +190,7 @@ class Check {
   const bench::BenchDescription& bench_;
   double seconds_;
   const bench::BridgeMaker& bridge_;
+  const bench::CanMaker& can_;
   pacing::MonotonicClock clock_;
   int missing_ = 0;
 };
@@ -184,14 +207,11 @@ Result<results::Report> report_of(const std::string& run) {
 }  // namespace
 
 int bench_check_command(const BenchOptions& options, const Composition& composition) {
-  const auto file = find_file(options.name, {".", "whirl bench check"},
-                              {composition.root + "/test_plans/benches"}, ".lua");
-  if (!file) return complain(file.error());
-  const auto bench = read_bench(shown_path(file.value()));
+  const auto bench = bench_named(options.name, "whirl bench check", composition.root);
   if (!bench) return complain(bench.error());
   std::printf("%s: %s on %s\n", bench.value().file.c_str(), bench.value().name.c_str(),
               bench.value().board.c_str());
-  return Check(bench.value(), options.seconds, composition.bridge).all();
+  return Check(bench.value(), options.seconds, composition).all();
 }
 
 int parity_command(const ParityOptions& options) {

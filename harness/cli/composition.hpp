@@ -10,8 +10,10 @@
 
 #include "base/result.hpp"
 #include "harness/catalogue/board_file.hpp"
+#include "harness/cli/stand_in_request.hpp"
 #include "harness/plan/plan_file.hpp"
 #include "harness/target/bench/bridge_link.hpp"
+#include "harness/target/bench/can_link.hpp"
 #include "harness/target/target.hpp"
 #include "harness/world/world.hpp"
 
@@ -29,6 +31,8 @@ struct Setup {  // of a run; of one board of it, where a target is made
   Settings settings = {};
   std::string folder = {};  // of the run, for what the board's parts leave; empty: nothing is left
   const bench::BenchDescription* bench = nullptr;  // null: the virtual board
+  std::string copper = {};                         // a capture; empty: the board tells of its buses
+  double copper_rate_Hz = 0.0;
 };
 
 struct Composition {
@@ -37,6 +41,8 @@ struct Composition {
   std::string root;
   std::string results;                  // folder of runs and history
   bench::BridgeMaker bridge = nullptr;  // USB to I2C, of a bench
+  bench::CanMaker can = nullptr;        // its CAN buses
+  std::function<int(const StandInRequest&)> stand_in = nullptr;
 };
 
 // The whole program but its composition. Returns the exit code.

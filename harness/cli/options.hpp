@@ -24,6 +24,8 @@ struct RunOptions {
   std::string only;    // the plan of this name
   std::string target;  // "bench/NAME"; empty: the virtual board
   std::string arm;     // the bench's phrase
+  std::string copper;  // a capture that tells of buses and pins in the board's place; empty: none
+  double copper_rate_Hz = 50e6;  // at which it is looked at, if it has no rate of its own
   Settings settings;
 };
 

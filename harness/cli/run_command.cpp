@@ -30,7 +30,14 @@ void run_here(const std::vector<PlanChoice>& plans, const RunOptions& options,
 
 int run_command(const RunOptions& options, const Composition& composition) {
   if (const auto good = check_bench_options(options); !good) return complain(good.error());
+  if (const auto good = check_copper_options(options); !good) return complain(good.error());
   const FoundPlans found = find_plans(options, composition.root);
+  if (!options.copper.empty() && found.plans.size() > 1) {
+    return complain({ErrorKind::bad_input, "--copper",
+                     "is a capture of one run, and " + std::to_string(found.plans.size()) +
+                         " plans are asked for",
+                     "name one, or use --only"});
+  }
   if (options.gdb && found.plans.size() > 1) {
     std::fprintf(stderr, "whirl: --gdb wants one plan, not %zu (name it, or use --only)\n",
                  found.plans.size());

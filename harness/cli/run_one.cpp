@@ -160,8 +160,14 @@ Result<Prepared> prepare(const plan::Plan& plan, const PlanChoice& choice,
     const int port = options.gdb ? options.gdb_port : 0;
     all.setups.push_back({plan, i, all.nodes.back().board, root, image.value(), vehicle_file,
                           choice.seed.value_or(plan.seed), port, settings, folder});
+    all.setups.back().copper = options.copper;
+    all.setups.back().copper_rate_Hz = options.copper_rate_Hz;
   }
   if (const auto joined = check_wires(plan, all.nodes); !joined) return joined.error();
+  if (!options.copper.empty() && plan.nodes.size() > 1) {
+    return Error{ErrorKind::bad_input, plan.place,
+                 "--copper is of one board, and this plan has several", ""};
+  }
   if (!options.target.empty()) {
     auto bench = bench_for(plan, all.nodes, options, root);
     if (!bench) return bench.error();

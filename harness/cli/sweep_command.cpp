@@ -154,9 +154,17 @@ Result<Done> put_out(const Swept& swept, const std::string& file, const Composit
   fs::create_directories(folder, status);
   const std::string about =
       "Steady behaviour by the plant's own models, standard air at sea level.";
-  for (const auto& written : {write_text((folder / "index.html").string(),
-                                         results::charts_html(swept.name, about, swept.charts)),
-                              write_csv((folder / "curves.csv").string(), swept.charts)}) {
+  std::vector<results::ChartTable> tables;
+  if (!swept.lines.empty()) {
+    auto& table = tables.emplace_back();
+    table.title = "Fitted on its static rows, and how sure";
+    table.heads = {{"trait, 90 % interval", false}};
+    for (const std::string& line : swept.lines) table.rows.push_back({line});
+  }
+  for (const auto& written :
+       {write_text((folder / "index.html").string(),
+                   results::charts_html(swept.name, about, swept.charts, tables)),
+        write_csv((folder / "curves.csv").string(), swept.charts)}) {
     if (!written) return written.error();
   }
   std::printf("%s\n", printable_line(swept.name).c_str());

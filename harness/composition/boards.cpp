@@ -10,14 +10,17 @@
 #include "harness/catalogue/stand_table.hpp"
 #include "harness/catalogue/surroundings_table.hpp"
 #include "harness/catalogue/vehicle_file.hpp"
+#include "harness/composition/stand_in_command.hpp"
 #include "harness/flight/flight_world.hpp"
 #include "harness/pacing/host_clock.hpp"
 #include "harness/plan/needs.hpp"
 #include "harness/stand/bench_stand.hpp"
 #include "harness/stand/stand_world.hpp"
+#include "harness/target/bench/analyser_link.hpp"
 #include "harness/target/bench/bench_target.hpp"
 #include "harness/target/bench/bridge_link.hpp"
 #include "harness/target/bench/serial_links.hpp"
+#include "harness/target/copper_target.hpp"
 #include "harness/target/virtual_board.hpp"
 #include "io_bridges/protocols/esc_codec.hpp"
 
@@ -33,7 +36,7 @@ Result<Done> check_escs(const cli::Setup& setup, const flight::FlightParams& par
   const int motors = static_cast<int>(params.vehicle.airframe.rotors.size());
   std::set<int> driven;
   for (const BoardDevice& device : setup.board.devices) {
-    if (device.type == "esc_i2c") driven.insert(device.motor);
+    if (device.type == "esc_i2c" || device.type == "esc_dronecan") driven.insert(device.motor);
   }
   const auto wrong = [&](const std::string& what) {
     return Error{ErrorKind::bad_input, setup.vehicle_file, what,
@@ -58,6 +61,12 @@ flight::BoardEars ears_of(const BoardDescription& board) {
     });
   };
   return {.radio = has({"mavlink_link"}), .receiver = has({"cppm", "sbus"})};
+}
+
+// A pod's rig is the world around its board: the stand that a plan names stays empty.
+bool brings_its_world(const BoardDescription& board) {
+  return std::any_of(board.devices.begin(), board.devices.end(),
+                     [](const BoardDevice& device) { return device.type == "pod_replay"; });
 }
 
 // What the plan reads of the virtual stand and this bench does not measure is said before anything turns.
@@ -112,8 +121,16 @@ bool enter_pressed() {
   return isatty(STDIN_FILENO) == 1 && poll(&terminal, 1, 0) == 1;
 }
 
+std::unique_ptr<bench::Link> can_link(const cli::Setup& setup, const bench::CanBusLink& link,
+                                      const bench::CanMaker& maker) {
+  bench::CanOptions options{.link = link, .heartbeat_ns = setup.bench->safety.heartbeat_ns};
+  if (!setup.folder.empty()) options.log = setup.folder + "/" + link.name + ".log";
+  return std::make_unique<bench::CanLink>(std::move(options), maker);
+}
+
 Result<std::unique_ptr<Target>> bench_target(const cli::Setup& setup,
-                                             const bench::BridgeMaker& bridge) {
+                                             const bench::BridgeMaker& bridge,
+                                             const bench::CanMaker& can) {
   const auto params = stand_of(setup);
   if (!params) return params.error();
   const bench::BenchDescription& bench = *setup.bench;
@@ -129,6 +146,9 @@ Result<std::unique_ptr<Target>> bench_target(const cli::Setup& setup,
                              .heartbeat_ns = bench.safety.heartbeat_ns},
         std::move(port.value())));
   }
+  for (const bench::CanBusLink& link : bench.cans) {
+    links.push_back(can_link(setup, link, can));
+  }
   for (const bench::SerialLink& link : bench.serials) {
     links.push_back(std::make_unique<bench::BoardSerial>(link));
   }
@@ -137,14 +157,20 @@ Result<std::unique_ptr<Target>> bench_target(const cli::Setup& setup,
     links.push_back(std::make_unique<bench::InstrumentLine>(instrument, port));
     port = static_cast<std::uint16_t>(port + instrument.readings.size());
   }
+  if (bench.analyser) {
+    links.push_back(std::make_unique<bench::AnalyserLink>(
+        "analyser", bench::sigrok_source(*bench.analyser),
+        bench::rts_marker(bench.analyser->marker), copper_names(setup.board)));
+  }
   return std::unique_ptr<Target>(std::make_unique<bench::BenchTarget>(
       bench::BenchOptions{.bench = bench, .operator_stops = enter_pressed}, std::move(links),
       host_clock()));
 }
 
 Result<std::unique_ptr<Target>> make_target(const cli::Setup& setup,
-                                            const bench::BridgeMaker& bridge) {
-  if (setup.bench != nullptr) return bench_target(setup, bridge);
+                                            const bench::BridgeMaker& bridge,
+                                            const bench::CanMaker& can) {
+  if (setup.bench != nullptr) return bench_target(setup, bridge, can);
   VirtualBoardOptions options;
   options.board = {setup.board,
                    {.image = setup.image,
@@ -152,7 +178,7 @@ Result<std::unique_ptr<Target>> make_target(const cli::Setup& setup,
                     .gdb_port = setup.gdb_port,
                     .folder = setup.folder,
                     .node = setup.plan.nodes[setup.node].name}};
-  if (setup.plan.stand && setup.node == 0) {
+  if (setup.plan.stand && setup.node == 0 && !brings_its_world(setup.board)) {
     const auto params = stand_of(setup);
     if (!params) return params.error();
     const auto set =
@@ -160,15 +186,24 @@ Result<std::unique_ptr<Target>> make_target(const cli::Setup& setup,
     if (!set) return set.error();
   }
   options.any_qemu_version = std::getenv("WHIRL_ANY_QEMU") != nullptr;
-  return std::unique_ptr<Target>(std::make_unique<VirtualBoard>(std::move(options)));
+  auto board = std::make_unique<VirtualBoard>(std::move(options));
+  if (setup.copper.empty()) return std::unique_ptr<Target>(std::move(board));
+  return std::unique_ptr<Target>(std::make_unique<CopperTarget>(
+      CopperOptions{setup.copper, setup.copper_rate_Hz, copper_names(setup.board)},
+      std::move(board)));
 }
 
 }  // namespace
 
 cli::Composition boards_and_worlds(const std::string& root, const std::string& results,
-                                   const bench::BridgeMaker& bridge) {
-  return {make_world, [bridge](const cli::Setup& setup) { return make_target(setup, bridge); },
-          root, results, bridge};
+                                   const bench::BridgeMaker& bridge, const bench::CanMaker& can) {
+  return {make_world,
+          [bridge, can](const cli::Setup& setup) { return make_target(setup, bridge, can); },
+          root,
+          results,
+          bridge,
+          can,
+          [root](const cli::StandInRequest& request) { return stand_in_command(request, root); }};
 }
 
 }  // namespace whirl

@@ -77,6 +77,7 @@ class Run {
         lockstep_(parts.world, parts.target),
         acted_(parts.nodes.size()) {
     stage_.folder = parts.folder;
+    stage_.sees = [&parts](const std::string& wires) { return parts.target.sees(wires); };
     results::Report& r = record_.report;
     r.plan = parts.plan.name;
     r.file = parts.plan.file;
@@ -384,7 +385,12 @@ results::RunHead run_head(const plan::Plan& plan, const std::vector<Node>& nodes
   for (const Node& node : nodes) {
     results::NodeHead& named = head.nodes.emplace_back();
     named.name = node.name;
-    for (const BoardDevice& device : node.board.devices) named.devices.push_back(device.name);
+    for (const BoardDevice& device : node.board.devices) {
+      named.devices.push_back(device.name);
+      named.buses.push_back(device.bus);
+      if (device.type == "pulse_source") named.throttles.push_back(device.motor);
+    }
+    named.bauds_Hz = node.board.bauds_Hz();
     for (const BoardPin& pin : node.board.pins) named.pins.push_back(pin.name);
     named.watch = node.board.watch;
   }

@@ -14,6 +14,8 @@ WHIRL_MOTOR_CONTROLLERS(WHIRL_DECLARE)
 #undef WHIRL_DECLARE
 
 const ControllerTypes& controller_types();
+// Pre: one of the types has that name (a vehicle's file is held to it).
+const ControllerType& type_named(const std::string& name, const ControllerTypes& types);
 std::vector<std::string> names_of(const ControllerTypes& types);
 
 }  // namespace whirl::flight

@@ -99,6 +99,12 @@ void FlightWorld::name_motor_signals() {
                [=] { return motor().winding_peak_A; });
     add_signal("bus_current" + n, D::current, "mean over the step",
                [=] { return motor().bus_current_A; });
+    add_signal("flapping_cone" + n, D::angle, "mean of a turn, the tips up",
+               [=] { return motor().coning_rad; });
+    add_signal("flapping_back" + n, D::angle, "the disc's tilt: up ahead, down behind",
+               [=] { return motor().flap_back_rad; });
+    add_signal("flapping_left" + n, D::angle, "the disc's tilt: up on the right, down on the left",
+               [=] { return motor().flap_left_rad; });
     const MotorController& controller = *controllers_[i];
     add_signal("esc_armed" + n, D::none, "",
                [&controller] { return controller.armed() ? 1.0 : 0.0; });

@@ -41,13 +41,10 @@ FlightWorld::FlightWorld(const FlightParams& params, plant::RotorSet rotors, std
       seed_(seed),
       capture_(params.capture, seed),
       drag_truth_(params.vehicle.airframe) {
-  const auto type = std::find_if(types.begin(), types.end(), [&](const ControllerType& t) {
-    return t.name == params.controller;
-  });
-  WHIRL_CHECK(type != types.end(), params.controller);
+  const ControllerType& type = type_named(params.controller, types);
   const int motors = static_cast<int>(params.vehicle.airframe.rotors.size());
   for (int motor = 1; motor <= motors; ++motor) {
-    controllers_.push_back(type->make(params, seed, motor));
+    controllers_.push_back(type.make(params, seed, motor));
     unbalance_m_.push_back(
         params.vehicle.airframe.rotors[static_cast<std::size_t>(motor) - 1].unbalance_kgm /
         params.vehicle.airframe.mass_kg);

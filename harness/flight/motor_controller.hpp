@@ -40,6 +40,9 @@ class MotorController {
 
 struct ControllerType {
   std::string name;  // in a vehicle's file: esc = { controller = "..." }
+  // What carries the current between the pulses of a motor that it turns: who asks what a vehicle
+  // draws without flying it (harness/sweep) takes it from here.
+  plant::Freewheel freewheel;
   // For the motor of that number, 1 to plant::kMostMotors.
   std::unique_ptr<MotorController> (*make)(const FlightParams& params, std::uint64_t seed,
                                            int number);

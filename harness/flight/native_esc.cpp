@@ -22,6 +22,8 @@ constexpr double kVolts_per_count = 3.3 / 4096.0 * 11.5 / 1.5;
 constexpr double kAmperes_per_count = 3.3 / 4096.0 / (0.5e-3 * 50.9);
 constexpr int kSamples = 20;          // per tick: one in each PWM period
 constexpr double kPwm_counts = 3600;  // 72 MHz / 20 kHz
+// Of a motor that it turns: the image's bridge switches the upper transistor alone.
+constexpr plant::Freewheel kFreewheel = plant::Freewheel::diode;
 
 double converted(double volts_or_amperes, double per_count) {
   return std::clamp(std::floor(volts_or_amperes / per_count), 0.0, 4095.0) * per_count;
@@ -111,7 +113,7 @@ plant::MotorCommand NativeEsc::step(std::int64_t now_ns, const plant::MotorState
   if (phase_ == Phase::aligning && backward_) return {0.0, plant::Freewheel::synchronous};
   if (phase_ != Phase::turning) return {};
   const double duty = std::clamp(static_cast<double>(drive.duty), 0.0, 1.0);
-  return {std::floor(duty * kPwm_counts) / kPwm_counts, plant::Freewheel::diode};
+  return {std::floor(duty * kPwm_counts) / kPwm_counts, kFreewheel};
 }
 
 io::EscState NativeEsc::status() const {
@@ -129,7 +131,7 @@ std::vector<MotorController::NamedValue> NativeEsc::signals() const {
 }
 
 ControllerType native_esc_type() {
-  return {"esc_core",
+  return {"esc_core", kFreewheel,
           [](const FlightParams& params, std::uint64_t seed,
              int number) -> std::unique_ptr<MotorController> {
             return std::make_unique<NativeEsc>(params.esc, seed, number);

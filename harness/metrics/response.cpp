@@ -135,12 +135,12 @@ double rms_about(const Record& record, double reference) {
 
 double quantile(std::span<const double> values, double p) {
   if (values.empty() || has_nan(values) || !(p >= 0.0 && p <= 1.0)) return kNaN;
-  std::vector<double> sorted(values.begin(), values.end());
-  std::sort(sorted.begin(), sorted.end());
-  const double at = p * static_cast<double>(sorted.size() - 1);
-  const auto low = static_cast<std::size_t>(at);
-  const std::size_t high = std::min(low + 1, sorted.size() - 1);
-  return sorted[low] + (at - static_cast<double>(low)) * (sorted[high] - sorted[low]);
+  std::vector<double> parted(values.begin(), values.end());
+  const double at = p * static_cast<double>(parted.size() - 1);
+  const auto low = parted.begin() + static_cast<std::ptrdiff_t>(at);
+  std::nth_element(parted.begin(), low, parted.end());
+  const auto above = low + 1 == parted.end() ? low : std::min_element(low + 1, parted.end());
+  return *low + (at - std::floor(at)) * (*above - *low);
 }
 
 }  // namespace whirl::metrics

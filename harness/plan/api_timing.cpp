@@ -6,56 +6,13 @@
 #include "harness/metrics/timing.hpp"
 #include "harness/plan/budget_shares.hpp"
 #include "harness/plan/budget_stack.hpp"
-#include "harness/plan/needs.hpp"
 #include "harness/plan/raise.hpp"
+#include "harness/plan/timing_window.hpp"
 #include "harness/plan/values.hpp"
 #include "io_bridges/board_description/bus_name.hpp"
 
 namespace whirl::plan {
 namespace {
-
-double seconds(std::int64_t ns) {
-  return static_cast<double>(ns) * 1e-9;
-}
-
-std::string in_text(double x_s, const std::string& unit) {
-  if (std::abs(x_s) < 1e-12) x_s = 0.0;  // times are whole nanoseconds
-  char text[48];
-  std::snprintf(text, sizeof text, "%.4g %s", in_unit(x_s, unit), unit.c_str());
-  return text;
-}
-
-std::string spread(const metrics::Distribution& d, const std::string& unit) {
-  if (d.count == 0) return "nothing to measure";
-  if (std::isnan(d.max)) return "not known of each of " + std::to_string(d.count) + " values";
-  return "p50 " + in_text(d.p50, unit) + ", p99 " + in_text(d.p99, unit) + ", " +
-         std::to_string(d.count) + " values";
-}
-
-std::optional<Limit> optional_limit(const lua::Table& given, const char* key, Dimension dimension) {
-  if (!given.has(key)) return std::nullopt;
-  const double value = given.quantity(key, dimension, lua::at_least(0.0));
-  return Limit{value, unit_symbol(given.text(key))};
-}
-
-std::int64_t window_end(Script& self, const lua::Table& given) {
-  constexpr std::size_t kMost_windows = 1'000;
-  if (self.windows() >= kMost_windows) given.refuse("during", "more than 1000 budgets");
-  return given.has("during") ? self.stage().now_ns + given.duration_ns("during") : kForever;
-}
-
-// The period of what happens at `times` in [from, to]: with its deviation from nominal. The edges
-// count too: a thing that stopped, or never began, has a gap there.
-std::vector<double> deviations(std::span<const std::int64_t> times, std::int64_t from,
-                               std::int64_t to, double nominal_s) {
-  std::vector<double> all = metrics::deviations_s(metrics::periods_s(times), nominal_s);
-  const double head = seconds((times.empty() ? to : times.front()) - from);
-  const double tail = seconds(to - (times.empty() ? from : times.back()));
-  for (double gap : {head, tail}) {
-    if (gap > nominal_s) all.push_back(gap - nominal_s);
-  }
-  return all;
-}
 
 struct Budget {
   std::string function, place;
@@ -78,13 +35,6 @@ std::string margin_note(const Budget& b, const Limit& limit) {
   return text;
 }
 
-void judge_spread(Script& self, std::span<const double> values, const Limit& limit,
-                  const std::string& name, const std::string& place, std::int64_t to_ns) {
-  const auto d = metrics::distribution(values);
-  self.judge_in_window({d.max, Dimension::time, name}, Script::Figure::extreme, limit, place,
-                       seconds(to_ns), spread(d, limit.unit));
-}
-
 // What code takes is as accurate as the clock that its cycles are counted on.
 void judge_code_time(Script& self, std::span<const double> values, const Budget& b,
                      const Limit& limit, const std::string& what, std::int64_t to_ns) {
@@ -96,26 +46,12 @@ void judge_code_time(Script& self, std::span<const double> values, const Budget&
                        self.stage().nodes[b.node].board.timing_accuracy());
 }
 
-NodePlace node_at(lua_State* L, Script& self, const std::string& text) {
-  const auto place = node_place(self.stage().nodes, text);
-  if (!place) raise(L, place.error().what, place.error().cure);
-  return place.value();
-}
-
 // Of one trace: all of it is on one board, so that its node's name need be given once only.
 std::string on_node(lua_State* L, Script& self, std::size_t node, const std::string& text) {
   if (text.find('/') == std::string::npos) return text;
   const NodePlace at = node_at(L, self, text);
   if (at.node != node) raise(L, "'" + text + "' is on another board", "a latency is of one board");
   return at.rest;
-}
-
-// Also for calls that stand where no text shows them: in a function of another file.
-void must_offer(lua_State* L, Script& self, const std::string& call) {
-  for (const Offer offer : needs_of_call(call)) {
-    if (self.stage().offers.has(offer)) continue;
-    raise(L, not_offered("t:" + call, offer));
-  }
 }
 
 void judge_calls(Script& self, const Budget& b, std::int64_t from, std::int64_t to) {
@@ -212,6 +148,16 @@ int budget(lua_State* L) {
   return 1;
 }
 
+// A frame that an analyser saw and could not read may be the one that a figure misses.
+bool unread_between(const results::EventLog& log, bool spi, int bus, std::int64_t from,
+                    std::int64_t to) {
+  return std::any_of(log.unread.begin(), log.unread.end(), [&](const results::UnreadRecord& u) {
+    return u.spi == spi && u.bus == bus && u.stop_ns >= from && u.start_ns <= to;
+  });
+}
+
+constexpr const char* kUnread = "frames on this bus could not be read";
+
 struct BusWindow {
   std::string name, place;
   bool spi = false, any_direction = true, read = false;
@@ -233,13 +179,18 @@ void judge_bus(Script& self, const BusWindow& w, std::int64_t from, std::int64_t
     starts.push_back(r.start_ns);
     refused += r.acked ? 0 : 1;
   }
+  auto figure = Script::Figure::extreme;
+  if (unread_between(self.stage().logs[w.node], w.spi, w.bus, from, to)) {
+    self.not_seen_whole(kUnread);
+    figure = Script::Figure::of_all;
+  }
   if (w.period) {
     judge_spread(self, deviations(starts, from, to, w.period->value_SI), *w.tolerance,
-                 w.name + " period deviation", w.place, to);
+                 w.name + " period deviation", w.place, to, figure);
   }
   if (w.spi) return;  // SPI has no acknowledge
   const double count = starts.empty() ? std::nan("") : static_cast<double>(refused);
-  self.judge_in_window({count, Dimension::none, w.name + " NACKs"}, Script::Figure::extreme,
+  self.judge_in_window({count, Dimension::none, w.name + " NACKs"}, figure,
                        Limit{static_cast<double>(w.nacks), ""}, w.place, seconds(to),
                        std::to_string(starts.size()) + " transactions");
 }
@@ -250,12 +201,51 @@ int numbered_bus(lua_State* L, const BoardDevice& device) {
   return *number;
 }
 
+// t:bus { pin = "throttle", period = "20 ms", tolerance = "50 us", high = "1.5 ms" }: from rise to rise, and how long
+// it is high.
+int pin_window(lua_State* L, Script& self, const lua::Table& given) {
+  const std::string name = given.text("pin");
+  const NodePlace at = node_at(L, self, name);
+  const BoardDescription& board = self.stage().nodes[at.node].board;
+  const auto pin = std::find_if(board.pins.begin(), board.pins.end(),
+                                [&](const BoardPin& p) { return p.name == at.rest; });
+  if (pin == board.pins.end())
+    raise(L, "'" + at.rest + "' is no pin that " + board.name + " names");
+  must_see(L, self, "pin_" + at.rest);
+  const auto number = static_cast<std::uint16_t>(pin - board.pins.begin());
+  const auto period = optional_limit(given, "period", Dimension::time);
+  const auto tolerance = optional_limit(given, "tolerance", Dimension::time);
+  const auto high = optional_limit(given, "high", Dimension::time);
+  const std::int64_t end = window_end(self, given);
+  check_finish(L, given);
+  if (!period || !tolerance) raise(L, "a pin is judged by its period and tolerance");
+  const std::string place = place_of(L);
+  self.add_window(end, [=](Script& script, std::int64_t from, std::int64_t to) {
+    const auto& pulses = script.stage().logs[at.node].pulses;
+    std::vector<std::int64_t> rises;
+    std::vector<double> off;
+    if (const auto found = pulses.find(number); found != pulses.end()) {
+      for (const results::PulseRecord& pulse : found->second) {
+        if (pulse.rise_ns < from || pulse.rise_ns > to) continue;
+        rises.push_back(pulse.rise_ns);
+        if (!high || pulse.fall_ns < 0 || pulse.fall_ns > to) continue;
+        off.push_back(std::abs(seconds(pulse.fall_ns - pulse.rise_ns) - high->value_SI));
+      }
+    }
+    judge_spread(script, deviations(rises, from, to, period->value_SI), *tolerance,
+                 name + " period deviation", place, to);
+    if (high) judge_spread(script, off, *tolerance, name + " width deviation", place, to);
+  });
+  return 0;
+}
+
 // t:bus { device = "esc1", direction = "write", period = "20 ms", tolerance = "0.5 ms" }
 // bytes = n judges the transactions of that length only: a driver may check a register in between.
 int bus(lua_State* L) {
   Script& self = Script::of(L);
   must_offer(L, self, "bus");
   const lua::Table given = check_table(L, 2);
+  if (given.has("pin")) return pin_window(L, self, given);
   const std::string name = given.text("device");
   const NodePlace at = node_at(L, self, name);
   const BoardDescription& board = self.stage().nodes[at.node].board;
@@ -267,8 +257,10 @@ int bus(lua_State* L) {
   w.place = place_of(L);
   w.spi = device->bus.starts_with("spi");
   if (!w.spi && !device->bus.starts_with("i2c"))
-    raise(L, name + " is on " + device->bus + ", not I2C or SPI");
+    raise(L, name + " is on " + device->bus + ", not I2C or SPI",
+          "frames on CAN are judged by t:can");
   w.bus = numbered_bus(L, *device);
+  must_see(L, self, device->bus);
   w.address = w.spi ? board.number(at.rest) : device->address;
   if (!w.spi && w.address < 0) raise(L, name + " has no address on its bus: nobody calls it");
   for (const char* key : {"direction", "nacks"}) {
@@ -297,7 +289,9 @@ int bus(lua_State* L) {
 }
 
 struct Actuator {
+  bool can = false;  // reached by the microcontroller's esc.RawCommand
   int bus = 0, address = 0;
+  bool operator==(const Actuator&) const = default;
 };
 
 struct LatencyWindow {
@@ -309,9 +303,17 @@ struct LatencyWindow {
   Limit limit;
 };
 
+constexpr std::uint32_t kRawCommand = 1030;  // esc.RawCommand of DroneCAN: one frame for all
+
 std::vector<metrics::Span> writes_to(const results::EventLog& log, const Actuator& actuator,
                                      std::int64_t from, std::int64_t to) {
   std::vector<metrics::Span> writes;
+  for (const auto& r : log.can) {
+    const bool command = actuator.can && r.good && r.sender < 0 && r.is_message(kRawCommand);
+    if (!command || r.bus != actuator.bus || r.start_ns < from || r.end_ns > to) continue;
+    writes.push_back({r.start_ns, r.end_ns});
+  }
+  if (actuator.can) return writes;
   for (const auto& r : log.bus) {
     if (r.spi || r.read || r.bus != actuator.bus || r.address != actuator.address) continue;
     if (r.start_ns >= from && r.stop_ns <= to) writes.push_back({r.start_ns, r.stop_ns});
@@ -341,11 +343,17 @@ void judge_latency(Script& self, const LatencyWindow& w, std::int64_t from, std:
   const auto d = metrics::distribution(histogram.samples);
   // A write that cannot be traced has no known latency: that is not a pass.
   const double worst = untraced > 0 ? std::nan("") : d.max;
+  auto figure = Script::Figure::extreme;
+  for (const Actuator& actuator : w.actuators) {
+    if (!unread_between(events, false, actuator.bus, from, to)) continue;
+    self.not_seen_whole(kUnread);
+    figure = Script::Figure::of_all;
+  }
   std::string note = spread(d, w.limit.unit);
   if (untraced > 0)
     note += "; " + std::to_string(untraced) + " writes cannot be traced to a sample";
-  self.judge_in_window({worst, Dimension::time, w.name}, Script::Figure::extreme, w.limit, w.place,
-                       seconds(to), note);
+  self.judge_in_window({worst, Dimension::time, w.name}, figure, w.limit, w.place, seconds(to),
+                       note);
   self.stage().report.histograms.push_back(std::move(histogram));
 }
 
@@ -370,10 +378,13 @@ int latency(lua_State* L) {
   }
   for (const BoardDevice& device : board.devices) {
     const bool meant = device.name == to || (to == "esc" && device.motor > 0);
-    if (!meant || !device.bus.starts_with("i2c")) continue;
-    w.actuators.push_back({numbered_bus(L, device), device.address});
+    const bool can = device.bus.starts_with("can");
+    if (!meant || (!can && !device.bus.starts_with("i2c"))) continue;
+    const Actuator actuator{can, numbered_bus(L, device), can ? 0 : device.address};
+    if (std::find(w.actuators.begin(), w.actuators.end(), actuator) != w.actuators.end()) continue;
+    w.actuators.push_back(actuator);
   }
-  if (w.actuators.empty()) raise(L, "no I2C device '" + to + "' on " + board.name);
+  if (w.actuators.empty()) raise(L, "no device '" + to + "' on I2C or CAN of " + board.name);
   w.limit.value_SI = given.quantity("at_most", Dimension::time, lua::above(0.0));
   w.limit.unit = unit_symbol(given.text("at_most"));
   const std::int64_t end = window_end(self, given);

@@ -4,7 +4,7 @@ namespace whirl::plan {
 
 std::vector<Offer> needs_of_call(const std::string& call) {
   if (call == "budget") return {Offer::watches};
-  if (call == "bus") return {Offer::bus_log};
+  if (call == "bus" || call == "can") return {Offer::bus_log};
   if (call == "latency") return {Offer::watches, Offer::bus_log};
   return {};
 }

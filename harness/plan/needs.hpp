@@ -16,7 +16,7 @@ struct Need {
   std::string what, place;  // "t:budget", "hover.lua:31"
 };
 
-// What a call of this name asks: budget, bus, latency, fault. Of a fault only the plan's run shows whether
+// What a call of this name asks: budget, bus, can, latency, fault. Of a fault only the plan's run shows whether
 // it is on a wire, or the world's own.
 std::vector<Offer> needs_of_call(const std::string& call);
 // By its keys and by the calls in its function's text.

@@ -47,6 +47,7 @@ void push_t(lua_State* L) {
   add_record_calls(L);
   add_expect_calls(L);
   add_timing_calls(L);
+  add_can_calls(L);
   add_action_calls(L);
   add_text_calls(L);
   add_log_calls(L);

@@ -41,6 +41,7 @@ struct Stage {
   std::function<Result<Done>(const FaultSpec&)> inject;  // into the board
   std::int64_t now_ns = 0;
   std::string folder = {};  // of the run, where its parts leave files; empty: none
+  std::function<bool(const std::string&)> sees = {};  // Target::sees; empty: all
 };
 
 // Of a card, as it was when the plan looked.
@@ -138,6 +139,10 @@ class Script {
                        const std::string& place, double t_s, const std::string& note,
                        double accuracy = 0.0);
   void add(results::Expectation expectation);  // makes its name unique
+  // Of the window that is being judged: something in it was not seen, why. A figure over it shows nothing then.
+  void not_seen_whole(const std::string& why) {
+    if (unfilled_.empty()) unfilled_ = why;
+  }
   // The plan has taken in something of the run: a signal, an answer, a window.
   void look() { looked_ = true; }
   // It has done something: what is told from now on may be the answer.
@@ -204,6 +209,7 @@ void add_time_calls(lua_State* L);
 void add_record_calls(lua_State* L);
 void add_expect_calls(lua_State* L);
 void add_timing_calls(lua_State* L);
+void add_can_calls(lua_State* L);
 void add_action_calls(lua_State* L);
 void add_text_calls(lua_State* L);
 void add_log_calls(lua_State* L);

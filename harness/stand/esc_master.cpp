@@ -40,20 +40,26 @@ Throttle::Raw raw_of(const request::RawTransfer& wanted) {
 EscMaster::EscMaster(const EscMasterParams& params)
     : params_(params),
       throttle_(params.address, params.i2c),
+      can_(params.motor, params.can),
       pulses_(params.motor),
       line_(params.serial) {
   if (params_.pulse_rate_Hz > 0.0) throttle_.never_write();
 }
 
+void EscMaster::set(std::uint16_t v) {
+  throttle_.set(v);
+  can_.set(v);
+}
+
 Result<bool> EscMaster::take(const Command& command) {
   return std::visit(
       Match{[this](const request::SetPoint& c) { return set(c); },
-            [this](const request::Stop&) -> Result<bool> { return throttle_.set(0), true; },
+            [this](const request::Stop&) -> Result<bool> { return set(std::uint16_t{0}), true; },
             [this](const request::Silence& c) -> Result<bool> {
-              return throttle_.silence(c.silent), true;
+              return throttle_.silence(c.silent), can_.silence(c.silent), true;
             },
             [this](const request::SetPointRate& c) -> Result<bool> {
-              return throttle_.set_rate(c.rate_Hz), true;
+              return throttle_.set_rate(c.rate_Hz), can_.set_rate(c.rate_Hz), true;
             },
             [this](const request::RawTransfer& c) -> Result<bool> {
               return throttle_.send_raw(raw_of(c)), true;
@@ -68,7 +74,7 @@ Result<bool> EscMaster::set(const request::SetPoint& command) {
   for (const Scale& scale : kScales) {
     if (scale.kind != command.kind) continue;
     if (std::find(scale.modes.begin(), scale.modes.end(), params_.mode) == scale.modes.end()) break;
-    throttle_.set(io::setpoint_of_value(params_.mode, command.value_SI * scale.to_unit));
+    set(io::setpoint_of_value(params_.mode, command.value_SI * scale.to_unit));
     return true;
   }
   return refusal(word(command), "the stand's mode is another one", "stand = { mode = ... }");
@@ -76,11 +82,12 @@ Result<bool> EscMaster::set(const request::SetPoint& command) {
 
 void EscMaster::on_message(const io::Reader& message) {
   if (message.header().kind == io::Kind::i2c_reply) throttle_.on_message(message);
+  if (on_can() && message.header().kind == io::Kind::can_transfer) can_.on_message(message);
   if (message.header().kind == io::Kind::uart_received) line_.on_message(message);
 }
 
 void EscMaster::send(std::int64_t t_ns, io::Batch& sensed) {
-  throttle_.send(t_ns, sensed);
+  on_can() ? can_.send(t_ns, sensed) : throttle_.send(t_ns, sensed);
   if (params_.pulse_rate_Hz > 0.0) {
     pulses_.follow(throttle_.value(), throttle_.silent(), params_.pulse_rate_Hz);
   }
@@ -97,13 +104,13 @@ std::vector<EscLine::Named> EscMaster::signals() const {
   };
   add("setpoint", D::none, "0..2047, as commanded",
       [this] { return static_cast<double>(throttle_.value()); });
-  add("told_current", D::current, "by the ESC over I2C",
-      [this] { return throttle_.reported().current_A; });
-  add("told_speed", D::angular_rate, "by the ESC over I2C",
-      [this] { return radps_of(throttle_.reported().speed_rpm); });
-  add("esc_flags", D::none, "status byte", [this] { return throttle_.reported().flags; });
+  add("told_current", D::current, "by the ESC over its bus",
+      [this] { return reported().current_A; });
+  add("told_speed", D::angular_rate, "by the ESC over its bus",
+      [this] { return radps_of(reported().speed_rpm); });
+  add("esc_flags", D::none, "status byte", [this] { return reported().flags; });
   add("armed", D::none, "1: the ESC says so", [this] {
-    const double flags = throttle_.reported().flags;
+    const double flags = reported().flags;
     return std::isnan(flags) ? 0.0 : static_cast<double>(static_cast<int>(flags) & 1);
   });
   add("i2c_refused", D::none, "orders without a good answer",

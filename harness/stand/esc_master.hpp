@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "harness/stand/can_throttle.hpp"
 #include "harness/stand/esc_line.hpp"
 #include "harness/stand/pulse_output.hpp"
 #include "harness/stand/throttle.hpp"
@@ -21,6 +22,7 @@ struct EscMasterParams {
   std::uint8_t address = 0x29;
   double pulse_rate_Hz = 0.0;  // of the throttle's pulses; 0: it writes over I2C
   std::uint16_t i2c = 2, serial = 1, motor = 1;
+  std::uint16_t can = 0;  // the bus on which it speaks DroneCAN; 0: none
 };
 
 class EscMaster {
@@ -34,18 +36,23 @@ class EscMaster {
   Result<Done> ask(const std::string& line) { return line_.ask(line); }
   const std::vector<std::string>& heard() const { return line_.heard(); }
   std::int64_t on_wire_ns() const {
-    return throttle_.on_wire_ns();
+    return on_can() ? can_.on_wire_ns() : throttle_.on_wire_ns();
   }  // of the last set-point; -1: not yet
-  const Throttle::Reported& reported() const { return throttle_.reported(); }
+  const Throttle::Reported& reported() const {
+    return on_can() ? can_.reported() : throttle_.reported();
+  }
 
   // What is commanded and told. They live as long as this does.
   std::vector<EscLine::Named> signals() const;
 
  private:
   Result<bool> set(const request::SetPoint& command);
+  bool on_can() const { return params_.can > 0; }
+  void set(std::uint16_t v);
 
   EscMasterParams params_;
   Throttle throttle_;
+  CanThrottle can_;
   PulseOutput pulses_;
   EscLine line_;
 };

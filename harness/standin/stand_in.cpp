@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "base/check.hpp"
+#include "io_bridges/messages/can_message.hpp"
 
 namespace whirl {
 
@@ -30,6 +31,10 @@ Result<Done> StandIn::run() {
       if (ending_) break;
     }
     take_in();
+    if (const auto taken = take_in_can(lockstep_.now_ns()); !taken) {
+      error = taken.error();
+      break;
+    }
     const auto state = lockstep_.step();
     hand_out();
     if (!state) error = state.error();
@@ -73,9 +78,35 @@ void StandIn::take_in() {
 void StandIn::hand_out() {
   for (io::Reader r(lockstep_.happened().bytes()); r.next();) {
     if (r.header().kind == io::Kind::i2c_reply) answer(r);
+    if (r.header().kind == io::Kind::can_transfer) hand_out_can(r);
     if (r.header().kind != io::Kind::uart_received || r.header().port != options_.uart) continue;
     if (options_.serial) options_.serial->write(r.payload());
   }
+}
+
+// Of the interface: frames in, for this step, and what could not go out before.
+Result<Done> StandIn::take_in_can(std::int64_t now_ns) {
+  if (!options_.can) return Done{};
+  for (; !to_can_.empty(); to_can_.pop_front()) {
+    const auto sent = options_.can->send(to_can_.front());
+    if (!sent) return sent.error();
+    if (!sent.value()) break;
+  }
+  for (;;) {
+    const auto got = options_.can->receive();
+    if (!got) return got.error();
+    if (!got.value()) return Done{};
+    if (got.value()->own || got.value()->trouble) continue;
+    lockstep_.to_send().add(io::Kind::can_order, options_.can_bus, now_ns,
+                            io::to_message(got.value()->frame));
+  }
+}
+
+void StandIn::hand_out_can(const io::Reader& passed) {
+  const auto record = passed.as<io::CanRecord>();
+  const bool of_the_board = record.sender == -1 && record.error == 0;
+  if (!options_.can || !of_the_board || passed.header().port != options_.can_bus) return;
+  to_can_.push_back(io::frame_of(record.frame));
 }
 
 void StandIn::answer(const io::Reader& reply) {
@@ -107,15 +138,31 @@ void StandIn::tell() {
 }
 
 Result<bench::TransferOutcome> StandIn::transfer(const bench::Transfer& transfer) {
+  const std::uint32_t number = begin(transfer);
   std::unique_lock lock(mutex_);
-  const std::uint32_t number = number_++;
-  open_[number] = {transfer, std::nullopt};
-  fresh_.push_back(number);
   changed_.wait(lock, [&] { return ended_ || open_.at(number).outcome.has_value(); });
   auto outcome = std::move(open_.at(number).outcome);
   open_.erase(number);
   if (outcome) return std::move(*outcome);
   return Error{ErrorKind::host, "stand-in", "the board has ended", ""};
+}
+
+std::uint32_t StandIn::begin(const bench::Transfer& transfer) {
+  const std::scoped_lock lock(mutex_);
+  const std::uint32_t number = number_++;
+  open_[number] = {transfer, std::nullopt};
+  fresh_.push_back(number);
+  return number;
+}
+
+std::optional<bench::TransferOutcome> StandIn::outcome(std::uint32_t number) {
+  const std::scoped_lock lock(mutex_);
+  const auto it = open_.find(number);
+  if (it == open_.end() || (!it->second.outcome && !ended_)) return std::nullopt;
+  bench::TransferOutcome outcome;  // of a board that has ended: nobody answered
+  if (it->second.outcome) outcome = std::move(*it->second.outcome);
+  open_.erase(it);
+  return outcome;
 }
 
 }  // namespace whirl

@@ -1,5 +1,7 @@
 // A virtual board that behaves as one of metal: time does not wait for who is at its wires.
 //
+//   CAN     frames of an interface of this host go onto the board's bus, and what the board sends comes out there, by
+//           the board's can_port
 //   Wires   its serial line on a pseudo-terminal, its I2C slave by transfers that wait for their answer, what a load
 //           cell and meters would say as lines of text on another pseudo-terminal
 //   Pace    of the host's clock, as a pacer holds it; a host that is late is told of in lateness()
@@ -7,6 +9,7 @@
 //   Left out  the wire's own noise; a USB bridge's time, which is its model's
 #pragma once
 #include <condition_variable>
+#include <deque>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -18,6 +21,7 @@
 #include "harness/pacing/pacer.hpp"
 #include "harness/target/bench/bridge_link.hpp"
 #include "io_bridges/serial/pseudo_terminal.hpp"
+#include "io_bridges/socketcan/can_port.hpp"
 
 namespace whirl {
 
@@ -26,6 +30,8 @@ struct StandInOptions {
   std::uint16_t uart = 1, i2c = 2;
   std::optional<io::PseudoTerminal> serial;  // none: nobody is at the line
   std::optional<io::PseudoTerminal> instruments;
+  std::uint16_t can_bus = 1;
+  std::unique_ptr<io::CanPort> can = {};   // none: nobody is on its bus
   std::vector<std::string> told;           // signals of the world, in the order of a line, in SI
   std::int64_t told_every_ns = 2'000'000;  // of virtual time, whole milliseconds
 };
@@ -41,6 +47,10 @@ class StandIn {
   // Over the board's I2C, as a master on its bus would: waits until it has ended, some milliseconds of virtual
   // time. Errors  host: the board has ended
   Result<bench::TransferOutcome> transfer(const bench::Transfer& transfer);
+  // The same without waiting: outcome() is nothing until it is there, and gives it once; a board that has ended answers
+  // nothing any more: not acknowledged.
+  std::uint32_t begin(const bench::Transfer& transfer);
+  std::optional<bench::TransferOutcome> outcome(std::uint32_t number);
 
   const pacing::Lateness& lateness() const { return pacer_.lateness(); }
 
@@ -50,6 +60,8 @@ class StandIn {
     std::optional<bench::TransferOutcome> outcome;
   };
   void take_in();
+  Result<Done> take_in_can(std::int64_t now_ns);
+  void hand_out_can(const io::Reader& passed);
   void hand_out();
   void tell();
   void answer(const io::Reader& reply);
@@ -59,6 +71,7 @@ class StandIn {
   pacing::Pacer pacer_;
   StandInOptions options_;
   std::vector<std::size_t> columns_;  // of options_.told
+  std::deque<io::CanFrame> to_can_;   // the interface's queue was full
   std::mutex mutex_;
   std::condition_variable changed_;
   std::map<std::uint32_t, Waiting> open_;

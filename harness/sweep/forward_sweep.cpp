@@ -198,10 +198,8 @@ ForwardSweep forward_sweep(const std::shared_ptr<const plant::Blade>& blade,
   add_over_J(teller, measured, speed_radps, sweep);
   add_over_speed(teller, measured, top, sweep);
   if (fit) {
-    for (const std::string& line : fit_lines(*fit)) {
-      Chart& first = sweep.charts.front();
-      first.note += (first.note.empty() ? "" : "\n") + line;
-    }
+    std::string& note = sweep.charts.front().note;
+    for (const std::string& doubt : fit->doubts) note += (note.empty() ? "" : "; ") + doubt;
   }
   return sweep;
 }

@@ -3,7 +3,13 @@
 //
 //   Propeller  over speed (static), axial inflow, advance ratio: thrust, torque, power, figure of merit
 //   Vehicle    the same, and over motor voltage: speed, thrust, currents; and its hover point
-//   Model      the plant's own rotor and motor, run until they are steady; standard air at sea level
+//   Model      the plant's own rotor and motor, run until they are steady; standard air at sea level.
+//              Between pulses the current goes where the vehicle's motor controllers let it in flight
+//              (ControllerType::freewheel)
+//   Hover      the bus carries all motors and the avionics; the pack has rested, its relaxation is not
+//              in the voltage, but is in the time to empty
+//   Error      hover's current against the same ESCs in flight within 1 % (tests/sweep_test.cpp)
+//   Left out   in the time to empty: climbs, gusts, a reserve, a firmware that lands before
 #pragma once
 #include <memory>
 #include <vector>
@@ -26,7 +32,7 @@ std::vector<results::Chart> propeller_sweep(const std::shared_ptr<const plant::B
 std::vector<results::Chart> vehicle_sweep(const flight::FlightParams& vehicle,
                                           const Options& options);
 
-// One point of a vehicle's drive: motor and propeller at a constant mean voltage of the motor.
+// One point of a vehicle's drive: motor and propeller at a constant mean voltage of the bridge.
 struct DrivePoint {
   double voltage_V = 0, speed_radps = 0, thrust_N = 0, torque_Nm = 0;
   double winding_A = 0, bus_A = 0, shaft_W = 0, electrical_W = 0;
@@ -36,5 +42,13 @@ DrivePoint drive_point(const flight::FlightParams& vehicle, double voltage_V, do
 // The voltage at which it lifts thrust_N, by bisection; an Error where no voltage up to bus_V does.
 Result<DrivePoint> drive_for_thrust(const flight::FlightParams& vehicle, double thrust_N,
                                     double bus_V);
+
+struct HoverPoint {
+  DrivePoint each;  // motor
+  double bus_V = 0.0, total_A = 0.0;
+  double until_empty_s = 0.0;  // from full
+};
+// bus_V: 0 for the full pack's under that load, or what a supply holds.
+Result<HoverPoint> hover_point(const flight::FlightParams& vehicle, double bus_V);
 
 }  // namespace whirl::sweep

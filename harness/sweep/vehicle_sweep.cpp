@@ -1,7 +1,9 @@
 #include <cmath>
 
 #include "base/rpm.hpp"
+#include "harness/flight/controllers.hpp"
 #include "harness/sweep/sweep.hpp"
+#include "plant/battery/battery.hpp"
 #include "plant/motor/averaged_motor.hpp"
 #include "plant/rotor/rotor.hpp"
 
@@ -47,52 +49,61 @@ Chart hover_chart(const flight::FlightParams& vehicle, const std::vector<DrivePo
                   double bus_V) {
   Chart chart = over_voltage(points, "Efficiency", "thrust per electrical power / (N/W)",
                              [](const DrivePoint& p) { return p.thrust_N / p.electrical_W; });
-  const double weight_N = vehicle.vehicle.airframe.mass_kg * kGravity_mps2;
-  const auto motors = static_cast<double>(vehicle.vehicle.airframe.rotors.size());
-  const auto found = drive_for_thrust(vehicle, weight_N / motors, bus_V);
+  const auto found = hover_point(vehicle, bus_V);
   if (!found) {
     chart.note = found.error().message();
     return chart;
   }
-  const DrivePoint& hover = found.value();
-  const double total_A = motors * hover.bus_A + vehicle.vehicle.avionics_current_A;
+  const DrivePoint& hover = found.value().each;
   const auto report = [&](const char* name, double x, const char* unit) {
     chart.figures.push_back({name, x, std::numeric_limits<double>::infinity(), unit, true});
   };
   report("hover: thrust of each motor", hover.thrust_N, "N");
   report("hover: speed", rpm_of(hover.speed_radps), "rpm");
+  report("hover: bus voltage", found.value().bus_V, "V");
   report("hover: motor voltage", hover.voltage_V, "V");
   report("hover: winding current", hover.winding_A, "A");
   report("hover: bus current of each motor", hover.bus_A, "A");
   report("hover: shaft torque", hover.torque_Nm, "N m");
-  report("hover: from the pack, all of it", total_A, "A");
-  report("hover: time until the pack is empty", vehicle.vehicle.battery.capacity_C / total_A / 60.0,
-         "min");
+  report("hover: from the pack, all of it", found.value().total_A, "A");
+  report("hover: time until the pack is empty", found.value().until_empty_s / 60.0, "min");
   return chart;
 }
 
-}  // namespace
+plant::Drive drive_of(const flight::FlightParams& vehicle, double voltage_V, double bus_V) {
+  const auto& type = flight::type_named(vehicle.controller, flight::controller_types());
+  return {.bus_V = bus_V,
+          .duty = voltage_V / bus_V,
+          .diode = type.freewheel == plant::Freewheel::diode};
+}
 
-// The motor turns from rest at constant duty until nothing changes; the air's torque follows its
-// speed in pieces of 10 ms.
-DrivePoint drive_point(const flight::FlightParams& vehicle, double voltage_V, double bus_V) {
-  const plant::Rotor rotor(vehicle.blade, +1);
-  AveragedMotor motor(vehicle.vehicle.motor);
-  const plant::Drive drive{.bus_V = bus_V, .duty = voltage_V / bus_V};
-  plant::RotorLoads loads;
+constexpr int kSubSteps = 50;
+
+plant::MotorBooks run_piece(AveragedMotor& motor, const plant::Drive& drive,
+                            const plant::ShaftLoad& load) {
   plant::MotorBooks books;
-  constexpr int kSubSteps = 50;
+  for (int i = 0; i < kSubSteps; ++i) books += motor.step(drive, load, kSubStep_s);
+  return books;
+}
+
+// Runs the motor at that drive, in pieces of 10 ms, until its speed stays; `load_at` says what the air
+// takes of the shaft at a speed. The books are those of the last piece.
+template <typename LoadAt>
+plant::MotorBooks run_until_steady(AveragedMotor& motor, const plant::Drive& drive,
+                                   const LoadAt& load_at) {
+  plant::MotorBooks books;
   for (int piece = 0; piece < 400; ++piece) {
     const double before = motor.speed_radps();
-    loads = at_speed(rotor, before);
-    const double square = before * before;
-    const plant::ShaftLoad load{square > 1.0 ? loads.shaft_torque_Nm / square : 0.0, 0.0};
-    books = {};
-    for (int i = 0; i < kSubSteps; ++i) books += motor.step(drive, load, kSubStep_s);
+    books = run_piece(motor, drive, load_at(before));
     if (std::abs(motor.speed_radps() - before) <= 1e-7 * (1.0 + before)) break;
   }
+  return books;
+}
+
+DrivePoint point_of(const plant::MotorBooks& books, double speed_radps,
+                    const plant::RotorLoads& loads, double voltage_V, double bus_V) {
   const double time_s = kSubSteps * kSubStep_s;
-  DrivePoint p{voltage_V, motor.speed_radps(), loads.thrust_N, loads.shaft_torque_Nm};
+  DrivePoint p{voltage_V, speed_radps, loads.thrust_N, loads.shaft_torque_Nm};
   p.winding_A = books.winding_charge_C / time_s;
   p.bus_A = books.bus_charge_C / time_s;
   p.shaft_W = p.torque_Nm * p.speed_radps;
@@ -103,22 +114,132 @@ DrivePoint drive_point(const flight::FlightParams& vehicle, double voltage_V, do
   return p;
 }
 
-Result<DrivePoint> drive_for_thrust(const flight::FlightParams& vehicle, double thrust_N,
-                                    double bus_V) {
-  double low = 0.0, high = bus_V;
-  DrivePoint best = drive_point(vehicle, high, bus_V);
-  if (!(best.thrust_N >= thrust_N)) {
+// The rotor at a thrust, whatever turns it, or at most_radps where that lifts less.
+struct RotorPoint {
+  double speed_radps = 0.0;
+  plant::RotorLoads loads;
+};
+RotorPoint rotor_for(const flight::FlightParams& vehicle, double thrust_N, double most_radps) {
+  const plant::Rotor rotor(vehicle.blade, +1);
+  double low = 0.0, high = most_radps;
+  for (int i = 0; i < 36; ++i) {
+    const double middle = 0.5 * (low + high);
+    (at_speed(rotor, middle).thrust_N < thrust_N ? low : high) = middle;
+  }
+  return {high, at_speed(rotor, high)};
+}
+
+// What a motor can turn at all on that bus.
+double no_load_radps(const flight::FlightParams& vehicle, double bus_V) {
+  return bus_V / vehicle.vehicle.motor.torque_constant_NmpA;
+}
+
+Result<DrivePoint> drive_rotor(const flight::FlightParams& vehicle, const RotorPoint& rotor,
+                               double thrust_N, double bus_V) {
+  const double speed_radps = rotor.speed_radps;
+  const plant::ShaftLoad load{rotor.loads.shaft_torque_Nm / (speed_radps * speed_radps), 0.0};
+  AveragedMotor motor(vehicle.vehicle.motor);
+  // At that speed: the currents settle in the first piece, whether the shaft speeds up shows the second.
+  const auto run = [&](double voltage_V) {
+    const plant::Drive drive = drive_of(vehicle, voltage_V, bus_V);
+    motor.set_speed(speed_radps);
+    run_piece(motor, drive, load);
+    motor.set_speed(speed_radps);
+    return run_piece(motor, drive, load);
+  };
+  plant::MotorBooks books = run(bus_V);
+  if (!(rotor.loads.thrust_N >= thrust_N && motor.speed_radps() >= speed_radps)) {
     return Error{ErrorKind::bad_input, vehicle.name,
                  "the drive cannot lift the vehicle at this voltage",
                  "a stronger motor, a larger propeller or more cells"};
   }
-  for (int i = 0; i < 18; ++i) {  // to a ten thousandth of a volt
+  double low = 0.0, high = bus_V;
+  for (int i = 0; i < 22; ++i) {  // to a hundred thousandth of a volt
     const double middle = 0.5 * (low + high);
-    const DrivePoint p = drive_point(vehicle, middle, bus_V);
-    (p.thrust_N < thrust_N ? low : high) = middle;
-    if (p.thrust_N >= thrust_N) best = p;
+    books = run(middle);
+    (motor.speed_radps() < speed_radps ? low : high) = middle;
   }
-  return best;
+  return point_of(books, speed_radps, rotor.loads, high, bus_V);
+}
+
+plant::Battery rested(const plant::BatteryParams& pack, double depth) {
+  plant::BatteryParams there = pack;
+  there.initial_depth_of_discharge = depth;
+  return plant::Battery(there);
+}
+
+double total_A(const flight::FlightParams& vehicle, const DrivePoint& each) {
+  const auto motors = static_cast<double>(vehicle.vehicle.airframe.rotors.size());
+  return motors * each.bus_A + vehicle.vehicle.avionics_current_A;
+}
+
+// The bus voltage falls with the current that it makes necessary: a contraction, for the drop is small.
+Result<HoverPoint> hover_from(const flight::FlightParams& vehicle, const RotorPoint& rotor,
+                              double thrust_N, double source_V, double ohm) {
+  HoverPoint hover;
+  hover.bus_V = source_V;
+  for (int i = 0; i < 6; ++i) {
+    const auto each = drive_rotor(vehicle, rotor, thrust_N, hover.bus_V);
+    if (!each) return each.error();
+    hover.each = each.value();
+    hover.total_A = total_A(vehicle, hover.each);
+    const double bus_V = std::max(0.1, source_V - ohm * hover.total_A);
+    if (std::abs(bus_V - hover.bus_V) < 1e-3) break;
+    hover.bus_V = bus_V;
+  }
+  return hover;
+}
+
+// Until a pack that hovers can no more, or is empty: ten equal shares of its charge, each at the current
+// of its middle.
+double until_empty_s(const flight::FlightParams& vehicle, const RotorPoint& rotor,
+                     double thrust_N) {
+  const plant::BatteryParams& pack = vehicle.vehicle.battery;
+  constexpr int kShares = 10;
+  double time_s = 0.0;
+  for (int i = 0; i < kShares; ++i) {
+    const plant::Battery there = rested(pack, (i + 0.5) / kShares);
+    const auto hover = hover_from(vehicle, rotor, thrust_N, there.open_circuit_V(),
+                                  there.settled_resistance_ohm());
+    if (!hover) break;
+    time_s += pack.capacity_C / kShares / hover.value().total_A;
+  }
+  return time_s;
+}
+
+}  // namespace
+
+// The motor turns from rest at constant duty until nothing changes; the air's torque follows its
+// speed from piece to piece.
+DrivePoint drive_point(const flight::FlightParams& vehicle, double voltage_V, double bus_V) {
+  const plant::Rotor rotor(vehicle.blade, +1);
+  AveragedMotor motor(vehicle.vehicle.motor);
+  plant::RotorLoads loads;
+  const auto books =
+      run_until_steady(motor, drive_of(vehicle, voltage_V, bus_V), [&](double speed_radps) {
+        loads = at_speed(rotor, speed_radps);
+        const double square = speed_radps * speed_radps;
+        return plant::ShaftLoad{square > 1.0 ? loads.shaft_torque_Nm / square : 0.0, 0.0};
+      });
+  return point_of(books, motor.speed_radps(), loads, voltage_V, bus_V);
+}
+
+Result<DrivePoint> drive_for_thrust(const flight::FlightParams& vehicle, double thrust_N,
+                                    double bus_V) {
+  return drive_rotor(vehicle, rotor_for(vehicle, thrust_N, no_load_radps(vehicle, bus_V)), thrust_N,
+                     bus_V);
+}
+
+Result<HoverPoint> hover_point(const flight::FlightParams& vehicle, double bus_V) {
+  const plant::Battery full = rested(vehicle.vehicle.battery, 0.0);
+  const double source_V = bus_V > 0.0 ? bus_V : full.open_circuit_V();
+  const double thrust_N = vehicle.vehicle.airframe.mass_kg * kGravity_mps2 /
+                          static_cast<double>(vehicle.vehicle.airframe.rotors.size());
+  const RotorPoint rotor = rotor_for(vehicle, thrust_N, no_load_radps(vehicle, source_V));
+  const double ohm = bus_V > 0.0 ? 0.0 : full.series_resistance_ohm();
+  auto hover = hover_from(vehicle, rotor, thrust_N, source_V, ohm);
+  if (hover) hover.value().until_empty_s = until_empty_s(vehicle, rotor, thrust_N);
+  return hover;
 }
 
 std::vector<Chart> vehicle_sweep(const flight::FlightParams& vehicle, const Options& options) {
@@ -126,7 +247,7 @@ std::vector<Chart> vehicle_sweep(const flight::FlightParams& vehicle, const Opti
   std::vector<DrivePoint> points;
   for (int i = 2; i <= 16; ++i) points.push_back(drive_point(vehicle, bus_V * i / 16.0, bus_V));
   std::vector<Chart> charts;
-  charts.push_back(hover_chart(vehicle, points, bus_V));
+  charts.push_back(hover_chart(vehicle, points, options.bus_V));
   charts.push_back(over_voltage(points, "Speed", "speed / rpm",
                                 [](const DrivePoint& p) { return rpm_of(p.speed_radps); }));
   charts.push_back(

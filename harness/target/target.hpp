@@ -49,6 +49,8 @@ class Target {
   // Names and versions of all that takes part, for run.json: {"qemu", "7.2.22"}, {"image sha256", ..}
   virtual std::vector<std::pair<std::string, std::string>> versions() const = 0;
   virtual Offers offers() const = 0;  // the same at any time
+  // Of its log of buses: "i2c3", "pin_NAME".
+  virtual bool sees(const std::string& /*wires*/) const { return offers().has(Offer::bus_log); }
   virtual std::string why_ended() const { return {}; }
   virtual const HeldPace* held_pace() const { return nullptr; }  // null: it waits for the harness
 };

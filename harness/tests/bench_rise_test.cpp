@@ -3,6 +3,8 @@
 // is run against it as against metal.
 #include "harness/tests/stand_in_rise.hpp"
 
+#include "io_bridges/socketcan/tests/memory_can.hpp"
+
 namespace whirl {
 namespace {
 
@@ -26,7 +28,20 @@ TEST(Bench, TheThrustRiseOfTheRealImageIsMeasuredOverItsWires) {
   const auto wire = [&](const bench::BridgeLink&) -> Result<std::unique_ptr<bench::I2cPort>> {
     return std::unique_ptr<bench::I2cPort>(std::make_unique<WireOfStandIn>(*metal.stand_in));
   };
-  expect_a_rise(run_on_bench(folder, metal, "cp2112", wire));
+  expect_a_rise(run_on_bench(folder, metal, R"(bus = "i2c2", bridge = "cp2112")", {wire}));
+}
+
+// The same over DroneCAN: the board's CAN and the bench's on one bus in memory, in place of an interface.
+TEST(Bench, TheThrustRiseOfTheRealImageIsMeasuredOverCan) {
+  const ScratchFolder folder;
+  io::MemoryCan bus([] { return pacing::MonotonicClock().now_ns(); });
+  Metal metal(folder, 0.15, bus.join());
+  const auto can = [&](const bench::CanBusLink&) -> Result<std::unique_ptr<io::CanPort>> {
+    return bus.join();
+  };
+  expect_a_rise(
+      run_on_bench(folder, metal, R"(bus = "can1", interface = "memory")", {nullptr, can}));
+  EXPECT_GT(bus.seen().size(), 100u);
 }
 
 }  // namespace

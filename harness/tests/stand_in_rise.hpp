@@ -29,9 +29,13 @@ inline stand::StandParams stand_params() {
 }
 
 struct Metal {  // what the bench hangs on
-  Metal(const ScratchFolder& folder, double at_pace)
-      : pace(at_pace), serial(folder.file("terminal")), cell(folder.file("cell")) {
-    auto board = read_board(kRoot + "/test_plans/boards/esc32v2.lua");
+  // can: none, the board commanded over I2C; else that commanded over CAN, joined to it.
+  Metal(const ScratchFolder& folder, double at_pace, std::unique_ptr<io::CanPort> can = {})
+      : pace(at_pace),
+        board_name(can ? "esc32v2_can" : "esc32v2"),
+        serial(folder.file("terminal")),
+        cell(folder.file("cell")) {
+    auto board = read_board(kRoot + "/test_plans/boards/" + board_name + ".lua");
     VirtualBoardOptions options;
     options.board = {board.value(), {.image = kRoot + "/build/firmware/esc.elf", .seed = 1}};
     target.emplace(std::move(options));
@@ -39,6 +43,7 @@ struct Metal {  // what the bench hangs on
     wires.pace = pace;
     wires.serial.emplace(std::move(io::PseudoTerminal::open(serial).value()));
     wires.instruments.emplace(std::move(io::PseudoTerminal::open(cell).value()));
+    wires.can = std::move(can);
     wires.told = {"thrust", "bus_voltage", "supply_current"};
     stand_in.emplace(world, *target, clock, std::move(wires));
     thread = std::thread([this] {
@@ -52,7 +57,7 @@ struct Metal {  // what the bench hangs on
   }
 
   double pace;
-  std::string serial, cell;
+  std::string board_name, serial, cell;
   stand::StandWorld world{stand_params(), 1};
   pacing::MonotonicClock clock;
   std::optional<VirtualBoard> target;
@@ -60,11 +65,12 @@ struct Metal {  // what the bench hangs on
   std::thread thread;
 };
 
-inline std::string bench_file(const Metal& metal, const std::string& bridge) {
-  return R"(return { bench = "stand_in", board = "esc32v2", pace = )" + std::to_string(metal.pace) +
-         R"(, late = "5 ms", late_share = "2 %",
-  links = { { name = "throttle", bus = "i2c2", bridge = ")" +
-         bridge + R"(" },
+// link: the keys of the one that commands.
+inline std::string bench_file(const Metal& metal, const std::string& link) {
+  return "return { bench = \"stand_in\", board = \"" + metal.board_name +
+         "\", pace = " + std::to_string(metal.pace) + R"(, late = "5 ms", late_share = "2 %",
+  links = { { name = "throttle", )" +
+         link + R"( },
             { name = "terminal", bus = "usart1", path = ")" +
          metal.serial + R"(", baud = "921600 baud" } },
   instruments = { { name = "cell", path = ")" +
@@ -81,13 +87,19 @@ struct BenchRun {
   int code = -1;        // the program's exit code
 };
 
-inline BenchRun run_on_bench(const ScratchFolder& folder, Metal& metal, const std::string& bridge,
-                             const bench::BridgeMaker& maker) {
+struct BenchMakers {
+  bench::BridgeMaker bridge;
+  bench::CanMaker can = bench::socket_can_port;
+};
+
+inline BenchRun run_on_bench(const ScratchFolder& folder, Metal& metal, const std::string& link,
+                             const BenchMakers& makers) {
   const std::string bench = folder.file("bench.lua"), out = folder.file("out");
-  std::ofstream(bench) << bench_file(metal, bridge);
-  const auto composition = boards_and_worlds(kRoot, out, maker);
+  std::ofstream(bench) << bench_file(metal, link);
+  const auto composition = boards_and_worlds(kRoot, out, makers.bridge, makers.can);
+  const std::string plan = metal.board_name == "esc32v2" ? "rise.lua" : "rise_can.lua";
   std::vector<std::string> words{
-      "whirl", "run",  kRoot + "/test_plans/bench/rise.lua", "--target", "bench/" + bench,
+      "whirl", "run",  kRoot + "/test_plans/bench/" + plan, "--target", "bench/" + bench,
       "--arm", "clear"};
   std::vector<char*> argv;
   argv.reserve(words.size());

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "io_bridges/board_description/bus_name.hpp"
+
 namespace whirl {
 namespace {
 
@@ -58,6 +60,18 @@ int BoardDescription::number(const std::string& device) const {
   const auto it = std::find_if(devices.begin(), devices.end(),
                                [&](const BoardDevice& d) { return d.name == device; });
   return it == devices.end() ? -1 : static_cast<int>(it - devices.begin());
+}
+
+std::map<int, double> BoardDescription::bauds_Hz() const {
+  std::map<int, double> all;
+  for (const BoardDevice& device : devices) {
+    const auto number = bus_number(device.bus);
+    const auto baud = device.value("baud");
+    if (!number || !baud || !std::holds_alternative<double>(*baud)) continue;
+    if (!device.bus.starts_with("usart") && !device.bus.starts_with("uart")) continue;
+    all[*number] = std::get<double>(*baud);
+  }
+  return all;
 }
 
 int BoardDescription::watch_number(const std::string& function) const {

@@ -64,7 +64,8 @@ struct BoardDescription {
 
   // Of a time that code takes, as a share of it; a fixed rate states none.
   double timing_accuracy() const { return ns_per_instruction == 0 ? 0.1 : 0.0; }
-  std::string timing_profile() const;  // what the report says of time on this board
+  std::string timing_profile() const;      // what the report says of time on this board
+  std::map<int, double> bauds_Hz() const;  // by UART, of the devices that state theirs
   const BoardDevice* find(const std::string& device) const;
   int number(const std::string& device) const;  // -1: not there
   int watch_number(const std::string& function) const;

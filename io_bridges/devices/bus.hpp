@@ -78,21 +78,6 @@ class UartPeer {
   Sink to_mcu_;
 };
 
-struct CanFrame {
-  std::uint32_t id = 0;  // 11 or 29 bits
-  bool extended = false;
-  bool remote = false;
-  std::uint8_t length = 0;  // 0..8
-  std::uint8_t data[8] = {};
-};
-
-// A node on CAN: told each frame when its last bit has passed.
-class CanNode {
- public:
-  virtual ~CanNode() = default;
-  virtual void receive(const CanFrame& frame, Nanoseconds now) = 0;
-};
-
 // Something the verdict should know: strange firmware, a refused setting, an overrun.
 struct Finding {
   Nanoseconds t_ns = 0;

@@ -34,12 +34,16 @@ class EventQueue {
   friend class Event;
   void insert(Event& event);
   void remove(Event& event);
+  void fill_top();
   void sift_up(std::size_t i);
   void sift_down(std::size_t i);
   static bool before(const Event& a, const Event& b);
   static constexpr std::int64_t kMost_at_one_instant = 100'000;  // a busy board has some dozens
 
   std::vector<Event*> heap_;
+  // While an action runs, until it sets an event: most set one that is due soon, which then takes the
+  // place of the one that fired.
+  bool top_is_free_ = false;
   std::function<Nanoseconds()> clock_;
   std::function<void(Nanoseconds)> rearm_;
   Nanoseconds now_ = 0;

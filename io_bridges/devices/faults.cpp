@@ -44,6 +44,13 @@ constexpr KindName kNames[] = {
     {FaultKind::sensor_brown_out, "sensor_brown_out"},
     {FaultKind::gnss_brown_out, "gnss_brown_out"},
     {FaultKind::sensor_scale, "sensor_scale"},
+    {FaultKind::can_bit_error, "can_bit_error"},
+    {FaultKind::can_no_ack, "can_no_ack"},
+    {FaultKind::can_lost, "can_lost"},
+    {FaultKind::can_late, "can_late"},
+    {FaultKind::can_cut, "can_cut"},
+    {FaultKind::can_stuck_dominant, "can_stuck_dominant"},
+    {FaultKind::can_babble, "can_babble"},
 };
 
 bool matches(int wanted, int here) {

@@ -54,6 +54,15 @@ enum class FaultKind : std::uint32_t {
   sensor_brown_out,    // without supply while it lasts, then as after power-up
   gnss_brown_out,      // at its start the receiver begins anew: its saved settings, a hot start
   sensor_scale,        // axis reads by value (a share) more, besides its offset
+  // On CAN: `address` is the sending device's number (of can_lost, can_cut: the one that is cut off);
+  // anywhere: every sender, of can_cut all devices.
+  can_bit_error,       // a bit of each frame is inverted; value n > 0: of the n-th frame only
+  can_no_ack,          // the acknowledge does not pass
+  can_lost,            // acknowledged, and yet not received
+  can_late,            // each frame is held for value seconds before it may start
+  can_cut,             // the wire is open
+  can_stuck_dominant,  // the wire is held dominant
+  can_babble,          // a node of identifier 0 takes the share `value` of the bus (0: all of it)
 };
 
 std::optional<FaultKind> fault_kind(std::string_view name);  // "i2c_nack"

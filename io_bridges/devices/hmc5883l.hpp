@@ -1,4 +1,5 @@
-// Honeywell HMC5883L: magnetometer behind I2C, register by register.
+// Honeywell HMC5883L: magnetometer behind I2C. Registers, modes and the lock are core/hmc5883l.hpp's;
+// here is what it measures and the faults of a run.
 //
 //   In       magnetic field in the part's own axes, asked for through Params::sense as a measurement
 //            is placed in the registers, in order of time
@@ -31,8 +32,6 @@
 //   | 0x0A..0x0C ID  |       | modelled: 'H', '4', '3'. Write: refused, a finding                 |
 //   | any other      |       | refused: reads 0, writes are ignored, a finding                    |
 //
-//   LOCK     from the first data byte read until all six are, or from reading MODE; new measurements
-//            are lost meanwhile. A write of MODE or CONF_A lifts it
 //   Self test  the straps' field is measured less the field without it, which takes it out; where
 //            the two together overflow, the axis reads -4096
 //   Faults   sensor_frozen (data stay, RDY and DRDY go on), sensor_offset (T), sensor_saturated (-4096
@@ -46,16 +45,16 @@
 
 #include "base/random.hpp"
 #include "io_bridges/devices/bus.hpp"
+#include "io_bridges/devices/core/hmc5883l.hpp"
 #include "io_bridges/devices/faults.hpp"
-#include "io_bridges/devices/register_file.hpp"
 #include "io_bridges/devices/supply_faults.hpp"
 #include "io_bridges/devices/wire.hpp"
 
 namespace whirl::io {
 
-class Hmc5883l : public I2cTarget {
+class Hmc5883l : public I2cTarget, private core::Hmc5883l::Board {
  public:
-  static constexpr std::uint8_t kI2c_address = 0x1E;
+  static constexpr std::uint8_t kI2c_address = core::Hmc5883l::kI2c_address;
 
   struct Params {
     std::string name = "hmc5883l";
@@ -70,33 +69,25 @@ class Hmc5883l : public I2cTarget {
            FindingSink findings);
 
   bool answers(std::uint8_t address_7bit) const override { return address_7bit == kI2c_address; }
-  bool start(std::uint8_t address_7bit, bool read, Nanoseconds now) override;
-  bool write(std::uint8_t byte, Nanoseconds now) override;
-  std::uint8_t read(Nanoseconds now) override;
+  bool start(std::uint8_t /*address_7bit*/, bool read, Nanoseconds /*now*/) override {
+    return part_.start(read);
+  }
+  bool write(std::uint8_t byte, Nanoseconds now) override { return part_.write(byte, now); }
+  std::uint8_t read(Nanoseconds now) override { return part_.read(now); }
   void acked(bool, Nanoseconds) override {}
   void stop(Nanoseconds) override {}
 
   std::uint64_t samples() const { return samples_; }  // placed in the registers
 
  private:
-  std::uint8_t read_register(std::uint8_t address, Nanoseconds now);
-  void write_register(std::uint8_t address, std::uint8_t value, Nanoseconds now);
-  std::uint8_t accept(std::uint8_t address, std::uint8_t value, Nanoseconds now);
-  void advance_pointer();
-  void data_read(std::uint8_t address);
+  void odd(core::Oddity what, std::uint32_t detail, Nanoseconds now) override;
+  void data_due(Nanoseconds at) override;
+  void drdy_pin(bool high, Nanoseconds now) override;
+  void pulse_ends_at(Nanoseconds due) override;
+  std::uint8_t identity(std::uint8_t id_a, Nanoseconds now) override;
 
-  void supply(bool on, Nanoseconds now);
-  void set_mode(Nanoseconds now);
-  void measure_at(Nanoseconds due);
-  void begin_write();
   void place();
-  int counts_of(std::size_t axis, double field_T, Nanoseconds now);
-  void store(std::size_t axis, int counts);
-
-  bool locked() const;
-  void set_status(std::uint8_t bit, bool on);
-  void unlock();
-  void drive_drdy(bool high, Nanoseconds now);
+  std::int16_t counts_of(std::size_t axis, double field_T, Nanoseconds now);
   const Fault* fault(FaultKind kind, Nanoseconds now, int axis = kAnywhere) {
     return apply(faults_, kind, params_.bus, params_.device, now, axis);
   }
@@ -107,19 +98,12 @@ class Hmc5883l : public I2cTarget {
   Wire* drdy_;
   int driver_ = 0;
   FaultBook* faults_;
-  RegisterFile registers_;
+  OnceFindings findings_;
   RandomStream noise_;
+  core::Hmc5883l part_{*this};
   Event write_begins_, data_placed_, pulse_end_;
   SupplyFaults supply_;
-  bool powered_ = true;
-
-  Nanoseconds analog_ready_ns_;
-  std::uint8_t gain_;           // of the next measurement; CONF_B may be one ahead
-  std::uint8_t data_read_ = 0;  // a bit for each data register since the last whole set
   std::uint64_t samples_ = 0;
-
-  std::uint8_t pointer_ = 0;
-  int written_ = 0;  // bytes of this write
 };
 
 }  // namespace whirl::io

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "io_bridges/devices/mpu6000_registers.hpp"
+#include "io_bridges/devices/mpu6000_filters.hpp"
+#include "io_bridges/devices/oddity_text.hpp"
 
 namespace whirl::io {
 namespace {
@@ -13,8 +14,6 @@ using namespace mpu;
 constexpr double kTick_ns = 125'000.0;  // 8 kHz
 constexpr double kTick_s = 125e-6;
 constexpr std::int64_t kSlowRatio = 8;  // 8 kHz to 1 kHz
-constexpr Nanoseconds kPulse_ns = 50'000;
-constexpr std::size_t kFifoBytes = 1024;
 constexpr double kG_mps2 = 9.80665;
 constexpr double kDeg_per_rad = 57.29577951308232;
 
@@ -27,64 +26,78 @@ Mpu6000::Mpu6000(EventQueue& queue, const Params& params, Sense sense, Wire* int
       sense_(std::move(sense)),
       interrupt_(interrupt),
       faults_(faults),
-      registers_(register_map(), params.name, std::move(findings)),
+      findings_(std::move(findings)),
+      part_({params.product_id, params.i2c_address, params.register_start_ns, params.gyro_start_ns},
+            *this),
       sample_due_(queue, [this] { take_sample(); }),
-      pulse_end_(queue, [this] { drive_interrupt(false, queue_.now()); }),
+      pulse_end_(queue, [this] { part_.pulse_over(queue_.now()); }),
       supply_(
           queue, faults, params.bus, params.device, [this](Nanoseconds now) { supply(false, now); },
           [this](Nanoseconds now) { supply(true, now); }) {
   if (interrupt_ != nullptr) driver_ = interrupt_->add_driver(params_.name);
-  reset(queue_.now());
+  part_.reset(queue_.now());
 }
 
-// ---- Power and clock
+// ---- What the registers ask for
 
-void Mpu6000::reset(Nanoseconds now) {
-  registers_.reset();
-  registers_.poke(PRODUCT_ID, params_.product_id);
-  ready_ns_ = now + params_.register_start_ns;
+void Mpu6000::odd(core::Oddity what, std::uint32_t detail, Nanoseconds now) {
+  findings_.report({now, params_.name, oddity_text(what, detail, &core::mpu::kMap)});
+}
+
+void Mpu6000::interrupt_pin(core::Mpu6000::Pin pin, Nanoseconds now) {
+  if (interrupt_ == nullptr) return;
+  const bool open = pin == core::Mpu6000::Pin::open;
+  const bool high = pin == core::Mpu6000::Pin::high;
+  interrupt_->drive(driver_, open ? Drive::none : high ? Drive::high : Drive::low, now);
+}
+
+std::uint8_t Mpu6000::identity(std::uint8_t who_am_i, Nanoseconds now) {
+  const Fault* wrong = fault(FaultKind::sensor_wrong_identity, now);
+  return wrong == nullptr ? who_am_i : static_cast<std::uint8_t>(wrong->value);
+}
+
+void Mpu6000::was_reset() {
   clock_ns_ = kNever;
   sample_due_.cancel();
   pulse_end_.cancel();
-  internal_.fill(0);
-  pending_ = settled_ = false;
-  fifo_.clear();
-  drive_interrupt(false, now);
+  settled_ = false;
 }
 
 void Mpu6000::supply(bool on, Nanoseconds now) {
-  powered_ = on;
-  reset(now);
+  part_.set_powered(on);
+  part_.reset(now);
 }
+
+// ---- Clock
 
 double Mpu6000::tick_ns() const {
-  const bool internal = (registers_.peek(PWR_MGMT_1) & kCLKSEL) == 0;
-  return kTick_ns * (1.0 + (internal ? params_.internal_clock_error : params_.pll_clock_error));
-}
-
-std::int64_t Mpu6000::ticks_per_sample() const {
-  const bool fast = dlpf_row(registers_.peek(CONFIG)).gyro_rate_kHz == 8;
-  return (fast ? 1 : kSlowRatio) * (1 + registers_.peek(SMPLRT_DIV));
+  const double error =
+      part_.internal_clock() ? params_.internal_clock_error : params_.pll_clock_error;
+  return kTick_ns * (1.0 + error);
 }
 
 Nanoseconds Mpu6000::time_of_tick(std::int64_t tick) const {
   return clock_ns_ + std::llround(static_cast<double>(tick) * tick_ns());
 }
 
-// Tick 0 is due at `now` and gives the first sample; without a clock there is none.
-void Mpu6000::restart_clock(Nanoseconds now) {
-  const std::uint8_t power = registers_.peek(PWR_MGMT_1);
+void Mpu6000::clock_restarts(Nanoseconds at) {
   sample_due_.cancel();
-  clock_ns_ = kNever;
-  if ((power & kSLEEP) != 0 || (power & kCLKSEL) > 3) return;
-  clock_ns_ = now;
+  clock_ns_ = at;
+  if (at == kNever) return;
   ticks_ = next_sample_ = 0;
-  set_filters();
+  filters_changed();
   sample_due_.at(time_of_tick(next_sample_));
 }
 
-void Mpu6000::set_filters() {
-  const DlpfRow& row = dlpf_row(registers_.peek(CONFIG));
+void Mpu6000::sample_rate_changed() {
+  const std::int64_t per_sample = part_.ticks_per_sample();
+  const std::int64_t whole = (ticks_ + per_sample + 7) / 8 * 8;
+  next_sample_ = per_sample % 8 == 0 ? whole : ticks_ + per_sample;
+  sample_due_.at(time_of_tick(next_sample_));
+}
+
+void Mpu6000::filters_changed() {
+  const DlpfRow& row = kDlpf[part_.dlpf()];
   for (std::size_t i = 0; i < 6; ++i) {
     if (i < 3) axes_[i].filter.emplace(row.accel_Hz, row.accel_delay_s, kTick_s);
     if (i >= 3) axes_[i].filter.emplace(row.gyro_Hz, row.gyro_delay_s, kTick_s);
@@ -96,7 +109,7 @@ void Mpu6000::set_filters() {
 
 // The part's analogue side and its filters, up to and with that tick.
 void Mpu6000::run_ticks(std::int64_t until) {
-  const bool gyro_fast = dlpf_row(registers_.peek(CONFIG)).gyro_rate_kHz == 8;
+  const bool gyro_fast = part_.gyro_fast();
   for (; ticks_ <= until; ++ticks_) {
     const Truth truth = sense_(time_of_tick(ticks_));
     temperature_K_ = truth.temperature_K;
@@ -115,13 +128,12 @@ void Mpu6000::run_ticks(std::int64_t until) {
 void Mpu6000::take_sample() {
   const Nanoseconds now = queue_.now();
   run_ticks(next_sample_);
-  next_sample_ += ticks_per_sample();
+  next_sample_ += part_.ticks_per_sample();
   sample_due_.at(time_of_tick(next_sample_));
   sample_ns_ = now;
   ++samples_;
   encode_sample(now);
-  fill_fifo();
-  raise_interrupt(kDATA_RDY);
+  part_.data_ready(now);
 }
 
 double Mpu6000::faulted(int axis, double value, Nanoseconds now) {
@@ -130,87 +142,20 @@ double Mpu6000::faulted(int axis, double value, Nanoseconds now) {
   return fault(FaultKind::sensor_saturated, now, axis) != nullptr ? 1e9 : value;
 }
 
-void Mpu6000::store(std::uint8_t address, long counts) {
-  const long clipped = std::clamp(counts, -32768L, 32767L);
-  const std::size_t at = address - ACCEL_XOUT_H;
-  internal_[at] = static_cast<std::uint8_t>(clipped >> 8 & 0xFF);
-  internal_[at + 1] = static_cast<std::uint8_t>(clipped & 0xFF);
-}
-
 void Mpu6000::encode_sample(Nanoseconds now) {
   if (fault(FaultKind::sensor_frozen, now) != nullptr) return;
-  const double per_mps2 = kAccel_counts_per_g[registers_.peek(ACCEL_CONFIG) >> 3 & 3] / kG_mps2;
-  const double per_radps =
-      kGyro_counts_per_degps[registers_.peek(GYRO_CONFIG) >> 3 & 3] * kDeg_per_rad;
-  for (int i = 0; i < 6; ++i) {
-    const double scale = i < 3 ? per_mps2 : per_radps;
-    const double value = faulted(i, axes_[static_cast<std::size_t>(i)].latched, now);
-    const int first = i < 3 ? ACCEL_XOUT_H : GYRO_XOUT_H - 6;
-    store(static_cast<std::uint8_t>(first + 2 * i), std::lround(value * scale));
+  const double per_mps2 = kAccel_counts_per_g[part_.accel_range()] / kG_mps2;
+  const double per_radps = kGyro_counts_per_degps[part_.gyro_range()] * kDeg_per_rad;
+  const auto clipped = [](double value) {
+    return static_cast<std::int16_t>(std::clamp(std::lround(value), -32768L, 32767L));
+  };
+  std::array<std::int16_t, 7> counts{};  // temperature between accelerometer and gyro
+  for (std::size_t i = 0; i < 6; ++i) {
+    const double value = faulted(static_cast<int>(i), axes_[i].latched, now);
+    counts[i < 3 ? i : i + 1] = clipped(value * (i < 3 ? per_mps2 : per_radps));
   }
-  store(TEMP_OUT_H, std::lround((temperature_K_ - 273.15 - 36.53) * 340.0));
-  pending_ = true;
-  if (!busy_) end_access();
-}
-
-// The registers follow the sensors only while the bus is idle: one burst, one instant (RM 4.18).
-void Mpu6000::end_access() {
-  busy_ = false;
-  if (!pending_) return;
-  pending_ = false;
-  for (std::size_t i = 0; i < internal_.size(); ++i) {
-    registers_.poke(static_cast<std::uint8_t>(ACCEL_XOUT_H + i), internal_[i]);
-  }
-}
-
-// ---- FIFO and interrupt
-
-void Mpu6000::fill_fifo() {
-  if ((registers_.peek(USER_CTRL) & kFIFO_ENABLE) == 0) return;
-  const std::uint8_t enabled = registers_.peek(FIFO_EN);
-  for (std::size_t i = 0; i < internal_.size(); ++i) {  // in register order, low to high
-    const std::uint8_t gate = i < 6    ? kACCEL_FIFO_EN
-                              : i < 8  ? kTEMP_FIFO_EN
-                              : i < 10 ? kXG_FIFO_EN
-                              : i < 12 ? kYG_FIFO_EN
-                                       : kZG_FIFO_EN;
-    if ((enabled & gate) != 0) push_fifo(internal_[i]);
-  }
-}
-
-void Mpu6000::push_fifo(std::uint8_t byte) {
-  if (fifo_.size() == kFifoBytes) {
-    fifo_.pop_front();
-    raise_interrupt(kFIFO_OFLOW);
-  }
-  fifo_.push_back(byte);
-}
-
-std::uint8_t Mpu6000::pop_fifo() {
-  if (fifo_.empty()) return fifo_last_;
-  fifo_last_ = fifo_.front();
-  fifo_.pop_front();
-  return fifo_last_;
-}
-
-void Mpu6000::raise_interrupt(std::uint8_t status_bit) {
-  registers_.poke(INT_STATUS, registers_.peek(INT_STATUS) | status_bit);
-  if ((registers_.peek(INT_ENABLE) & status_bit) == 0) return;
-  drive_interrupt(true, queue_.now());
-  if ((registers_.peek(INT_PIN_CFG) & kLATCH_INT_EN) == 0) pulse_end_.in(kPulse_ns);
-}
-
-void Mpu6000::clear_interrupt(Nanoseconds now) {
-  registers_.poke(INT_STATUS, 0);
-  if ((registers_.peek(INT_PIN_CFG) & kLATCH_INT_EN) != 0) drive_interrupt(false, now);
-}
-
-void Mpu6000::drive_interrupt(bool active, Nanoseconds now) {
-  if (interrupt_ == nullptr) return;
-  const std::uint8_t pin = registers_.peek(INT_PIN_CFG);
-  const bool high = active != ((pin & kINT_LEVEL) != 0);
-  const Drive up = (pin & kINT_OPEN) != 0 ? Drive::none : Drive::high;
-  interrupt_->drive(driver_, high ? up : Drive::low, now);
+  counts[3] = clipped((temperature_K_ - 273.15 - 36.53) * 340.0);
+  part_.store(counts);
 }
 
 }  // namespace whirl::io

@@ -1,4 +1,5 @@
-// MEAS MS5611-01BA03: barometer and thermometer behind I2C or SPI, command by command.
+// MEAS MS5611-01BA03: barometer and thermometer behind I2C or SPI. Commands and both bus faces are
+// core/ms5611.hpp's; here is what it measures, when, and the faults of a run.
 //
 //   In       static pressure and temperature of the part, asked for through Params::sense as each
 //            conversion ends, in order of time
@@ -36,22 +37,20 @@
 //            serial and CRC, reads value), sensor_late (conversions take value seconds longer),
 //            sensor_brown_out
 #pragma once
-#include <array>
 #include <cstdint>
-#include <deque>
 #include <functional>
-#include <set>
 #include <string>
 
 #include "base/random.hpp"
 #include "io_bridges/devices/bus.hpp"
+#include "io_bridges/devices/core/ms5611.hpp"
 #include "io_bridges/devices/faults.hpp"
 #include "io_bridges/devices/ms5611_calibration.hpp"
 #include "io_bridges/devices/supply_faults.hpp"
 
 namespace whirl::io {
 
-class Ms5611 : public SpiTarget, public I2cTarget {
+class Ms5611 : public SpiTarget, public I2cTarget, private core::Ms5611::Board {
  public:
   struct Truth {
     double pressure_Pa = 101325.0;
@@ -72,34 +71,34 @@ class Ms5611 : public SpiTarget, public I2cTarget {
   Ms5611(EventQueue& queue, const Params& params, Sense sense, FaultBook* faults,
          FindingSink findings);
 
-  void select(bool selected, Nanoseconds now) override;
+  void select(bool /*selected*/, Nanoseconds /*now*/) override { part_.select(); }
   std::uint8_t transfer(std::uint8_t mosi, std::uint32_t sck_Hz, int mode,
-                        Nanoseconds now) override;
+                        Nanoseconds now) override {
+    return part_.transfer(mosi, sck_Hz, mode, now);
+  }
 
-  bool answers(std::uint8_t address_7bit) const override;
-  bool start(std::uint8_t address_7bit, bool read, Nanoseconds now) override;
-  bool write(std::uint8_t byte, Nanoseconds now) override;
-  std::uint8_t read(Nanoseconds now) override;
+  bool answers(std::uint8_t address_7bit) const override { return part_.answers(address_7bit); }
+  bool start(std::uint8_t /*address_7bit*/, bool read, Nanoseconds /*now*/) override {
+    return part_.start(read);
+  }
+  bool write(std::uint8_t byte, Nanoseconds now) override { return part_.write(byte, now); }
+  std::uint8_t read(Nanoseconds /*now*/) override { return part_.read(); }
   void acked(bool, Nanoseconds) override {}
   void stop(Nanoseconds) override {}
 
  private:
-  enum class Quantity : std::uint8_t { pressure, temperature };
+  using Quantity = core::Ms5611::Quantity;
 
-  void command(std::uint8_t byte, Nanoseconds now);
-  void supply(bool on);
-  void reset(Nanoseconds now);
-  void convert(Quantity quantity, std::size_t osr, Nanoseconds now);
+  void odd(core::Oddity what, std::uint32_t detail, Nanoseconds now) override;
+  void conversion_begins(Quantity quantity, std::size_t osr, Nanoseconds now) override;
+  void conversion_dropped() override { conversion_.cancel(); }
+  std::uint16_t last_prom_word(std::uint16_t word, Nanoseconds now) override;
+
   void converted();
   std::uint32_t counts(Nanoseconds now);
-  void read_adc(Nanoseconds now);
-  void read_prom(std::size_t word, Nanoseconds now);
-  std::uint8_t next_byte();  // of the answer; pre: there is one
   const Fault* fault(FaultKind kind, Nanoseconds now, int axis = kAnywhere) {
     return apply(faults_, kind, params_.bus, params_.device, now, axis);
   }
-  bool busy(Nanoseconds now) const { return now < ready_ns_ || conversion_.pending(); }
-  void report(Nanoseconds now, const std::string& what);  // once per text
 
   EventQueue& queue_;
   Params params_;
@@ -107,20 +106,9 @@ class Ms5611 : public SpiTarget, public I2cTarget {
   FaultBook* faults_;
   OnceFindings findings_;
   RandomStream noise_, garbage_;
+  core::Ms5611 part_;
   Event conversion_;  // its end
   SupplyFaults supply_;
-  bool powered_ = true;
-
-  Nanoseconds ready_ns_ = 0;  // the PROM is reloaded
-  Quantity quantity_{};
-  std::size_t osr_ = 0;                    // 0: 256, 4: 4096
-  bool spoiled_ = false;                   // the running conversion was disturbed
-  std::uint32_t result_ = 0;               // of the last conversion, until it is read
-  bool waiting_ = false;                   // result_ has not been read
-  std::array<std::uint32_t, 2> newest_{};  // of each quantity
-  std::deque<std::uint8_t> answer_;
-
-  bool command_passed_ = false;  // of this frame
 };
 
 }  // namespace whirl::io

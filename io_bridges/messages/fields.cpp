@@ -90,6 +90,20 @@ constexpr Field kBusTransaction[] = {
     WHIRL_FIELD(BusTransaction, read),     WHIRL_FIELD(BusTransaction, acked),
     WHIRL_FIELD(BusTransaction, length),   WHIRL_FIELD(BusTransaction, kept),
 };
+constexpr Field kCanMessage[] = {
+    WHIRL_FIELD(CanMessage, id),
+    WHIRL_FIELD(CanMessage, flags),
+    WHIRL_FIELD(CanMessage, length),
+    WHIRL_FIELD(CanMessage, data),
+};
+constexpr Field kCanRecord[] = {
+    WHIRL_FIELD(CanRecord, start_ns),    WHIRL_FIELD(CanRecord, frame.id),
+    WHIRL_FIELD(CanRecord, frame.flags), WHIRL_FIELD(CanRecord, frame.length),
+    WHIRL_FIELD(CanRecord, frame.data),  WHIRL_FIELD(CanRecord, sender),
+    WHIRL_FIELD(CanRecord, busy_ns),     WHIRL_FIELD(CanRecord, tec),
+    WHIRL_FIELD(CanRecord, bit),         WHIRL_FIELD(CanRecord, error),
+    WHIRL_FIELD(CanRecord, losers),
+};
 constexpr Field kCpuFault[] = {
     WHIRL_FIELD(CpuFault, exception), WHIRL_FIELD(CpuFault, pc),    WHIRL_FIELD(CpuFault, lr),
     WHIRL_FIELD(CpuFault, sp),        WHIRL_FIELD(CpuFault, xpsr),  WHIRL_FIELD(CpuFault, cfsr),
@@ -154,6 +168,10 @@ constexpr Field kPinEdge[] = {
 constexpr Field kInstrumentReading[] = {
     WHIRL_FIELD(InstrumentReading, value),
 };
+constexpr Field kBusUnread[] = {
+    WHIRL_FIELD(BusUnread, start_ns),
+    WHIRL_FIELD(BusUnread, spi),
+};
 
 #undef WHIRL_FIELD
 
@@ -168,6 +186,7 @@ constexpr KindInfo kKinds[] = {
     {Kind::pulse_train, "pulse_train", true, kPulseTrain, sizeof(PulseTrain), Tail::none},
     {Kind::rc_channels, "rc_channels", true, kRcChannelsFields, sizeof(RcChannels), Tail::none},
     {Kind::emergency_stop, "emergency_stop", true, {}, 0, Tail::text},
+    {Kind::can_order, "can_order", true, kCanMessage, sizeof(CanMessage), Tail::none},
     {Kind::esc_setpoint, "esc_setpoint", false, kEscSetpoint, sizeof(EscSetpoint), Tail::none},
     {Kind::uart_received, "uart_received", false, {}, 0, Tail::bytes},
     {Kind::i2c_transaction, "i2c_transaction", false, kBusTransaction, sizeof(BusTransaction),
@@ -187,11 +206,13 @@ constexpr KindInfo kKinds[] = {
     {Kind::busy_time, "busy_time", false, kBusyTime, sizeof(BusyTime), Tail::none},
     {Kind::shaft_state, "shaft_state", false, kShaftState, sizeof(ShaftState), Tail::none},
     {Kind::i2c_reply, "i2c_reply", false, kI2cReplyHead, sizeof(I2cReplyHead), Tail::bytes},
+    {Kind::can_transfer, "can_transfer", false, kCanRecord, sizeof(CanRecord), Tail::none},
     {Kind::instrument_reading, "instrument_reading", false, kInstrumentReading,
      sizeof(InstrumentReading), Tail::none},
     {Kind::shoot_through, "shoot_through", false, kShootThrough, sizeof(ShootThrough), Tail::none},
     {Kind::uart_delivered, "uart_delivered", false, {}, 0, Tail::bytes},
     {Kind::gnss_solution, "gnss_solution", false, kGnssSolution, sizeof(GnssSolution), Tail::none},
+    {Kind::bus_unread, "bus_unread", false, kBusUnread, sizeof(BusUnread), Tail::text},
     {Kind::pin_edge, "pin_edge", false, kPinEdge, sizeof(PinEdge), Tail::none},
     {Kind::signals, "signals", false, {}, 0, Tail::none},
 };

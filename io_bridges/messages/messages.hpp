@@ -32,6 +32,7 @@ enum class Kind : std::uint8_t {
   pulse_train = 8,      // PulseTrain, port = motor number: on its throttle pin, from here on
   rc_channels = 9,      // RcChannels: stick positions that a transmitter sends; silence: it is off
   emergency_stop = 10,  // text, why: a bench is made safe
+  can_order = 11,       // CanMessage, port = bus number: a node of the world sends it from t_ns on
   // Target to harness.
   esc_setpoint = 32,     // EscSetpoint, port = motor number 1..kMostMotors
   uart_received = 33,    // bytes the board has sent on UART `port`; t_ns: the last stop bit
@@ -55,6 +56,11 @@ enum class Kind : std::uint8_t {
   gnss_solution = 55,  // GnssSolution, port = device number: a GNSS receiver has computed its place
   pin_edge = 50,       // PinEdge, port = number of the pin among those that the board file names
   instrument_reading = 51,  // InstrumentReading, port = place in the bench's list of readings
+  bus_unread =
+      60,  // BusUnread + text, why; port = bus number: a frame that an analyser saw and could
+           // not read; t_ns: its end
+  can_transfer =
+      52,  // CanRecord, port = bus number: a frame has passed, good or not; t_ns: its end
   // Only in a run's file of messages (results/messages).
   signals = 64,  // a row of the world's signals
 };
@@ -127,6 +133,26 @@ struct BusTransaction {
   std::uint32_t kept = 0;  // bytes behind this struct; then, as u32 in ns since start_ns, when each
                            // one's last clock (I2C: its ninth) had passed; kLate: after 4.29 s
   std::uint32_t pad = 0;
+};
+
+struct CanMessage {
+  std::uint32_t id = 0;    // 11 or 29 bits
+  std::uint8_t flags = 0;  // 1: 29 bits, 2: remote
+  std::uint8_t length = 0;
+  std::uint8_t pad[2] = {};
+  std::uint8_t data[8] = {};
+};
+
+struct CanRecord {
+  std::int64_t start_ns = 0;  // start of frame
+  CanMessage frame;
+  std::int32_t sender =
+      -1;  // its number on the board; -1: the microcontroller, -2: a fault's babbling node
+  std::uint32_t busy_ns = 0;  // of the bus, intermission included
+  std::uint32_t tec = 0;      // the sender's error counter after it
+  std::uint16_t bit = 0;      // where the error was found, in bits of the wire from start of frame
+  std::uint8_t error = 0;     // 0: good; else as bxCAN's LEC: 1 stuff .. 6 CRC
+  std::uint8_t losers = 0;    // of the arbitration
 };
 
 struct FaultCommand {  // the name follows as text, for messages to people
@@ -223,6 +249,12 @@ struct PinEdge {
 
 struct InstrumentReading {  // of a bench: what was measured when (t_ns), in SI
   double value = 0.0;
+};
+
+struct BusUnread {
+  std::int64_t start_ns = 0;
+  std::uint8_t spi = 0;
+  std::uint8_t pad[7] = {};
 };
 
 struct ShootThrough {

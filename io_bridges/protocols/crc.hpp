@@ -9,15 +9,11 @@
 #include <cstdint>
 #include <span>
 
+#include "io_bridges/devices/core/crc8.hpp"
+
 namespace whirl::io {
 
-constexpr std::uint8_t crc8_add(std::uint8_t crc, std::uint8_t byte) {
-  crc = static_cast<std::uint8_t>(crc ^ byte);
-  for (int bit = 0; bit < 8; ++bit) {
-    crc = static_cast<std::uint8_t>((crc & 0x80) != 0 ? (crc << 1) ^ 0x07 : crc << 1);
-  }
-  return crc;
-}
+using core::crc8_add;
 
 constexpr std::uint16_t crc16_add(std::uint16_t crc, std::uint8_t byte) {
   crc = static_cast<std::uint16_t>(crc ^ byte);

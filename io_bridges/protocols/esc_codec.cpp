@@ -4,18 +4,9 @@
 #include <cmath>
 
 #include "base/check.hpp"
-#include "io_bridges/protocols/crc.hpp"
+#include "io_bridges/devices/core/esc_i2c.hpp"
 
 namespace whirl::io {
-namespace {
-
-// CRC-8 over the address byte as it stands on the wire, then the payload.
-std::uint8_t wire_crc(std::uint8_t address, bool read, std::span<const std::uint8_t> payload) {
-  return crc8(payload, crc8_add(0, static_cast<std::uint8_t>(address << 1 | (read ? 1 : 0))));
-}
-
-}  // namespace
-
 EscRange range_of(EscMode mode) {
   switch (mode) {
     case EscMode::duty:
@@ -51,32 +42,28 @@ std::array<std::uint8_t, 3> pack_setpoint(std::uint8_t address, std::uint16_t v)
   WHIRL_CHECK(v <= kEscMaxSetpoint, v);
   std::array<std::uint8_t, 3> bytes{static_cast<std::uint8_t>(v >> 3),
                                     static_cast<std::uint8_t>(v & 7), 0};
-  bytes[2] = wire_crc(address, false, std::span(bytes).first(2));
+  bytes[2] = core::esc_crc(address, false, std::span(bytes).first(2));
   return bytes;
 }
 
 std::optional<std::uint16_t> unpack_setpoint(std::uint8_t address,
                                              std::span<const std::uint8_t> bytes) {
-  if (bytes.size() != 3 || bytes[1] > 7) return std::nullopt;
-  if (bytes[2] != wire_crc(address, false, bytes.first(2))) return std::nullopt;
-  return static_cast<std::uint16_t>(bytes[0] << 3 | bytes[1]);
+  return core::esc_setpoint(address, bytes);
+}
+
+core::EscStatusCounts counts_of(const EscStatus& status) {
+  const long current_mA = std::lround(std::clamp(status.bus_current_A, -32.768, 32.767) * 1000.0);
+  const long rpm = std::lround(std::clamp(status.speed_rpm, 0.0, 65535.0));
+  return {static_cast<std::int16_t>(current_mA), static_cast<std::uint16_t>(rpm), status.flags};
 }
 
 std::array<std::uint8_t, 6> pack_status(std::uint8_t address, const EscStatus& status) {
-  const long current_mA = std::lround(std::clamp(status.bus_current_A, -32.768, 32.767) * 1000.0);
-  const long rpm = std::lround(std::clamp(status.speed_rpm, 0.0, 65535.0));
-  std::array<std::uint8_t, 6> bytes{static_cast<std::uint8_t>(current_mA & 0xFF),
-                                    static_cast<std::uint8_t>(current_mA >> 8 & 0xFF),
-                                    static_cast<std::uint8_t>(rpm & 0xFF),
-                                    static_cast<std::uint8_t>(rpm >> 8 & 0xFF),
-                                    status.flags,
-                                    0};
-  bytes[5] = wire_crc(address, true, std::span(bytes).first(5));
-  return bytes;
+  return core::esc_status(address, counts_of(status));
 }
 
 std::optional<EscStatus> unpack_status(std::uint8_t address, std::span<const std::uint8_t> bytes) {
-  if (bytes.size() != 6 || bytes[5] != wire_crc(address, true, bytes.first(5))) return std::nullopt;
+  if (bytes.size() != 6 || bytes[5] != core::esc_crc(address, true, bytes.first(5)))
+    return std::nullopt;
   const auto current_mA = static_cast<std::int16_t>(bytes[0] | bytes[1] << 8);
   return EscStatus{current_mA / 1000.0, static_cast<double>(bytes[2] | bytes[3] << 8), bytes[4]};
 }

@@ -11,6 +11,8 @@
 #include <optional>
 #include <span>
 
+#include "io_bridges/devices/core/esc_i2c.hpp"
+
 namespace whirl::io {
 
 enum class EscMode : std::uint8_t {
@@ -63,6 +65,7 @@ std::array<std::uint8_t, 3> pack_setpoint(std::uint8_t address, std::uint16_t v)
 std::optional<std::uint16_t> unpack_setpoint(std::uint8_t address,
                                              std::span<const std::uint8_t> bytes);
 
+core::EscStatusCounts counts_of(const EscStatus& status);  // as on the wire, bounded to it
 std::array<std::uint8_t, 6> pack_status(std::uint8_t address, const EscStatus& status);
 std::optional<EscStatus> unpack_status(std::uint8_t address, std::span<const std::uint8_t> bytes);
 

@@ -68,6 +68,13 @@ io::I2cBus& DeviceSlot::i2c() {
   return no_bus_;
 }
 
+io::CanBus& DeviceSlot::can() {
+  if (io::CanBus* bus = rack_.can(bus_number())) return *bus;
+  fail("the part has no bus '" + device_.bus + "' for it");
+  no_can_ = std::make_unique<io::CanBus>(rack_.events(), "nowhere");
+  return *no_can_;
+}
+
 void DeviceSlot::join_spi(io::SpiTarget& target) {
   if (!rack_.join_spi(bus_number(), pin("cs"), target, device_, number_)) {
     fail("the part has no bus '" + device_.bus + "' for it");
@@ -78,6 +85,12 @@ void DeviceSlot::join_uart(io::UartPeer& peer) {
   if (!rack_.join_uart(bus_number(), peer)) {
     fail("the part has no bus '" + device_.bus + "' for it");
   }
+}
+
+io::SpiSlave& DeviceSlot::spi_slave() {
+  if (io::SpiSlave* slave = rack_.spi_slave(bus_number())) return *slave;
+  fail("the part has no bus '" + device_.bus + "' for it");
+  return no_slave_;
 }
 
 void DeviceSlot::set_analog(const std::string& pin, std::function<double(Nanoseconds)> volts) {

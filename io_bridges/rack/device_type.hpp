@@ -14,8 +14,10 @@
 #include "base/result.hpp"
 #include "io_bridges/board_description/bus_name.hpp"
 #include "io_bridges/devices/bus.hpp"
+#include "io_bridges/devices/can_bus.hpp"
 #include "io_bridges/devices/faults.hpp"
 #include "io_bridges/devices/i2c_bus.hpp"
+#include "io_bridges/devices/spi_slave.hpp"
 #include "io_bridges/devices/wire.hpp"
 #include "io_bridges/messages/messages.hpp"
 #include "io_bridges/rack/device_key.hpp"
@@ -55,10 +57,13 @@ class Rack {
   virtual io::Wire* pin(const std::string& name) = 0;
   virtual bool set_analog(const std::string& pin, std::function<double(Nanoseconds)> volts) = 0;
   virtual io::I2cBus* i2c(int number) = 0;
+  virtual io::CanBus* can(int number) = 0;  // with the faults of its wire and its log
   // With the faults of its wires and its log.
   virtual bool join_spi(int bus, io::Wire& chip_select, io::SpiTarget& target,
                         const BoardDevice& device, int number) = 0;
   virtual bool join_uart(int number, io::UartPeer& peer) = 0;
+  // The microcontroller's SPI as the slave of a device that is a master.
+  virtual io::SpiSlave* spi_slave(int /*number*/) { return nullptr; }
 };
 
 struct DeviceType;
@@ -90,9 +95,11 @@ class DeviceSlot {
   io::Wire& pin(const std::string& path) { return wire(text(path)); }
   io::Wire& wire(const std::string& pin);
   io::I2cBus& i2c();
+  io::CanBus& can();
   void join_i2c(io::I2cTarget& target) { i2c().add(target); }
   void join_spi(io::SpiTarget& target);
   void join_uart(io::UartPeer& peer);
+  io::SpiSlave& spi_slave();
   void set_analog(const std::string& pin, std::function<double(Nanoseconds)> volts);
 
   // True where the result is a failure, which is kept.
@@ -113,6 +120,11 @@ class DeviceSlot {
   std::optional<Error> error_;
   io::Wire nowhere_{"nowhere"};
   io::I2cBus no_bus_{"nowhere"};
+  std::unique_ptr<io::CanBus> no_can_;
+  struct NoSlave final : io::SpiSlave {
+    Nanoseconds shift_out(Nanoseconds) override { return kNothing; }
+    std::uint8_t sampled(std::uint8_t, int, Nanoseconds) override { return 0xFF; }
+  } no_slave_;
 };
 
 struct DeviceType {

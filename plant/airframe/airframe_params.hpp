@@ -3,7 +3,8 @@
 //   Frame    B; rotor and gear positions are from the centre of mass
 //   Drag     who provides what: each rotor's own in-plane force comes from plant/rotor and acts at
 //            its hub. `rotor_drag_spm` is only what the rotor model does not give of the lumped
-//            0.04 s/m of [Bangura2017, 4.4]; it acts at the hub too. Parasitic drag, of all
+//            0.04 s/m of [Bangura2017, 4.4], a number set by hand so that the sum is that and no
+//            physics: of the HP quad the blades give 0.006, this 0.033. It acts at the hub too. Parasitic drag, of all
 //            but the propellers, is -1/2 rho (cd A)_i |v| v_i along each axis of B and acts at the
 //            centre of mass. A propeller that stands or windmills is the rotor model's.
 #pragma once

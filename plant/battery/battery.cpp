@@ -28,6 +28,45 @@ BatteryParams lab_supply(double voltage_V, double resistance_ohm) {
   return p;
 }
 
+namespace {
+
+constexpr double kLeast_factor = 0.01, kMost_factor = 100.0;
+
+void check_factors(const BatteryParams& p, Bounds& b) {
+  const auto& depths = p.resistance_over_depth;
+  for (std::size_t i = 0; i < depths.size(); ++i) {
+    b.within("resistance over charge: depth", depths[i].depth_of_discharge, 0.0, 1.0);
+    b.within("resistance over charge: factor", depths[i].factor, kLeast_factor, kMost_factor);
+    b.require(i == 0 || depths[i].depth_of_discharge > depths[i - 1].depth_of_discharge,
+              "resistance over charge: depth must rise from point to point");
+  }
+  const auto& warmth = p.resistance_over_temperature;
+  for (std::size_t i = 0; i < warmth.size(); ++i) {
+    b.within("resistance over temperature: factor", warmth[i].factor, kLeast_factor, kMost_factor);
+    b.require(i == 0 || warmth[i].temperature_K > warmth[i - 1].temperature_K,
+              "resistance over temperature: temperature must rise from point to point");
+  }
+  b.within("temperature_K", p.temperature_K, 230.0, 350.0);
+  if (warmth.empty()) return;
+  b.require(p.temperature_K >= warmth.front().temperature_K &&
+                p.temperature_K <= warmth.back().temperature_K,
+            "the cells' temperature lies outside what is told of their resistance");
+}
+
+// Straight between points, level beyond them; 1 where there are none. `at` and `factor` are members.
+template <typename Point>
+double factor_at(const std::vector<Point>& points, double Point::*at, double x) {
+  if (points.empty()) return 1.0;
+  if (x <= points.front().*at) return points.front().factor;
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    const Point &a = points[i - 1], &b = points[i];
+    if (x <= b.*at) return a.factor + (b.factor - a.factor) * (x - a.*at) / (b.*at - a.*at);
+  }
+  return points.back().factor;
+}
+
+}  // namespace
+
 Result<Done> validate(const BatteryParams& p, const std::string& place) {
   Bounds b(place);
   b.require(p.open_circuit.size() >= 2, "open-circuit curve has fewer than two points");
@@ -42,17 +81,43 @@ Result<Done> validate(const BatteryParams& p, const std::string& place) {
                   p.open_circuit.back().depth_of_discharge == 1.0,
               "open-circuit curve must run from depth of discharge 0 to 1");
   }
+  for (std::size_t i = 1; i < p.open_circuit.size(); ++i) {
+    b.require(p.open_circuit[i].voltage_V <= p.open_circuit[i - 1].voltage_V,
+              "open-circuit curve: the voltage must not rise as the pack is emptied");
+  }
   b.require(p.capacity_C > 0.0, "capacity must be positive");
   b.within("series_resistance_ohm", p.series_resistance_ohm, 0.0, 10.0);
   b.within("relaxation_resistance_ohm", p.relaxation_resistance_ohm, 0.0, 10.0);
   b.within("relaxation_time_s", p.relaxation_time_s, 1e-3, 1e5);
+  b.within("slow_relaxation_resistance_ohm", p.slow_relaxation_resistance_ohm, 0.0, 10.0);
+  b.within("slow_relaxation_time_s", p.slow_relaxation_time_s, 1e-3, 1e5);
+  check_factors(p, b);
   b.within("initial_depth_of_discharge", p.initial_depth_of_discharge, 0.0, 1.0);
   return b.result();
 }
 
-Battery::Battery(const BatteryParams& params) : params_(params) {
+Battery::Battery(const BatteryParams& params)
+    : params_(params),
+      warmth_factor_(factor_at(params.resistance_over_temperature,
+                               &ResistanceOverTemperature::temperature_K, params.temperature_K)),
+      fast_{.ohm = params.relaxation_resistance_ohm, .time_s = params.relaxation_time_s},
+      slow_{.ohm = params.slow_relaxation_resistance_ohm, .time_s = params.slow_relaxation_time_s} {
   WHIRL_CHECK(validate(params, "battery").ok());
-  source_V_ = open_circuit_V();
+  look_up();
+}
+
+void Battery::look_up() {
+  factor_ = warmth_factor_;
+  if (!params_.resistance_over_depth.empty()) {
+    factor_ *= factor_at(params_.resistance_over_depth, &ResistanceOverDepth::depth_of_discharge,
+                         depth_of_discharge());
+  }
+  series_ohm_ = factor_ * params_.series_resistance_ohm;
+  source_V_ = open_circuit_V() - fast_.voltage_V - slow_.voltage_V;
+}
+
+double Battery::settled_resistance_ohm() const {
+  return series_ohm_ + factor_ * (fast_.ohm + slow_.ohm);
 }
 
 double Battery::depth_of_discharge() const {
@@ -78,20 +143,22 @@ BatteryBooks& BatteryBooks::operator+=(const BatteryBooks& other) {
 }
 
 BatteryBooks Battery::draw(double charge_C, double dt_s) {
+  const double relaxation_V = fast_.voltage_V + slow_.voltage_V;
   const BatteryBooks books{
-      .chemical_J = (source_V_ + relaxation_V_) * charge_C,
-      .series_J = params_.series_resistance_ohm * charge_C * charge_C / dt_s,
-      .relaxation_J = relaxation_V_ * charge_C,
+      .chemical_J = (source_V_ + relaxation_V) * charge_C,
+      .series_J = series_ohm_ * charge_C * charge_C / dt_s,
+      .relaxation_J = relaxation_V * charge_C,
       .dip_J = dip_V_ * charge_C,
   };
-  if (dt_s != last_dt_s_) {
-    last_dt_s_ = dt_s;
-    last_blend_ = -std::expm1(-dt_s / params_.relaxation_time_s);
+  for (Branch* branch : {&fast_, &slow_}) {
+    if (branch->ohm == 0.0) continue;  // eight times a step, of every pack
+    if (dt_s != last_dt_s_) branch->blend = -std::expm1(-dt_s / branch->time_s);
+    const double settled_V = factor_ * branch->ohm * charge_C / dt_s;
+    branch->voltage_V += (settled_V - branch->voltage_V) * branch->blend;
   }
+  last_dt_s_ = dt_s;
   used_C_ += charge_C;
-  const double settled_V = params_.relaxation_resistance_ohm * charge_C / dt_s;
-  relaxation_V_ += (settled_V - relaxation_V_) * last_blend_;
-  source_V_ = open_circuit_V() - relaxation_V_;
+  look_up();
   return books;
 }
 

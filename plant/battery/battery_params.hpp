@@ -1,5 +1,6 @@
-// A pack as seen from its terminals: open-circuit curve over charge, series resistance, one
-// relaxation time. A laboratory supply is a pack of constant voltage that never empties.
+// A pack as seen from its terminals: open-circuit curve over charge, series resistance, two
+// relaxation times, all resistances over charge and temperature. A laboratory supply is a pack of
+// constant voltage that never empties.
 #pragma once
 #include <limits>
 #include <string>
@@ -14,12 +15,27 @@ struct OpenCircuitPoint {
   double voltage_V = 0.0;
 };
 
+// What all three resistances are multiplied by; straight between the points.
+struct ResistanceOverDepth {
+  double depth_of_discharge = 0.0;
+  double factor = 1.0;
+};
+struct ResistanceOverTemperature {
+  double temperature_K = 298.15;
+  double factor = 1.0;
+};
+
 struct BatteryParams {
-  std::vector<OpenCircuitPoint> open_circuit;  // rising depth, first at 0, last at 1
+  std::vector<OpenCircuitPoint> open_circuit;  // falling, depth first at 0, last at 1
   double capacity_C = 2.2 * 3600.0;
   double series_resistance_ohm = 0.030;
   double relaxation_resistance_ohm = 0.0;
   double relaxation_time_s = 1.0;
+  double slow_relaxation_resistance_ohm = 0.0;
+  double slow_relaxation_time_s = 100.0;
+  std::vector<ResistanceOverDepth> resistance_over_depth;              // none: 1
+  std::vector<ResistanceOverTemperature> resistance_over_temperature;  // none: 1
+  double temperature_K = 298.15;                                       // of the cells, all the time
   double initial_depth_of_discharge = 0.0;
 };
 

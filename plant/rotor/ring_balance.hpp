@@ -29,6 +29,7 @@ struct RingWake {
   // Induced power factor: what wake contraction and the vortices of few blades cost beyond the ideal
   // ring with Prandtl's losses. 1 for the ideal ring (reference cases).
   double induced_factor = 1.0;
+  double twist = 0.0;  // momentum.hpp: of the blade, what it does to the vortex ring
 };
 
 // What balance_ring() asks of the blades at (u, v); all blades, mean over a revolution.
@@ -55,7 +56,7 @@ inline RingMomentum ring_momentum(const RingWake& w, const RingForce& blade, dou
   constexpr double kFour_pi = 12.566370614359172;
   const double F = prandtl_loss(w.r_m, w.tip_m, w.root_m, w.blade_count, blade.sin_phi);
   const double k = kFour_pi * w.density_kgpm3 * w.r_m * w.dr_m * F;
-  const double m = mass_flow_mps(u_mps, w.climb_mps, w.in_plane_mps);
+  const double m = mass_flow_mps(u_mps, w.climb_mps, w.in_plane_mps, w.twist);
   // Where hardly any air flows, none can carry swirl away: bounded by a share of the blade's speed.
   const double most = 0.3 * std::abs(w.blade_speed_mps);
   const double swirl = w.swirl ? blade.drive_N / std::max(k * m, 1e-9) : 0.0;

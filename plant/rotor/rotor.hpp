@@ -4,7 +4,7 @@
 //   Units   SI; rotor speed is rad/s in the rotor's own sense (its spin sign). Negative: the air turns
 //           it backward, trailing edges first, by what the polars say of that (polar.hpp: a flat plate).
 //   Valid   |advance ratio| <= 0.3; descent through the vortex-ring state by an empirical closure
-//           (validity says so), its mean only. Outside: finite, bounded, flagged, not to be believed.
+//           (validity says so), its mean only (what fluctuates: vortex_ring.hpp). Outside: finite, bounded, flagged, not to be believed.
 //   Source  20 rings x 12 azimuths, averaged over a revolution. Each ring balances blade thrust and
 //           momentum (ring_balance.hpp) with the apparent mass of [PittPeters]; over the rings lies
 //           one gradient of inflow with that theory's first-harmonic gains and time constant.
@@ -12,7 +12,11 @@
 //   Error   other programs and wind tunnels: plant/validation/rotor_proofs.hpp. Signs, symmetries and
 //           closed forms: tests/.
 //   Left out  gyroscopic moment of the spinning mass (the airframe's equation has it), blade
-//           passing vibration, interference between rotors, compressibility.
+//           passing vibration, interference between rotors (a bound: wake_bound.hpp),
+//           compressibility.
+//   Edgewise  of the in-plane force at the hub the blades give 0.006 of the 0.04 s/m that a quad of
+//           such propellers shows in flight (tests/oblique_test.cpp); what lacks is no theory of
+//           ours but the vehicle's `rotor_drag_spm`. Hub moments are the blades' alone, unmeasured.
 #pragma once
 #include <Eigen/Core>
 #include <limits>
@@ -51,7 +55,8 @@ struct RotorLoads {
   double shaft_torque_Nm = 0.0;       // what the motor must overcome; negative when windmilling
   double shaft_power_W = 0.0;         // torque x speed
   double induced_velocity_mps = 0.0;  // thrust-weighted mean over the disc
-  double figure_of_merit = 0.0;       // ideal hover power of this thrust / shaft power; 0 if none
+  Eigen::Vector3d flap_rad = Eigen::Vector3d::Zero();  // cone; disc tilted back; disc tilted left
+  double figure_of_merit = 0.0;  // ideal hover power of this thrust / shaft power; 0 if none
   RotorValidity validity;
 };
 

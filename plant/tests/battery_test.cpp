@@ -46,6 +46,58 @@ TEST(Battery, LabSupplyNeverEmpties) {
   EXPECT_EQ(supply.source_V(), 16.4);
 }
 
+BatteryParams two_times() {
+  BatteryParams p = straight();
+  p.series_resistance_ohm = 0.03;
+  p.slow_relaxation_resistance_ohm = 0.08;
+  p.slow_relaxation_time_s = 200.0;
+  return p;
+}
+
+TEST(Battery, TwoBranchesSagEachByItsOwnExponential) {
+  Battery pack(two_times());
+  for (int k = 0; k < 1000; ++k) pack.draw(4.0 * 0.1, 0.1);  // 4 A for 100 s
+  const double sag_V = 4.0 * 0.05 * (1.0 - std::exp(-5.0)) + 4.0 * 0.08 * (1.0 - std::exp(-0.5));
+  EXPECT_TRUE(near(pack.source_V(), 16.0 - 4.0 * 400.0 / 8000.0 - sag_V, round_off(5000, 16.0)));
+}
+
+// Into a branch of R and time T under a constant current go R I^2 (t - T (1 - exp(-t/T))).
+TEST(Battery, WhatThePackGivesIsWorkAndHeatAndWhatItsBranchesTake) {
+  Battery pack(two_times());
+  BatteryBooks sum;
+  double work_J = 0.0;
+  for (int k = 0; k < 100000; ++k) {
+    work_J += (pack.source_V() - pack.series_resistance_ohm() * 4.0) * 4.0 * 1e-3;
+    sum += pack.draw(4.0 * 1e-3, 1e-3);
+  }
+  EXPECT_TRUE(near(sum.chemical_J, work_J + sum.series_J + sum.relaxation_J,
+                   round_off(200000, sum.chemical_J)));
+  const double fast_J = 0.05 * 16.0 * (100.0 - 20.0 * (1.0 - std::exp(-5.0)));
+  const double slow_J = 0.08 * 16.0 * (100.0 - 200.0 * (1.0 - std::exp(-0.5)));
+  EXPECT_TRUE(near(sum.series_J, 0.03 * 16.0 * 100.0, round_off(200000, 48.0)));
+  EXPECT_TRUE(near(sum.relaxation_J, fast_J + slow_J, stated(1e-3, "half a step of 1 ms")));
+}
+
+TEST(Battery, ResistancesGoWithChargeAndTemperature) {
+  BatteryParams p = two_times();
+  p.resistance_over_depth = {{0.0, 1.0}, {0.5, 0.6}, {1.0, 2.0}};
+  p.resistance_over_temperature = {{263.15, 3.0}, {298.15, 1.0}};
+  p.temperature_K = 280.65;
+  Battery pack(p);
+  EXPECT_TRUE(near(pack.series_resistance_ohm(), 0.03 * 2.0, round_off(8, 0.06)));
+  pack.draw(2000.0, 1.0);  // a quarter
+  EXPECT_TRUE(near(pack.series_resistance_ohm(), 0.03 * 2.0 * 0.8, round_off(8, 0.06)));
+  EXPECT_TRUE(near(pack.settled_resistance_ohm(), 0.16 * 2.0 * 0.8, round_off(8, 0.3)));
+  p.temperature_K = 250.0;  // colder than anything told
+  EXPECT_FALSE(validate(p, "pack").ok());
+}
+
+TEST(Battery, CurveMustNotRiseAsThePackIsEmptied) {
+  BatteryParams p = straight();
+  p.open_circuit.back().voltage_V = 16.1;
+  EXPECT_FALSE(validate(p, "pack").ok());
+}
+
 TEST(Battery, CurveMustRunFromFullToEmpty) {
   BatteryParams p = straight();
   p.open_circuit.back().depth_of_discharge = 0.9;

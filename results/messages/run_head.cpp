@@ -20,7 +20,14 @@ RunHead head_of(const json& from) {
     head.columns.push_back({column.at("name"), column.at("unit_suffix"), column.at("unit")});
   }
   for (const json& node : from.at("nodes")) {
-    head.nodes.push_back({node.at("name"), node.at("devices"), node.at("pins"), node.at("watch")});
+    NodeHead& named = head.nodes.emplace_back();
+    named = {node.at("name"), node.at("devices"), node.at("pins"), node.at("watch")};
+    if (node.contains("buses")) node.at("buses").get_to(named.buses);
+    if (node.contains("throttles")) node.at("throttles").get_to(named.throttles);
+    if (!node.contains("bauds_Hz")) continue;
+    for (const json& one : node.at("bauds_Hz")) {
+      named.bauds_Hz[one.at(0).get<int>()] = one.at(1).get<double>();
+    }
   }
   return head;
 }
@@ -38,8 +45,15 @@ std::string head_text(const RunHead& head) {
     out["columns"].push_back({{"name", c.name}, {"unit_suffix", c.unit_suffix}, {"unit", c.unit}});
   }
   for (const NodeHead& n : head.nodes) {
-    out["nodes"].push_back(
-        {{"name", n.name}, {"devices", n.devices}, {"pins", n.pins}, {"watch", n.watch}});
+    json bauds = json::array();
+    for (const auto& [uart, baud_Hz] : n.bauds_Hz) bauds.push_back({uart, baud_Hz});
+    out["nodes"].push_back({{"name", n.name},
+                            {"devices", n.devices},
+                            {"pins", n.pins},
+                            {"watch", n.watch},
+                            {"buses", n.buses},
+                            {"bauds_Hz", bauds},
+                            {"throttles", n.throttles}});
   }
   return text_of(out, -1, NoUtf8::replace);
 }

@@ -1,6 +1,7 @@
 // What a file of messages says of its run before the first of them: the names behind its numbers.
 #pragma once
 #include <cstdint>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,6 +21,9 @@ struct Column {             // of the world's signals
 struct NodeHead {         // a board; its number is its place in RunHead::nodes (io::Header::board)
   std::string name = {};  // empty: the only one's
   std::vector<std::string> devices = {}, pins = {}, watch = {};  // by number
+  std::vector<std::string> buses = {};  // of the devices: "spi1", "i2c3"; empty: of an older run
+  std::map<int, double> bauds_Hz = {};  // by UART, as the board file states them
+  std::vector<int> throttles = {};      // motors whose pulses a line of the board takes
 
   bool operator==(const NodeHead&) const = default;
 };

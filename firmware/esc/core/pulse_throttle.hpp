@@ -67,17 +67,17 @@ class PulseThrottle {
 
 // Who commands: one source at a time, so that two that disagree do not alternate.
 //
-//   Rule   I2C may always take over while the motor is not armed; pulses only once I2C has been
-//          silent for 0.5 s, when the supervisor has disarmed it, too. While armed, the source that
-//          armed it stays.
+//   Rule   I2C goes before CAN, and CAN before pulses: the higher may always take over while the motor
+//          is not armed, the lower only once the other has been silent for 0.5 s, when the supervisor
+//          has disarmed it, too. While armed, the source that armed it stays.
 class ThrottleSources {
  public:
-  enum class Source : std::uint8_t { none, i2c, pulses };
+  enum class Source : std::uint8_t { none, i2c, can, pulses };  // by rank
   static constexpr std::uint16_t kSilence_ms = 500;
 
   // A valid set-point of `from` has come; false: it is not followed.
   bool admit(Source from, bool armed) {
-    const bool takes_over = owner_ == Source::none || (from == Source::i2c && !armed);
+    const bool takes_over = owner_ == Source::none || (from < owner_ && !armed);
     if (from != owner_ && !takes_over) return false;
     owner_ = from;
     silent_ms_ = 0;

@@ -7,6 +7,7 @@
 #include "firmware/esc/core/core.hpp"
 #include "firmware/esc/core/pulse_throttle.hpp"
 #include "firmware/esc/image/bridge.hpp"
+#include "firmware/esc/image/can_node.hpp"
 #include "firmware/esc/image/clock.hpp"
 #include "firmware/esc/image/commands.hpp"
 #include "firmware/esc/image/i2c_slave.hpp"
@@ -64,6 +65,7 @@ void take_setpoints() {
   };
   std::uint16_t v = 0;
   if (i2c_slave::take_setpoint(v)) follow(Source::i2c, v);
+  if (can_node::take_setpoint(v)) follow(Source::can, v);
   pulse_input::Pulse pulse;
   if (pulse_input::read(pulse) && pulses.read(pulse.width_us, pulse.period_us, v)) {
     follow(Source::pulses, v);
@@ -102,6 +104,10 @@ __attribute__((noinline)) void control_task() {
   i2c_slave::publish({static_cast<std::int16_t>(1000.0f * core->bus_current_A()),
                       static_cast<std::uint16_t>(core->speed_radps() / kRadps_per_rpm),
                       core->flags()});
+  can_node::publish({.voltage_V = core->bus_voltage_V(),
+                     .current_A = core->bus_current_A(),
+                     .speed_rpm = static_cast<std::int32_t>(core->speed_radps() / kRadps_per_rpm),
+                     .flags = core->flags()});
   ++ticks;
   if (stream::due()) stream::record(sample(raw_current_A));
 }
@@ -135,6 +141,7 @@ extern "C" void fw_main() {
   sampling::start();
   serial::start();
   i2c_slave::start(protocol::address_of(stored.motor_number));
+  can_node::start(stored.motor_number);
   pulse_input::start();
   start_watchdog();
   start_tick();

@@ -29,8 +29,15 @@ struct RCC {
   static constexpr std::uint32_t AFIOEN = bit(0), IOPAEN = bit(2), IOPBEN = bit(3), ADC1EN = bit(9),
                                  ADC2EN = bit(10), TIM1EN = bit(11), USART1EN = bit(14);
   static constexpr std::uint32_t DMA1EN = bit(0);
-  static constexpr std::uint32_t TIM2EN = bit(0), TIM4EN = bit(2), I2C2EN = bit(22);
+  static constexpr std::uint32_t TIM2EN = bit(0), TIM4EN = bit(2), I2C2EN = bit(22), CANEN = bit(25);
 };
+
+struct UID {  // 96 bits, each part's own
+  static constexpr std::uint32_t base = 0x1FFF'F7E8;
+};
+
+// bxCAN; its registers: hal/bxcan_registers.hpp. PA11 and PA12 are its pins without remap.
+using CAN = hw::RegBlock<0x4000'6400>;
 
 struct FLASH {
   static constexpr std::uint32_t base = 0x4002'2000;
@@ -183,6 +190,9 @@ struct SysTick {
 enum class Irq : std::uint8_t {
   DMA1_Channel4 = 14,
   ADC1_2 = 18,
+  CAN_TX = 19,
+  CAN_RX0 = 20,
+  CAN_SCE = 22,
   TIM2_Global = 28,
   I2C2_EV = 33,
   I2C2_ER = 34
@@ -196,6 +206,7 @@ enum Priority : std::uint32_t {
   kPriorityCommutation = 0,
   kPrioritySampling = 1,
   kPriorityI2c = 2,
+  kPriorityCan = 2,
   kPrioritySerial = 4,
   kPriorityControl = 3,
 };

@@ -10,6 +10,9 @@ void tim2_handler();
 void i2c2_ev_handler();
 void i2c2_er_handler();
 void dma1_channel4_handler();
+void can_tx_handler();
+void can_rx0_handler();
+void can_sce_handler();
 }
 
 namespace {
@@ -22,6 +25,9 @@ constexpr auto make_vectors() {
   };
   using fw::f103::Irq;
   on(Irq::ADC1_2, adc1_2_handler);
+  on(Irq::CAN_TX, can_tx_handler);
+  on(Irq::CAN_RX0, can_rx0_handler);
+  on(Irq::CAN_SCE, can_sce_handler);
   on(Irq::TIM2_Global, tim2_handler);
   on(Irq::I2C2_EV, i2c2_ev_handler);
   on(Irq::I2C2_ER, i2c2_er_handler);

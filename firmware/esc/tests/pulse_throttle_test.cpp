@@ -82,5 +82,18 @@ TEST(ThrottleSources, WhoArmedItKeepsIt) {
   EXPECT_EQ(s.owner(), Source::pulses);
 }
 
+TEST(ThrottleSources, CanStandsBetweenI2cAndPulses) {
+  using Source = ThrottleSources::Source;
+  ThrottleSources s;
+  EXPECT_TRUE(s.admit(Source::pulses, false));
+  EXPECT_TRUE(s.admit(Source::can, false));
+  EXPECT_FALSE(s.admit(Source::pulses, false));
+  EXPECT_TRUE(s.admit(Source::i2c, false));
+  EXPECT_FALSE(s.admit(Source::can, false));
+  for (int ms = 0; ms < 500; ++ms) s.tick();
+  EXPECT_TRUE(s.admit(Source::can, false));
+  EXPECT_FALSE(s.admit(Source::i2c, true));  // who armed it keeps it
+}
+
 }  // namespace
 }  // namespace fw::esc

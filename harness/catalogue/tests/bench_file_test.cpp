@@ -85,5 +85,46 @@ TEST(BenchFile, RefusesWhatNoBenchCanBe) {
   }
 }
 
+const std::string kEyes =
+    R"(analyser = { driver = "fx2lafw", rate = "24 MHz", marker = "/dev/ttyUSB2",
+    channels = { D0 = "i2c2_scl", D1 = "i2c2_sda", D4 = "spi1_sck", D7 = "marker" }, clocks = { spi1 = "5 MHz" } },
+  probe = { interface = "interface/stlink.cfg", target = "target/stm32f1x.cfg", idle = "fw::idle" },
+  safety)";
+
+std::string with_eyes(const std::string& what, const std::string& instead) {
+  std::string eyes = kEyes;
+  if (!what.empty()) eyes.replace(eyes.find(what), what.size(), instead);
+  return with("safety", eyes);
+}
+
+TEST(BenchFile, NamesTheClipsOfAnAnalyserAndAProbe) {
+  const auto got = bench_of(with_eyes("", ""));
+  ASSERT_TRUE(got) << got.error().message();
+  ASSERT_TRUE(got.value().analyser && got.value().probe);
+  EXPECT_EQ(got.value().analyser->channels.at("D1"), "i2c2_sda");
+  EXPECT_EQ(got.value().analyser->rate_Hz, 24e6);
+  EXPECT_TRUE(got.value().analyser->sees("i2c2"));
+  EXPECT_FALSE(got.value().analyser->sees("i2c"));
+  EXPECT_FALSE(got.value().analyser->sees("pin_led"));
+  EXPECT_EQ(got.value().probe->target, "target/stm32f1x.cfg");
+}
+
+TEST(BenchFile, RefusesClipsThatCannotBeRead) {
+  const std::pair<std::string, std::string> cases[] = {
+      {with_eyes("\"24 MHz\"", "\"12 MHz\""), "12 MHz is too slow for spi1 at 5000 kHz"},
+      {with_eyes("\"24 MHz\"", "\"1 MHz\""), "1 MHz is too slow for i2c2 at 400 kHz"},
+      {with_eyes("i2c2_sda", "i2c2_sdx"), "is no name of a wire"},
+      {with_eyes("i2c2_sda", "i2c2_scl"), "has two clips"},
+      {with_eyes(", D7 = \"marker\"", ""), "no clip is on the marker"},
+      {with_eyes("/dev/ttyUSB2", "/dev/ttyUSB0"), "twice"},
+      {with_eyes("interface/stlink.cfg", "x; shutdown"), "holds a character"},
+  };
+  for (const auto& [text, word] : cases) {
+    const auto got = bench_of(text);
+    ASSERT_FALSE(got) << word;
+    EXPECT_NE(got.error().message().find(word), std::string::npos) << got.error().message();
+  }
+}
+
 }  // namespace
 }  // namespace whirl

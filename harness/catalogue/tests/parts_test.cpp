@@ -91,8 +91,8 @@ TEST(Feed, WordsThatNobodyReadsAreRefusedWithThoseThatAre) {
             "part.lua:1: battery: 'lipo_4s_2200' is not known (use one of 4s_2200)");
   EXPECT_EQ(
       refused("{ battery = { pack = '4s_2200', kind = 'lab_supply' } }"),
-      "part.lua:1: unknown key 'battery.kind' (known here: capacity, depth_of_discharge, pack, "
-      "resistance, share)");
+      "part.lua:1: unknown key 'battery.kind' (known here: capacity, depth_of_discharge, file, "
+      "pack, resistance, share, temperature)");
   EXPECT_NE(refused("{ battery = '4s_2200', supply = '16 V' }").find("one of the two"),
             std::string::npos);
   EXPECT_NE(refused("{ }").find("one of the two"), std::string::npos);

@@ -35,7 +35,8 @@ class ToyController final : public MotorController {
 }  // namespace
 
 ControllerType toy_controller_type() {
-  return {"toy", [](const FlightParams&, std::uint64_t, int) -> std::unique_ptr<MotorController> {
+  return {"toy", plant::Freewheel::diode,
+          [](const FlightParams&, std::uint64_t, int) -> std::unique_ptr<MotorController> {
             return std::make_unique<ToyController>();
           }};
 }

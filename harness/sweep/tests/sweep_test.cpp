@@ -5,6 +5,7 @@
 
 #include "base/near.hpp"
 #include "harness/catalogue/vehicle_file.hpp"
+#include "harness/flight/controllers.hpp"
 #include "plant/rotor/rotor.hpp"
 
 namespace whirl::sweep {
@@ -32,14 +33,84 @@ TEST(Sweep, BusCurrentIsDutyTimesWindingCurrentLessWhatCommutationsGiveBack) {
   EXPECT_GT(p.bus_A, 0.93 * 0.5 * p.winding_A);
 }
 
-// Back-EMF, resistance: V = Ke w + R i, with the datasheet's Kv and what the thesis's points show of
-// R on a running motor.
+// Back-EMF, resistance and, between the pulses, a diode: V = Ke w + R i + (1 - duty) Vd, with the
+// datasheet's Kv and what the thesis's points show of R on a running motor.
 TEST(Sweep, TheMotorsVoltageEquationHolds) {
   const DrivePoint p = drive_point(quad(), 6.0, 16.4);
   const double ke = 60.0 / (2.0 * std::numbers::pi * 950.0);
-  const double apparent_ohm = (p.voltage_V - ke * p.speed_radps) / p.winding_A;
+  const double diode_V = (1.0 - 6.0 / 16.4) * 0.7;
+  const double apparent_ohm = (p.voltage_V - diode_V - ke * p.speed_radps) / p.winding_A;
   EXPECT_GT(apparent_ohm, 0.12);
   EXPECT_LT(apparent_ohm, 0.18);
+}
+
+// Four of its motor controllers with their motors on its bus, held at a place by a hand as strong as it
+// takes, with the set-point at which the four carry its weight.
+struct HeldInHover {
+  flight::FlightParams params = quad();
+  plant::Vehicle vehicle{params.vehicle,
+                         plant::blade_element_rotors(params.blade, params.vehicle.airframe), 1};
+  std::vector<std::unique_ptr<flight::MotorController>> escs;
+
+  HeldInHover() {
+    for (int motor = 1; motor <= 4; ++motor) {
+      escs.push_back(
+          flight::type_named(params.controller, flight::controller_types()).make(params, 1, motor));
+    }
+  }
+  struct Means {
+    double thrust_N = 0.0, battery_A = 0.0;
+  };
+  Means run(int ms, int setpoint) {
+    Means sum;
+    for (int k = 0; k < ms; ++k) {
+      for (int i = 0; i < 4; ++i) {
+        auto& esc = *escs[static_cast<std::size_t>(i)];
+        if (k % 20 == 0) esc.write(static_cast<std::uint16_t>(setpoint));
+        const plant::VehicleState& s = vehicle.state();
+        vehicle.command(
+            i, esc.step(k_ * 1'000'000LL, s.motors[static_cast<std::size_t>(i)], s.bus_voltage_V));
+      }
+      ++k_;
+      vehicle.carry({.p_WB_W_m = {0, 0, -10}});
+      vehicle.step(1e-3);
+      for (const auto& m : vehicle.state().motors) sum.thrust_N += m.thrust_N / ms;
+      sum.battery_A += vehicle.state().battery_current_A / ms;
+    }
+    return sum;
+  }
+
+ private:
+  int k_ = 0;
+};
+
+TEST(Sweep, HoverDrawsWhatTheVehiclesOwnControllersDrawInFlight) {
+  const auto hover = hover_point(quad(), 0.0);
+  ASSERT_TRUE(hover.ok());
+  HeldInHover held;
+  const double weight_N = held.params.vehicle.airframe.mass_kg * 9.80665;
+  held.run(1000, 0);  // arms them
+  int setpoint = 400;
+  held.run(1500, setpoint);
+  HeldInHover::Means means;
+  for (int i = 0; i < 4; ++i) {
+    means = held.run(300, setpoint);
+    // A set-point is 1/2047 of 0.8 to 8 N for each motor.
+    setpoint += static_cast<int>(std::lround((weight_N - means.thrust_N) / 4.0 / 7.2 * 2047.0));
+  }
+  EXPECT_TRUE(near(means.thrust_N, weight_N, stated(0.005 * weight_N, "a set-point's step")));
+  EXPECT_TRUE(near(hover.value().total_A, means.battery_A,
+                   stated(0.01 * means.battery_A,
+                          "half of it the thrust's; the rest noise, counts of PWM, relaxation")));
+}
+
+// The current rises as the pack's voltage falls.
+TEST(Sweep, ThePackIsEmptySoonerThanItsFirstCurrentPromises) {
+  const auto hover = hover_point(quad(), 0.0);
+  ASSERT_TRUE(hover.ok());
+  const double promised_s = quad().vehicle.battery.capacity_C / hover.value().total_A;
+  EXPECT_LT(hover.value().until_empty_s, 0.98 * promised_s);
+  EXPECT_GT(hover.value().until_empty_s, 0.80 * promised_s);
 }
 
 // [Bangura2017]: 3950 rpm at 0.9 kg by its static thrust fit, 1.25 to 1.45 A of bus current.

@@ -1,12 +1,13 @@
 // A bench: a physical board, what of this host its buses hang on, and when all of it is made safe.
 //
 //   Links        each stands for a part of the board file that is the world's end of a bus: an i2c_master by a USB
-//                bridge, a `serial` by a serial line
+//                bridge, a `serial` by a serial line; a CAN bus by a network interface
 //   Instruments  lines of text with numbers, each a signal: load cell, tachometer, meters
 //   Safety       limits on signals, a limit on time, the phrase that who runs it has to say
 #pragma once
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,12 @@ struct BridgeLink {  // USB to I2C
   double rate_Hz = 100e3;
   std::int64_t timeout_ns =
       20'000'000;  // of the host; the ESC's longest answer takes one millisecond
+};
+
+struct CanBusLink {             // a network interface of SocketCAN
+  std::string name, interface;  // "bus", "can0"
+  std::uint16_t bus = 1;
+  std::uint32_t bit_rate_bps = 1'000'000;  // that it must have; a virtual one has none
 };
 
 struct Reading {  // the n-th number of a line, (number - zero) * scale
@@ -58,6 +65,30 @@ struct Safety {
       0;  // of the host: silence of our own loop after which the links make safe
 };
 
+struct AnalyserClips {     // of a logic analyser
+  std::string driver;      // of libsigrok: "fx2lafw"
+  std::string connection;  // "1.4", empty: the first that is found
+  std::string model;       // that it must be; empty: any
+  double rate_Hz = 24e6;
+  std::map<std::string, std::string>
+      channels;        // {"D0", "i2c2_scl"}: names as in io_bridges/copper/channel_name.hpp
+  std::string marker;  // the serial line whose RTS pulses mark the time
+
+  bool sees(const std::string& wires) const {  // "i2c2": has a channel of it; "pin_x": that one
+    for (const auto& [clip, wire] : channels) {
+      if (wire == wires || wire.starts_with(wires + "_")) return true;
+    }
+    return false;
+  }
+};
+
+struct DebugProbe {               // by openocd
+  std::string interface, target;  // its configuration files
+  std::string serial;             // of the probe; empty: the only one
+  double speed_Hz = 4e6;
+  std::string idle;  // function in which the image idles; empty: wherever it waits for an interrupt
+};
+
 struct BenchDescription {
   std::string file, name, board;  // the board's name, as plans write it
   double pace = 1.0;
@@ -65,7 +96,10 @@ struct BenchDescription {
   double late_share = 0.0;   // of the steps: more makes a run inconclusive
   std::vector<SerialLink> serials;
   std::vector<BridgeLink> bridges;
+  std::vector<CanBusLink> cans;
   std::vector<Instrument> instruments;
+  std::optional<AnalyserClips> analyser;
+  std::optional<DebugProbe> probe;
   std::map<std::string, std::string> signals;  // other names: {"speed", "told_speed"}
   Safety safety;
 

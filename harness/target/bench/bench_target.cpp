@@ -134,9 +134,28 @@ void BenchTarget::stop(io::Batch& happened) {
   if (!started_ || stopped_) return;
   stopped_ = true;
   for (const auto& link : links_) link->make_safe();
-  for (const auto& link : links_) link->close();
-  std::ignore = happened;
+  // Times are known from the first step on.
+  const VirtualTime virtual_ns = [this](std::int64_t host_ns) {
+    return pacer_.virtual_ns(host_ns);
+  };
+  for (const auto& link : links_) link->finish(virtual_ns, until_ns_, happened);
+  for (const auto& link : links_) {
+    link->close();
+    for (const std::string& finding : link->findings()) {
+      const std::string text = link->name() + '\0' + finding;
+      happened.add(io::Kind::finding, 0, until_ns_, text.data(),
+                   static_cast<std::uint32_t>(text.size()));
+    }
+  }
   if (options_.real_time) pacing::give_back_real_time();
+}
+
+Offers BenchTarget::offers() const {
+  return options_.bench.analyser ? Offers{Offer::bus_log} : Offers{};
+}
+
+bool BenchTarget::sees(const std::string& wires) const {
+  return options_.bench.analyser && options_.bench.analyser->sees(wires);
 }
 
 std::vector<std::pair<std::string, std::string>> BenchTarget::versions() const {

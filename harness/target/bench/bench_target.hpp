@@ -6,7 +6,7 @@
 //            100 ms is given up, as the pacer says
 //   Safe     an emergency_stop from the world, the bench's longest time, a lost heartbeat, the operator or the
 //            end of the run: the links send the zero set-point and nothing else from then on
-//   Offers   nothing: no virtual time, no watches, no faults on wires, no log of buses
+//   Offers   a log of the buses on which an analyser's clips are; no virtual time, no watches, no faults on wires
 #pragma once
 #include <functional>
 #include <memory>
@@ -37,7 +37,8 @@ class BenchTarget final : public Target {
   Result<TargetState> arrive(io::Batch& happened) override;
   void stop(io::Batch& happened) override;
   std::vector<std::pair<std::string, std::string>> versions() const override;
-  Offers offers() const override { return {}; }
+  Offers offers() const override;
+  bool sees(const std::string& wires) const override;
   std::string why_ended() const override { return why_; }
   const HeldPace* held_pace() const override { return &held_; }
 

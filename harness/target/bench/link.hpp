@@ -5,6 +5,7 @@
 //   Times   of the host's monotonic clock; the loop makes virtual time of them
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <span>
 #include <string>
@@ -26,6 +27,9 @@ struct Arrival {  // a message as a link has it
 };
 using Arrivals = std::vector<Arrival>;
 
+// The virtual time of one of the host's.
+using VirtualTime = std::function<std::int64_t(std::int64_t host_ns)>;
+
 class Link {
  public:
   virtual ~Link() = default;
@@ -43,8 +47,13 @@ class Link {
   virtual void make_safe() {}
   // It heard nothing of the loop for too long, and has made safe by itself.
   virtual bool heartbeat_lost() const { return false; }
+  // The run is over at that virtual time: what only then can be told. Before close().
+  virtual void finish(const VirtualTime& /*virtual_ns*/, std::int64_t /*end_ns*/,
+                      io::Batch& /*happened*/) {}
   virtual void close() = 0;
   virtual std::vector<std::pair<std::string, std::string>> versions() const { return {}; }
+  // What went wrong at it, for who reads the run. Pre: closed.
+  virtual std::vector<std::string> findings() const { return {}; }
 };
 
 }  // namespace whirl::bench

@@ -2,7 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <map>
 #include <memory>
+#include <random>
+#include <utility>
 #include <vector>
 
 #include "base/check.hpp"
@@ -69,6 +73,72 @@ TEST(EventQueue, KeepsTimeOrderUnderRandomSettingAndCancelling) {
   for (int i = 0; i < 500; i += 5) events[static_cast<std::size_t>(i)]->cancel();
   queue.run_until(2000);
   EXPECT_EQ(fired, 400);
+}
+
+// Against a sorted list: what fires next, whatever actions set, move, cancel and ask meanwhile.
+class RestlessEvents {
+ public:
+  RestlessEvents() {
+    for (std::size_t i = 0; i < events_.size(); ++i) {
+      events_[i] = std::make_unique<Event>(queue_, [this, i] { act(i); });
+    }
+  }
+  void run() {
+    while (acted_ < 5000) {
+      if (expected_.empty()) set_all();
+      queue_.run_until(queue_.now() + 7);
+    }
+  }
+
+ private:
+  using Key = std::pair<Nanoseconds, int>;  // due, as the how manieth it was set
+
+  void set_all() {
+    for (std::size_t i = 0; i < events_.size(); ++i) {
+      set(i, queue_.now() + static_cast<Nanoseconds>(random_() % 50));
+    }
+  }
+  void set(std::size_t i, Nanoseconds due) {
+    events_[i]->at(due);
+    drop(i);
+    keys_[i] = {due, set_++};
+    expected_[keys_[i]] = i;
+  }
+  void drop(std::size_t i) {
+    expected_.erase(keys_[i]);
+    keys_[i] = {};
+  }
+  void act(std::size_t i) {
+    ++acted_;
+    EXPECT_EQ(queue_.now(), keys_[i].first);
+    EXPECT_EQ(expected_.begin()->second, i);
+    drop(i);
+    for (unsigned n = random_() % 5; n > 0; --n) {
+      const std::size_t other = random_() % 3 == 0 ? i : random_() % events_.size();
+      if (random_() % 4 == 0) {
+        events_[other]->cancel();
+        drop(other);
+      } else {
+        set(other, queue_.now() + static_cast<Nanoseconds>(random_() % 20));
+      }
+      EXPECT_EQ(events_[other]->pending(), keys_[other] != Key{});
+    }
+    if (random_() % 2 == 0) {
+      EXPECT_EQ(queue_.next_deadline(),
+                expected_.empty() ? kNever : expected_.begin()->first.first);
+    }
+  }
+
+  EventQueue queue_;
+  std::minstd_rand random_{1};
+  std::array<std::unique_ptr<Event>, 40> events_;
+  std::array<Key, 40> keys_{};
+  std::map<Key, std::size_t> expected_;
+  int set_ = 1, acted_ = 0;
+};
+
+TEST(EventQueue, ActionsThatSetMoveAndCancelOthersKeepTheOrder) {
+  RestlessEvents().run();
 }
 
 TEST(EventQueue, EventsForEverAtOneInstantFailACheckInsteadOfHanging) {

@@ -24,6 +24,12 @@ Mcp2221Chip::Mcp2221Chip(EventQueue& queue, I2cBus& bus, const std::string& seri
   reset();
 }
 
+Mcp2221Chip::Mcp2221Chip(EventQueue& queue, I2cCarrier& elsewhere, const std::string& serial)
+    : identity_{0x04D8, 0x00DD, "MCP2221 USB-I2C/UART Combo", serial, descriptor(), false},
+      engine_(queue, elsewhere, kPayload) {
+  reset();
+}
+
 void Mcp2221Chip::reset() {
   engine_.cancel();
   divider_ = kDefault_divider;

@@ -22,6 +22,7 @@ namespace whirl::io {
 class Mcp2221Chip : public EmulatedHid {
  public:
   Mcp2221Chip(EventQueue& queue, I2cBus& bus, const std::string& serial);
+  Mcp2221Chip(EventQueue& queue, I2cCarrier& elsewhere, const std::string& serial);
 
   const HidIdentity& identity() const override { return identity_; }
   void output(std::span<const std::uint8_t> report) override;

@@ -5,6 +5,8 @@
 //   Read    at most `room` bytes ahead of what the chip has taken; the clock waits there too
 //   Hold    a write without STOP keeps the bus; the next transfer begins with a repeated START
 //   Stuck   the bus is not free, or SCL is low, for 25 ms (SMBus's limit)
+//   Carried  with a carrier in place of the bus: a transfer begins when all its bytes are there, and ends as a whole;
+//            which byte was refused is not known then: the address
 //   Left out real arbitration: lose_next() makes the next START lose
 #pragma once
 #include <cstdint>
@@ -16,6 +18,7 @@
 
 #include "io_bridges/devices/event_queue.hpp"
 #include "io_bridges/devices/i2c_bus.hpp"
+#include "io_bridges/hid/emulated/i2c_carrier.hpp"
 
 namespace whirl::io {
 
@@ -36,7 +39,9 @@ class WireEngine {
   };
 
   WireEngine(EventQueue& queue, I2cBus& bus, std::size_t room)
-      : queue_(queue), bus_(bus), step_(queue, [this] { step(); }), room_(room) {}
+      : queue_(queue), bus_(&bus), step_(queue, [this] { step(); }), room_(room) {}
+  WireEngine(EventQueue& queue, I2cCarrier& carrier, std::size_t room)
+      : queue_(queue), carrier_(&carrier), step_(queue, [this] { ask_carrier(); }), room_(room) {}
 
   void set_rate(double rate_Hz) { bit_ns_ = 1e9 / rate_Hz; }
   void on_end(std::function<void()> end) {
@@ -58,10 +63,10 @@ class WireEngine {
   State state() const { return state_; }
   std::size_t passed() const { return passed_; }  // acknowledged or received bytes of this transfer
   std::size_t total() const { return total_; }
-  std::size_t waiting() const { return to_write_.size(); }
+  std::size_t waiting() const { return carrier_ == nullptr ? to_write_.size() : 0; }
   std::size_t received() const { return received_.size(); }
-  bool scl() { return bus_.scl().level(); }
-  bool sda() { return bus_.sda().level(); }
+  bool scl() { return bus_ == nullptr || bus_->scl().level(); }
+  bool sda() { return bus_ == nullptr || bus_->sda().level(); }
 
  private:
   void begin(std::uint8_t address, std::size_t total);
@@ -70,10 +75,13 @@ class WireEngine {
   void finish(State with);
   void rest(State in);
   bool blocked();
+  void carry_write();
+  void ask_carrier();
   void after_bits(int count) { step_.in(static_cast<Nanoseconds>(count * bit_ns_)); }
 
   EventQueue& queue_;
-  I2cBus& bus_;
+  I2cBus* bus_ = nullptr;
+  I2cCarrier* carrier_ = nullptr;
   Event step_;
   std::size_t room_;
   std::function<void()> end_;

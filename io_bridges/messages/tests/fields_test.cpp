@@ -38,6 +38,9 @@ bool has_to_be_listed(Kind kind) {
     case Kind::shoot_through:
     case Kind::uart_delivered:
     case Kind::gnss_solution:
+    case Kind::bus_unread:
+    case Kind::can_order:
+    case Kind::can_transfer:
     case Kind::pin_edge:
     case Kind::instrument_reading:
     case Kind::emergency_stop:

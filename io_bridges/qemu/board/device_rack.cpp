@@ -3,9 +3,12 @@
 #include <map>
 #include <set>
 
+#include "io_bridges/devices/can_wire_faults.hpp"
 #include "io_bridges/devices/wire_faults.hpp"
 #include "io_bridges/qemu/board/board_pins.hpp"
+#include "io_bridges/qemu/board/can_log.hpp"
 #include "io_bridges/qemu/board/spi_log.hpp"
+#include "io_bridges/qemu/stm32/bxcan.hpp"
 #include "io_bridges/rack/check_board.hpp"
 
 namespace whirl::board {
@@ -43,9 +46,11 @@ class DeviceRack::Wiring final : public rack::Rack {
     return site_.chip.set_analog(pin, std::move(volts));
   }
   io::I2cBus* i2c(int number) override;
+  io::CanBus* can(int number) override;
   bool join_spi(int bus, io::Wire& chip_select, io::SpiTarget& target, const BoardDevice& device,
                 int number) override;
   bool join_uart(int number, io::UartPeer& peer) override;
+  io::SpiSlave* spi_slave(int number) override { return site_.chip.spi_slave(number); }
 
  private:
   Result<Done> check(const BoardDescription& board) const;
@@ -65,6 +70,7 @@ class DeviceRack::Wiring final : public rack::Rack {
   std::vector<std::string> analog_;               // pins that a device puts a voltage on
   std::set<int> i2c_soldered_;                    // to the pins that the board names
   std::map<int, std::unique_ptr<io::I2cWireFaults>> i2c_buses_;
+  std::map<int, std::unique_ptr<io::CanWireFaults>> can_buses_;
   std::map<int, io::SpiBus*> spi_buses_;
   std::map<const io::Wire*, std::unique_ptr<SpiLog>> spi_logs_;
   std::vector<std::unique_ptr<io::SpiWireFaults>> spi_faults_;
@@ -91,6 +97,8 @@ Result<Done> DeviceRack::Wiring::build(const BoardDescription& board) {
   }
   const auto used = [this](int bus) { return i2c_buses_.count(bus) != 0; };
   watch_empty_buses(used, site_.chip, site_.finding);
+  const auto can_used = [this](int bus) { return can_buses_.count(bus) != 0; };
+  watch_empty_can(can_used, site_.chip, site_.finding);
   return Done{};
 }
 
@@ -203,6 +211,18 @@ io::I2cBus* DeviceRack::Wiring::i2c(int number) {
                         t.bytes, passed_ns, site_.happened);
   });
   return bus;
+}
+
+io::CanBus* DeviceRack::Wiring::can(int number) {
+  stm32::BxCan* block = site_.chip.can(number);
+  if (block == nullptr) return nullptr;
+  io::CanBus& bus = block->bus();
+  if (can_buses_.count(number) != 0) return &bus;
+  constexpr double kBabbling_bit_ns = 1000.0;
+  can_buses_[number] =
+      std::make_unique<io::CanWireFaults>(site_.events, faults_, bus, number, kBabbling_bit_ns);
+  log_can(bus, number, site_.happened);
+  return &bus;
 }
 
 io::SpiBus* DeviceRack::Wiring::spi(int number) {

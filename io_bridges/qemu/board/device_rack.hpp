@@ -1,7 +1,7 @@
 // The devices of a board: built from its description by their types (io_bridges/rack), hung on the
 // chip's pins and buses, joined to the messages of the link.
 //
-//   Logs      every I2C transaction; every SPI transaction with its first 16 pairs of bytes (MOSI,
+//   Logs      every frame on CAN; every I2C transaction; every SPI transaction with its first 16 pairs of bytes (MOSI,
 //             MISO); each with the times of its bytes. The edges of the pins that the board names
 //   Messages  go to the devices that take their kind and port; faults into the book that all share
 //   Findings  two that drive one pin or a line of an I2C bus against each other, and two devices selected at once on one SPI

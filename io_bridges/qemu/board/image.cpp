@@ -11,9 +11,7 @@
 #include <fstream>
 #include <iterator>
 #include <optional>
-#include <sstream>
 
-#include "base/digest.hpp"
 #include "base/text.hpp"
 
 namespace whirl::board {
@@ -68,6 +66,14 @@ std::string text_at(const Bytes& file, std::uint64_t at) {
 
 Error bad(const std::string& path, const std::string& what, const std::string& cure = "") {
   return {ErrorKind::bad_input, path, what, cure};
+}
+
+// With its debug information an image has tens of MB: they are in memory once.
+Bytes read_all(std::ifstream& stream, std::uintmax_t size) {
+  Bytes file(size == static_cast<std::uintmax_t>(-1) ? 0 : size);
+  stream.read(reinterpret_cast<char*>(file.data()), static_cast<std::streamsize>(file.size()));
+  file.resize(static_cast<std::size_t>(stream.gcount()));
+  return file;
 }
 
 Result<Elf32_Ehdr> check_head(const std::string& path, const Bytes& file, const Part& part) {
@@ -306,10 +312,7 @@ Result<Image> load_image(const std::string& path, const Part& part) {
   }
   std::ifstream stream(path, std::ios::binary);
   if (!stream) return bad(path, "cannot be read", "is the path right, and has it been built?");
-  std::stringstream whole;
-  whole << stream.rdbuf();
-  const std::string text = whole.str();
-  const Bytes file(text.begin(), text.end());
+  const Bytes file = read_all(stream, std::filesystem::file_size(path, status));
   const auto head = check_head(path, file, part);
   if (!head) return head.error();
   auto segments = read_segments(path, file, head.value(), part);
@@ -327,9 +330,6 @@ Result<Image> load_image(const std::string& path, const Part& part) {
   auto symbols = read_symbols(path, file, head.value());
   if (!symbols) return symbols.error();
   image.symbols_ = std::move(symbols.value());
-  Digest digest;
-  digest.add_bytes(file.data(), file.size());
-  image.digest_ = digest.value();
   return image;
 }
 

@@ -34,7 +34,6 @@ class Image {
  public:
   const std::vector<Segment>& segments() const { return segments_; }
   const std::vector<Symbol>& symbols() const { return symbols_; }  // sorted by address
-  std::uint64_t digest() const { return digest_; }                 // FNV-1a of the file
 
   const std::vector<std::string>& oddities() const { return oddities_; }
 
@@ -56,7 +55,6 @@ class Image {
   std::vector<Segment> segments_;
   std::vector<Symbol> symbols_;
   std::vector<std::string> oddities_;
-  std::uint64_t digest_ = 0;
 };
 
 Result<Image> load_image(const std::string& path, const Part& part);

@@ -46,7 +46,7 @@ class CoreClock {
   virtual void exception(const board::CoreState& before, const board::CoreState& after,
                          std::uint32_t fpccr) = 0;
   virtual void accessed(std::uint32_t address, bool write) = 0;
-  // The instruction at `pc` is about to. True: it is worth to translate all code anew.
+  // The instruction at `pc` has come to a register. True: what holds it should be translated anew.
   virtual bool reached_register(std::uint32_t /*pc*/) { return false; }
   // The core halted while QEMU's clock showed `from`, and goes on at `to`. Returns how long it slept.
   virtual Nanoseconds slept(Nanoseconds from, Nanoseconds to) = 0;

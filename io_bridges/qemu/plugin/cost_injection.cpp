@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <optional>
 
 #include "base/check.hpp"
 #include "io_bridges/qemu/plugin/operand_cost.hpp"
@@ -236,15 +237,16 @@ class CostInjection::Writer {
   // QEMU leaves a block where it comes to a register and has that instruction done again by itself, so
   // that the clock may be read there. It finds out late; where it is to be expected, the block is left
   // as QEMU would leave it, but ahead of the instruction. Not within an IT block, whose state would
-  // have to be put back. Behind the first such place a block hardly ever goes on.
+  // have to be put back. Behind the first such place a block hardly ever goes on. A block of one
+  // instruction is what is done again.
   void expect_register(std::size_t mark, std::size_t n) {
-    if (n == 0 || exit_.n != 0 || cost_.kinds[n].leads_to_register < 0) return;
+    if (exit_ || cost_.each.size() == 1 || cost_.kinds[n].leads_to_register < 0) return;
     if (!stored_ || it_state_ != 0 || operations_[mark]->arguments[1] != 0) return;
     const Argument pc = global(kPc);
     for (std::size_t k = 0; k < mark; ++k) {
       if (tcg::writes(*operations_[k], pc)) return;
     }
-    exit_ = {n, behind_callbacks(mark)};
+    exit_ = Exit{n, behind_callbacks(mark)};
   }
 
   Argument global(int core_register) const {
@@ -279,24 +281,25 @@ class CostInjection::Writer {
   }
 
   void add_exit() {
-    if (exit_.n == 0 || !has_room_for_exit()) return;
+    if (!exit_ || !has_room_for_exit()) return;
     const tcg::Numbers& op = tcg::numbers();
     const std::uint32_t flags = owner_.api_.curr_cflags(owner_.api_.qemu_get_cpu(0)) | kDone_again;
     const Argument again = tcg::number32(static_cast<std::int32_t>(flags));
-    const Argument base = global(cost_.kinds[exit_.n].leads_to_register), pc = global(kPc);
-    tcg::Label* const out = tcg::Ahead(operations_[exit_.place], spare_)
+    const Argument base = global(cost_.kinds[exit_->n].leads_to_register), pc = global(kPc);
+    tcg::Label* const out = tcg::Ahead(operations_[exit_->place], spare_)
                                 .branch_if_not_below(base, tcg::number32(kFirst_register));
     Operation* const end = tcg::add_instruction_mark();
     {
       tcg::Ahead ahead(end, spare_);
       ahead.here(out);
       const Argument low = tcg::address(owner_.count_.low());
-      const auto undone = static_cast<std::int32_t>(cost_.each.size() - exit_.n);
+      const auto undone = static_cast<std::int32_t>(cost_.each.size() - exit_->n);
       const Argument left =
           ahead.op32(op.add32, ahead.op32(op.load_half32, low), tcg::number32(undone));
       ahead.put(op.st16, left, low);
       ahead.put(op.st32, again, tcg::address(owner_.count_.next_flags()));
-      ahead.put(op.add32, pc, pc, tcg::number32(static_cast<std::int32_t>(cost_.offsets[exit_.n])));
+      ahead.put(op.add32, pc, pc,
+                tcg::number32(static_cast<std::int32_t>(cost_.offsets[exit_->n])));
       ahead.put(op.exit_block, 0);
     }
     tcg::remove(end);
@@ -313,7 +316,7 @@ class CostInjection::Writer {
   }
 
   struct Exit {
-    std::size_t n = 0;      // instruction that is to be done by itself; 0: none
+    std::size_t n = 0;      // instruction that is to be done by itself
     std::size_t place = 0;  // operation ahead of which the block is left
   };
 
@@ -329,7 +332,7 @@ class CostInjection::Writer {
   const Operation* it_store_ = nullptr;  // where the translator clears it: behind that of can_do_io
   int stores_ = 0;
   tcg::Label* enough_ = nullptr;
-  Exit exit_;
+  std::optional<Exit> exit_;
   Argument environment_ = 0;  // points to the CPU's: R0 to R15 are its first words
   bool stored_ = false, placed_ = false, left_ = false;
 };

@@ -33,10 +33,7 @@ class CycleClock final : public CoreClock {
   Result<Done> find_qemu() override { return code_.find_qemu(); }
   std::vector<std::int64_t> translated(qemu_plugin_tb* block,
                                        const std::vector<std::uint32_t>& sites) override;
-  void code_thrown_away() override {
-    code_.code_thrown_away();
-    register_sites_.code_thrown_away();
-  }
+  void code_thrown_away() override { code_.code_thrown_away(); }
   bool reached_register(std::uint32_t pc) override { return register_sites_.reached(pc); }
   Moment at(std::int64_t site) const override;
   void anchor(Nanoseconds now) override;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "io_bridges/qemu/plugin/instruments.hpp"
 
+#include <optional>
+
 #include "base/text.hpp"
 
 namespace whirl::qemu {
@@ -29,6 +31,17 @@ bool loads_sp(const Code& code) {
   return ldr || (msr && (special == 8 || special == 9 || special == 20));
 }
 
+// BL (A7.7.18, encoding T1): where it goes.
+std::optional<std::uint32_t> called_by(const Code& code, std::uint32_t address) {
+  if (!code.wide || (code.first & 0xF800) != 0xF000 || (code.second & 0xD000) != 0xD000) return {};
+  const std::uint32_t sign = (code.first >> 10) & 1;
+  const std::uint32_t i1 = ~((code.second >> 13) ^ sign) & 1,
+                      i2 = ~((code.second >> 11) ^ sign) & 1;
+  const std::uint32_t offset = (0u - sign) << 24 | i1 << 23 | i2 << 22 |
+                               (code.first & 0x3FFu) << 12 | (code.second & 0x7FFu) << 1;
+  return address + kLongest + offset;
+}
+
 }  // namespace
 
 Instruments::Instruments(Machine& machine) : machine_(machine) {
@@ -45,6 +58,7 @@ void Instruments::translated(qemu_plugin_tb* block) {
   handler_mode_ = (machine_.core_register(kXpsr) & kIpsr) != 0;
   found_.clear();
   const auto start = static_cast<std::uint32_t>(qemu_plugin_tb_vaddr(block));
+  starts_.insert(start);
   report_unreachable_code(start);
   machine_.code_translated(start, start + kLongest * static_cast<std::uint32_t>(length));
   find_at_start(start);
@@ -73,6 +87,7 @@ void Instruments::report_unreachable_code(std::uint32_t address) {
 
 void Instruments::code_thrown_away() {
   sites_.clear();
+  starts_.clear();
   machine_.clock().code_thrown_away();
 }
 
@@ -88,10 +103,19 @@ void Instruments::find_at_start(std::uint32_t address) {
 
 void Instruments::find_in(const qemu_plugin_insn* insn, std::uint32_t place) {
   const Code code = code_of(insn);
+  learn_return_site(code, static_cast<std::uint32_t>(qemu_plugin_insn_vaddr(insn)));
   if (is_wfi(code)) found_.push_back({this, Kind::sleep, 0, 0, place, 0});
   if (handler_mode_) return;  // where a handler leaves its thread is seen at its return
   if (loads_sp(code)) found_.push_back({this, Kind::stack_load, 0, 0, place, 0});
   if (moves_to_sp(code)) found_.push_back({this, Kind::stack_move, 0, 0, place, 0});
+}
+
+// Behind a call that is seen before anything behind it is translated, no code need be thrown away.
+void Instruments::learn_return_site(const Code& code, std::uint32_t address) {
+  const auto function = called_by(code, address);
+  const std::uint32_t behind = address + kLongest;
+  if (function && functions_.contains(*function) && !starts_.contains(behind))
+    return_sites_.insert(behind);
 }
 
 void Instruments::put(qemu_plugin_insn* insn, const Site& site) {

@@ -4,8 +4,9 @@
 //
 //   Every block       its time is counted (core_clock.hpp), mostly without a call
 //   WFI               exact sleep (machine.hpp)
-//   Watched function  its first instruction; and the addresses to which it returns, learned at run
-//                     time: a new one throws all translated code away once, so that it is seen
+//   Watched function  its first instruction; and the addresses to which it returns: those behind a BL
+//                     by the translation of that, others (calls by register, tail calls) at run time,
+//                     where a new one throws all translated code away once, so that it is seen
 //   Stack pointer     in thread mode every instruction that loads it: MSR, LDR and MOV
 //   Cost              a call of about 10 ns at each of these; nothing elsewhere
 #pragma once
@@ -42,6 +43,7 @@ class Instruments {
   void report_unreachable_code(std::uint32_t address);
   void find_at_start(std::uint32_t address);
   void find_in(const qemu_plugin_insn* insn, std::uint32_t place);
+  void learn_return_site(const Code& code, std::uint32_t address);
   void put(qemu_plugin_insn* insn, const Site& site);
   void reached(const Site& site);
   void enter_function(const Site& site);
@@ -50,8 +52,9 @@ class Instruments {
   Machine& machine_;
   std::multimap<std::uint32_t, std::uint16_t> functions_;  // address, watch number
   std::set<std::uint32_t> return_sites_;
-  std::vector<Site> found_;  // in the block that is being translated
-  std::deque<Site> sites_;   // translated code points at them
+  std::set<std::uint32_t> starts_;  // of the blocks that are translated
+  std::vector<Site> found_;         // in the block that is being translated
+  std::deque<Site> sites_;          // translated code points at them
   bool handler_mode_ = false;
   bool ccm_reported_ = false;
 };

@@ -108,8 +108,27 @@ void Machine::init_timers() {
 }
 
 void Machine::arm(io::Nanoseconds deadline) {
+  if (accesses_ > 0) {
+    wanted_ns_ = deadline;
+    return;
+  }
+  if (deadline == armed_ns_) return;
+  armed_ns_ = deadline;
   if (deadline == io::kNever) return api_.timer_del(&timer_);
   api_.timer_mod(&timer_, deadline);
+}
+
+// A register may set many events, and most accesses that set any set one that is due at once (a DMA's
+// first item). What is due is done here, as it would be behind the instruction, at the same time of the
+// guest: QEMU's timer would take a turn of its outer loop for it.
+void Machine::end_access() {
+  if (--accesses_ > 0) return;
+  const io::Nanoseconds wanted = std::exchange(wanted_ns_, kNothing_wanted);
+  if (wanted == kNothing_wanted) return;
+  // gdb may look at registers of a world that stands still.
+  const bool runs = board_.run().gdb_port == 0;
+  if (runs && board_.events().next_deadline() <= now()) return run_what_is_due();
+  arm(wanted);
 }
 
 void Machine::set_interrupt(int irq, bool level) {
@@ -209,10 +228,15 @@ io::Nanoseconds Machine::slept_ns() const {
 }
 
 void Machine::on_timer() {
+  armed_ns_ = io::kNever;
+  run_what_is_due();
+  run_at_once();
+}
+
+void Machine::run_what_is_due() {
   anchor();
   if (asleep_since_ns_ < 0) act_on_deferred();  // what hold() left
   board_.on_timer();
-  run_at_once();
 }
 
 // QEMU's loop looks at the deadlines before it runs the core, whatever has changed them just now.
@@ -307,7 +331,7 @@ void Machine::give_way() {
 // False: gdb is stopping the machine at this moment, and a stopped clock does not move.
 bool Machine::catch_up() {
   if (api_.qemu_clock_get_ns(kVirtualClock) != sleep_now_ns_) {
-    api_.timer_del(&timer_);  // the clock moves for the first timer only
+    arm(io::kNever);  // the clock moves for the first timer only
     api_.timer_mod(&jump_, sleep_now_ns_);
     const std::int64_t there = api_.qemu_clock_get_ns(kVirtualClock);
     if (there < sleep_now_ns_ && board_.run().gdb_port != 0) return false;

@@ -52,10 +52,17 @@ class Machine final : public board::Emulator {
   // The core reaches for what is no memory.
   void accessed(std::uint32_t address);
   void waits_for_bus(std::uint32_t address, bool write) { clock_->accessed(address, write); }
+  // Around what a register does: its events wait for the end.
+  void begin_access() { ++accesses_; }
+  void end_access();
 
   // For the instruments.
   CoreClock& clock() { return *clock_; }
   void throw_code_away() { api_.tb_flush(cpu_); }
+  // Only the blocks with that instruction. Also from within one: it runs to its end.
+  void forget_code_at(std::uint32_t address) {
+    api_.tb_invalidate_phys_addr(api_.address_space_memory, address, kPrivileged);
+  }
   void code_translated(std::uint32_t from, std::uint32_t to);
 
   io::Nanoseconds now() const override {
@@ -90,6 +97,7 @@ class Machine final : public board::Emulator {
   [[noreturn]] void clock_not_as_known();
   void wake();
   void on_timer();
+  void run_what_is_due();
   void take_exception();
   bool find_registers();
   MemoryRegion& new_region();
@@ -133,7 +141,11 @@ class Machine final : public board::Emulator {
   GByteArray* register_text_ = nullptr;
   void* parking_ = nullptr;  // bottom half of the main loop
   Timer timer_;
-  Timer jump_;  // under gdb: moves the clock of a core that sleeps
+  io::Nanoseconds armed_ns_ = io::kNever;  // that it is set to
+  static constexpr io::Nanoseconds kNothing_wanted = -1;
+  io::Nanoseconds wanted_ns_ = kNothing_wanted;  // by what is accessed
+  int accesses_ = 0;                             // under way: one, or within it by DMA another
+  Timer jump_;                                   // under gdb: moves the clock of a core that sleeps
   std::unique_ptr<CoreClock> clock_;
   ExitRequest exit_request_;
   ClassCasts class_casts_;

@@ -57,22 +57,27 @@ void Machine::accessed(std::uint32_t address) {
     core_stopped(board::StoppedCore::frame_among_registers);
   }
   anchor();
-  if (clock_->reached_register(core_registers_[kPc])) throw_code_away();
+  const std::uint32_t pc = core_registers_[kPc];
+  if (clock_->reached_register(pc)) forget_code_at(pc);
 }
 
 std::uint64_t Machine::read_window(void* window, hwaddr offset, unsigned size) {
   auto& [machine, block, base] = *static_cast<Window*>(window);
   machine->accessed(base + static_cast<std::uint32_t>(offset));
+  machine->begin_access();
   const std::uint32_t value = block->read(static_cast<std::uint32_t>(offset), size);
   machine->waits_for_bus(base, false);
+  machine->end_access();
   return value;
 }
 
 void Machine::write_window(void* window, hwaddr offset, std::uint64_t value, unsigned size) {
   auto& [machine, block, base] = *static_cast<Window*>(window);
   machine->accessed(base + static_cast<std::uint32_t>(offset));
+  machine->begin_access();
   block->write(static_cast<std::uint32_t>(offset), static_cast<std::uint32_t>(value), size);
   machine->waits_for_bus(base, true);
+  machine->end_access();
 }
 
 MemoryRegion& Machine::new_region() {

@@ -13,25 +13,18 @@ namespace whirl::qemu {
 
 class RegisterSites {
  public:
-  // Translating all code anew takes as long as some hundred thousand instructions take that QEMU
-  // finds out about one by one.
-  static constexpr int kWorth_it = 300'000;
-
   bool reaches(std::uint32_t address) const {
     const std::uint32_t at = place(address);
-    return at < known_.size() && known_[at] != Known::no;
+    return at < known_.size() && known_[at];
   }
-  // An instruction has. True: it is time to throw translated code away.
+  // An instruction has. True: for the first time.
   bool reached(std::uint32_t address);
-  void code_thrown_away();
 
  private:
-  enum class Known : std::uint8_t { no, since, before };  // since the code was thrown away
   static constexpr std::uint32_t kFlash = 0x08000000, kFlash_B = 1u << 20;
   static std::uint32_t place(std::uint32_t address) { return (address & ~kFlash) >> 1; }
 
-  std::vector<Known> known_;
-  int late_ = 0;
+  std::vector<bool> known_;
 };
 
 }  // namespace whirl::qemu

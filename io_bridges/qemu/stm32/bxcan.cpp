@@ -1,12 +1,14 @@
 #include "io_bridges/qemu/stm32/bxcan.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <utility>
 
-#include "io_bridges/qemu/stm32/can_frame_bits.hpp"
+#include "io_bridges/qemu/stm32/bxcan_bits.hpp"
 #include "io_bridges/qemu/stm32/register_access.hpp"
 
 namespace whirl::stm32 {
+
+using namespace bxcan;
 
 namespace {
 
@@ -24,23 +26,6 @@ enum : std::uint32_t {
   FILTERS = 0x200,
   END = 0x320,
 };
-// MCR
-constexpr std::uint32_t INRQ = 1, SLEEP = 2, TXFP = 4, RFLM = 8, NART = 16, AWUM = 32,
-                        RESET = 1u << 15;
-// MSR
-constexpr std::uint32_t INAK = 1, SLAK = 2, ERRI = 4, WKUI = 8, SLAKI = 16;
-// Mailbox 0's part of TSR; the others 8 bits further up each
-constexpr std::uint32_t RQCP = 1, TXOK = 2, TERR = 8, ABRQ = 128;
-constexpr std::uint32_t TXRQ = 1;
-// RFxR
-constexpr std::uint32_t FULL = 8, FOVR = 16, RFOM = 32;
-// IER
-constexpr std::uint32_t TMEIE = 1, FMPIE0 = 2, FFIE0 = 4, FOVIE0 = 8, FMPIE1 = 16, FFIE1 = 32,
-                        FOVIE1 = 64, EWGIE = 1u << 8, EPVIE = 1u << 9, LECIE = 1u << 11,
-                        ERRIE = 1u << 15, WKUIE = 1u << 16, SLKIE = 1u << 17;
-constexpr std::uint32_t LBKM = 1u << 30, SILM = 1u << 31;
-constexpr std::uint32_t kAckError = 3;
-constexpr int kIdleBits = 11;  // recessive bits before the bus counts as idle
 
 }  // namespace
 
@@ -50,28 +35,43 @@ BxCan::BxCan(const Chip& chip, const CanConfig& config, CanFilters& filters)
       filters_(filters),
       rx_(std::string("CAN") + std::to_string(config.number) + "_RX", true),
       tx_(std::string("CAN") + std::to_string(config.number) + "_TX", true),
-      sending_(chip.events, [this] { transmitted(); }),
-      leaving_(chip.events,
-               [this] {
-                 init_acknowledged_ = false;
-                 try_transmit();
-               }),
+      own_bus_(chip.events, name(), chip.finding),
+      loop_(chip.events, std::string(name()) + " loop"),
+      station_(&own_bus_.join(*this, name())),
+      loop_station_(&loop_.join(*this, name())),
       tx_irq_(chip.interrupts, config.tx_irq),
       rx0_irq_(chip.interrupts, config.rx0_irq),
       rx1_irq_(chip.interrupts, config.rx1_irq),
-      sce_irq_(chip.interrupts, config.sce_irq) {}
+      sce_irq_(chip.interrupts, config.sce_irq) {
+  chip_.clocks.on_change([this] { set_bit_time(); });
+}
+
+void BxCan::wire_to(io::CanBus& bus) {
+  bus_ = &bus;
+  station_ = &bus.join(*this, name());
+}
+
+bool BxCan::loops_back() const {
+  return (btr_ & LBKM) != 0;
+}
+
+void BxCan::set_bit_time() {
+  const double bit_ns = bit_time_s() * 1e9;
+  bus_->configure(*station_, bit_ns, (btr_ & SILM) != 0);
+  loop_.configure(*loop_station_, bit_ns, false, true);
+}
 
 void BxCan::reset() {
-  sending_.cancel();
-  leaving_.cancel();
+  bus_->disconnect(*station_);
+  loop_.disconnect(*loop_station_);
   mcr_ = 0x00010002;
-  ier_ = lec_ = msr_flags_ = tsr_flags_ = tec_ = rec_ = 0;
+  ier_ = lec_ = msr_flags_ = tsr_flags_ = levels_ = 0;
   btr_ = 0x01230000;
-  init_acknowledged_ = false;
+  init_acknowledged_ = leaving_ = false;
   sleeping_ = true;
   mailbox_ = {};
   fifo_ = {};
-  in_flight_ = -1;
+  offered_ = in_flight_ = -1;
   abort_in_flight_ = false;
   if (config_.number == 1) filters_.reset();
   update_lines();
@@ -84,8 +84,8 @@ double BxCan::bit_time_s() const {
 }
 
 std::uint32_t BxCan::msr() const {
-  const bool busy = in_flight_ >= 0;
-  return 0xC00 | (busy ? 0x100 : 0) | msr_flags_ | (sleeping_ ? SLAK : 0) |
+  const bool sends = in_flight_ >= 0 && (loops_back() ? loop_ : *bus_).sends(station());
+  return 0xC00 | (sends ? 0x100 : 0) | msr_flags_ | (sleeping_ ? SLAK : 0) |
          (init_acknowledged_ ? INAK : 0);
 }
 
@@ -103,8 +103,10 @@ std::uint32_t BxCan::tsr() const {
 }
 
 std::uint32_t BxCan::esr() const {
-  return rec_ << 24 | tec_ << 16 | lec_ << 4 | (tec_ > 127 || rec_ > 127 ? 2 : 0) |
-         (tec_ >= 96 || rec_ >= 96 ? 1 : 0);
+  const auto tec = static_cast<std::uint32_t>(std::min(station().tec(), 255));
+  const auto rec = static_cast<std::uint32_t>(station().rec());
+  return rec << 24 | tec << 16 | lec_ << 4 | (station().is_bus_off() ? BOFF : 0) |
+         (tec > 127 || rec > 127 ? EPVF : 0) | (tec >= 96 || rec >= 96 ? EWGF : 0);
 }
 
 std::uint32_t BxCan::fifo_register(int n) const {
@@ -185,22 +187,25 @@ void BxCan::write_mcr(std::uint32_t value) {
   enter_or_leave();
 }
 
-// INRQ is acknowledged once nothing is being sent; leaving needs eleven recessive bits.
+// INRQ is acknowledged once nothing is being sent; leaving needs eleven recessive bits, and a node that
+// went bus-off before it needs 128 times as many.
 void BxCan::enter_or_leave() {
   const bool was_sleeping = sleeping_;
   const bool init = (mcr_ & INRQ) != 0;
   sleeping_ = (mcr_ & SLEEP) != 0 && in_flight_ < 0 && !init;
   if (sleeping_ && !was_sleeping) msr_flags_ |= SLAKI;
-  if (init && in_flight_ < 0) {
-    leaving_.cancel();
+  if (sleeping_) {
+    init_acknowledged_ = leaving_ = false;
+    bus_->disconnect(*station_);
+    loop_.disconnect(*loop_station_);
+  } else if (init && in_flight_ < 0) {
     init_acknowledged_ = true;
-    tec_ = rec_ = 0;
-  } else if (!init && init_acknowledged_ && sleeping_) {
-    init_acknowledged_ = false;
-  } else if (!init && init_acknowledged_ && !leaving_.pending()) {
-    leaving_.in(static_cast<Nanoseconds>(kIdleBits * bit_time_s() * 1e9));
+    leaving_ = false;
+    bus_->disconnect(*station_);
+    loop_.disconnect(*loop_station_);
+  } else if (!init && !leaving_ && (init_acknowledged_ || was_sleeping)) {
+    leave(station().is_bus_off() ? kAfterBusOff : kAfterInit);
   }
-  if (!sleeping_ && !init_acknowledged_) try_transmit();
 }
 
 void BxCan::write_tsr(std::uint32_t value) {
@@ -220,7 +225,7 @@ void BxCan::write_mailbox(std::uint32_t offset, std::uint32_t value) {
   mailbox.pending = true;
   mailbox.order = sequence_++;
   tsr_flags_ &= ~(0xFu << (8 * n));
-  try_transmit();
+  (loops_back() ? loop_ : *bus_).request(station());
 }
 
 void BxCan::abort(int mailbox) {
@@ -228,7 +233,7 @@ void BxCan::abort(int mailbox) {
   if (mailbox == in_flight_) {
     abort_in_flight_ = true;
   } else {
-    finish(mailbox, false, false);
+    finish(mailbox, 0);
   }
 }
 
@@ -267,63 +272,6 @@ io::CanFrame BxCan::frame_of(const Mailbox& mailbox) const {
     frame.data[i] = static_cast<std::uint8_t>(mailbox.word[2 + i / 4] >> (8 * (i % 4)));
   }
   return frame;
-}
-
-void BxCan::try_transmit() {
-  if (in_flight_ >= 0 || sleeping_ || init_acknowledged_ || leaving_.pending()) return;
-  in_flight_ = next_mailbox();
-  if (in_flight_ < 0) return;
-  const int bits = can_frame_bits(frame_of(mailbox_[static_cast<std::size_t>(in_flight_)]));
-  sending_.in(std::llround(bits * bit_time_s() * 1e9));
-}
-
-void BxCan::transmitted() {
-  const int sent = in_flight_;
-  in_flight_ = -1;
-  const io::CanFrame frame = frame_of(mailbox_[static_cast<std::size_t>(sent)]);
-  const bool loopback = (btr_ & LBKM) != 0, silent = (btr_ & SILM) != 0;
-  const Nanoseconds now = chip_.events.now();
-  const bool acknowledged = loopback || (!others_.empty() && !silent);
-  if (acknowledged) {
-    if (tec_ > 0) --tec_;
-    finish(sent, true, false);
-    if (loopback) store(frame);
-    if (!silent) {
-      for (io::CanNode* other : others_) other->receive(frame, now);
-    }
-  } else {
-    lec_ = kAckError;
-    if (tec_ < 128) tec_ += 8;
-    if ((ier_ & LECIE) != 0 || ((ier_ & EWGIE) != 0 && tec_ >= 96) ||
-        ((ier_ & EPVIE) != 0 && tec_ >= 128)) {
-      msr_flags_ |= ERRI;
-    }
-    if ((mcr_ & NART) != 0 || abort_in_flight_) finish(sent, false, !abort_in_flight_);
-  }
-  abort_in_flight_ = false;
-  enter_or_leave();
-  update_lines();
-}
-
-void BxCan::finish(int mailbox, bool ok, bool error) {
-  const auto n = static_cast<std::uint32_t>(mailbox);
-  mailbox_[n].pending = false;
-  mailbox_[n].word[0] &= ~TXRQ;
-  tsr_flags_ |= (RQCP | (ok ? TXOK : 0) | (error ? TERR : 0)) << (8 * n);
-}
-
-void BxCan::receive(const io::CanFrame& frame, Nanoseconds /*now*/) {
-  if (sleeping_) {
-    msr_flags_ |= WKUI;
-    if ((mcr_ & AWUM) != 0) {
-      mcr_ &= ~SLEEP;
-      enter_or_leave();
-    }
-  } else if (!init_acknowledged_ && !leaving_.pending() && (btr_ & LBKM) == 0) {
-    if (rec_ > 0) --rec_;
-    store(frame);
-  }
-  update_lines();
 }
 
 void BxCan::store(const io::CanFrame& frame) {

@@ -1,20 +1,18 @@
 // bxCAN: CAN1 and CAN2 of F405, CAN1 of F103.
 //
-//   Time     a frame takes its bits (stuffing included) at the bit time of BTR; it arrives at the
-//            other nodes, and TXOK is set, when its last bit has passed
-//   Bus      join() names the other nodes; any of them acknowledges. Without one a frame is an
-//            acknowledge error: TEC rises by 8 up to error passive, and the frame is sent again
-//            until aborted, unless NART
+//   Bus      the arbiter of io_bridges/devices/can_bus.hpp, an own one until wire_to(): arbitration,
+//            acknowledges, error frames and counters are there. This is what the registers make of it
+//   Bit time of BTR and the APB's clock, handed to the bus when the block leaves initialisation
+//   Loop     back (LBKM): a bus of its own, on which it acknowledges itself
+//   TSR      TERR and ALST tell of the last attempt, RQCP of the end of the request
 //   Source   RM0090 ch. 32
-//   Left out arbitration against frames that others send at the same time, bus-off and bit errors,
-//            TTCM transmission of time stamps, debug freeze
+//   Left out TTCM and the time stamps of frames, debug freeze, that a loop-back that is not silent
+//            shows on TX
 #pragma once
 #include <array>
 #include <deque>
-#include <functional>
-#include <vector>
 
-#include "io_bridges/devices/bus.hpp"
+#include "io_bridges/devices/can_bus.hpp"
 #include "io_bridges/qemu/stm32/can_filters.hpp"
 #include "io_bridges/qemu/stm32/irq_line.hpp"
 #include "io_bridges/qemu/stm32/peripheral.hpp"
@@ -36,8 +34,18 @@ class BxCan : public Peripheral, public io::CanNode {
   void write(std::uint32_t offset, std::uint32_t value, unsigned size) override;
   void reset() override;
 
-  void join(io::CanNode& other) { others_.push_back(&other); }
+  io::CanBus& bus() { return *bus_; }
+  void wire_to(io::CanBus& bus);  // before it has left initialisation
+
+  const io::CanFrame* offered() override;
+  void begun(Nanoseconds now) override;
+  void sent(Nanoseconds now) override;
   void receive(const io::CanFrame& frame, Nanoseconds now) override;
+  void lost_arbitration(Nanoseconds now) override;
+  void failed(io::CanError error, bool sending, Nanoseconds now) override;
+  void bus_off(Nanoseconds now) override;
+  void joined(Nanoseconds now) override;
+  void stirred(Nanoseconds now) override;
   double bit_time_s() const;
   Signal& rx() { return rx_; }
   Signal& tx() { return tx_; }
@@ -69,10 +77,15 @@ class BxCan : public Peripheral, public io::CanNode {
   void release(int fifo);
 
   bool initialising() const { return init_acknowledged_; }
+  bool loops_back() const;
+  io::CanStation& station() { return loops_back() ? *loop_station_ : *station_; }
+  const io::CanStation& station() const { return loops_back() ? *loop_station_ : *station_; }
+  void set_bit_time();
+  void leave(int idles);
   int next_mailbox() const;
-  void try_transmit();
-  void transmitted();
-  void finish(int mailbox, bool ok, bool error);
+  void attempt_failed(std::uint32_t why);
+  void finish(int mailbox, std::uint32_t outcome);
+  void note_levels();
   void abort(int mailbox);
   io::CanFrame frame_of(const Mailbox& mailbox) const;
   void store(const io::CanFrame& frame);
@@ -81,18 +94,21 @@ class BxCan : public Peripheral, public io::CanNode {
   Chip chip_;
   CanConfig config_;
   CanFilters& filters_;
-  std::vector<io::CanNode*> others_;
   Signal rx_, tx_;
-  io::Event sending_, leaving_;
+  io::CanBus own_bus_, loop_;
+  io::CanBus* bus_ = &own_bus_;
+  io::CanStation *station_, *loop_station_;
   IrqLine tx_irq_, rx0_irq_, rx1_irq_, sce_irq_;
 
   std::uint32_t mcr_ = 0x00010002, ier_ = 0, btr_ = 0x01230000, lec_ = 0;
   bool init_acknowledged_ = false, sleeping_ = true;
   std::uint32_t msr_flags_ = 0;  // ERRI, WKUI, SLAKI
   std::uint32_t tsr_flags_ = 0;  // RQCP, TXOK, ALST, TERR of each mailbox
-  std::uint32_t tec_ = 0, rec_ = 0;
+  std::uint32_t levels_ = 0;     // EWGF, EPVF and BOFF as they were last
+  bool leaving_ = false;         // INAK stays until eleven recessive bits have passed
   std::array<Mailbox, 3> mailbox_{};
-  int in_flight_ = -1;
+  int offered_ = -1, in_flight_ = -1;  // mailboxes; in flight: on the wire or in the arbitration
+  io::CanFrame out_;
   bool abort_in_flight_ = false;
   std::uint64_t sequence_ = 0;
   std::array<Fifo, 2> fifo_{};

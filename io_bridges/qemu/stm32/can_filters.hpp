@@ -6,7 +6,7 @@
 #include <array>
 #include <cstdint>
 
-#include "io_bridges/devices/bus.hpp"
+#include "io_bridges/protocols/can_frame.hpp"
 
 namespace whirl::stm32 {
 

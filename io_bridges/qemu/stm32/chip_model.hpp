@@ -15,6 +15,7 @@
 #include "io_bridges/devices/bus.hpp"
 #include "io_bridges/devices/i2c_bus.hpp"
 #include "io_bridges/devices/spi_bus.hpp"
+#include "io_bridges/devices/spi_slave.hpp"
 #include "io_bridges/devices/wire.hpp"
 #include "io_bridges/qemu/cycles/flash_timing.hpp"
 #include "io_bridges/qemu/stm32/flash_array.hpp"
@@ -67,6 +68,8 @@ class ChipModel {
     return false;
   }
   virtual io::SpiBus* spi(int number) = 0;
+  // The same block as an external master's clock finds it; null: the part has no such SPI.
+  virtual io::SpiSlave* spi_slave(int /*number*/) { return nullptr; }
   virtual bool join_uart(int number, io::UartPeer& peer) = 0;  // USARTn or UARTn
   // Volts at an analog input, asked for at each sampling instant.
   virtual bool set_analog(std::string_view pin, std::function<double(Nanoseconds)> volts) = 0;

@@ -38,6 +38,11 @@ bool Part::solder_i2c(int number, std::string_view scl, std::string_view sda) {
   return true;
 }
 
+io::SpiSlave* Part::spi_slave(int number) {
+  const auto it = spis_.find(number);
+  return it != spis_.end() ? it->second.get() : nullptr;
+}
+
 io::SpiBus* Part::spi(int number) {
   const auto it = spis_.find(number);
   return it != spis_.end() ? &it->second->bus() : nullptr;

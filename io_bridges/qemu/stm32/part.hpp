@@ -48,6 +48,7 @@ class Part : public ChipModel {
   io::I2cBus* i2c(int number) override;
   bool solder_i2c(int number, std::string_view scl, std::string_view sda) override;
   io::SpiBus* spi(int number) override;
+  io::SpiSlave* spi_slave(int number) override;
   bool join_uart(int number, io::UartPeer& peer) override;
   bool set_analog(std::string_view pin, std::function<double(Nanoseconds)> volts) override;
   void set_vdd(double volts) override { pwr_.set_vdd(volts); }

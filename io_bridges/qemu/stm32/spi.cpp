@@ -2,30 +2,11 @@
 
 #include <cmath>
 
-namespace whirl::stm32 {
-namespace {
+#include "io_bridges/qemu/stm32/spi_bits.hpp"
 
-enum Offset : std::uint32_t {
-  CR1 = 0x00,
-  CR2 = 0x04,
-  SR = 0x08,
-  DR = 0x0C,
-  CRCPR = 0x10,
-  RXCRCR = 0x14,
-  TXCRCR = 0x18,
-  I2SCFGR = 0x1C,
-  I2SPR = 0x20,
-};
-// CR1
-constexpr std::uint32_t MSTR = 1u << 2, SPE = 1u << 6, LSBFIRST = 1u << 7, SSI = 1u << 8,
-                        SSM = 1u << 9, RXONLY = 1u << 10, DFF = 1u << 11, CRCNEXT = 1u << 12,
-                        CRCEN = 1u << 13, BIDIOE = 1u << 14, BIDIMODE = 1u << 15;
-// CR2
-constexpr std::uint32_t RXDMAEN = 1u << 0, TXDMAEN = 1u << 1, SSOE = 1u << 2, ERRIE = 1u << 5,
-                        RXNEIE = 1u << 6, TXEIE = 1u << 7;
-// SR
-constexpr std::uint32_t RXNE = 1u << 0, TXE = 1u << 1, CRCERR = 1u << 4, MODF = 1u << 5,
-                        OVR = 1u << 6, BSY = 1u << 7;
+namespace whirl::stm32 {
+using namespace spi_bits;
+namespace {
 
 std::uint16_t reversed(std::uint16_t value, int bits) {
   std::uint16_t out = 0;
@@ -56,6 +37,7 @@ void Spi::reset() {
   i2spr_ = 2;
   tx_buffer_ = rx_buffer_ = 0;
   tx_full_ = shifting_ = crc_frame_ = frame_is_crc_ = ovr_dr_read_ = modf_sr_read_ = false;
+  forget_slave_bits();
   drive_nss();
   clocks_changed();
   update();
@@ -128,7 +110,8 @@ void Spi::write_word(std::uint32_t offset, std::uint32_t value) {
 
 // OVR clears by reading DR, then SR; MODF by reading SR, then writing CR1.
 std::uint32_t Spi::read_sr() {
-  const std::uint32_t value = sr_ | (shifting_ || tx_full_ ? BSY : 0);
+  const bool busy = (cr1_ & MSTR) != 0 ? shifting_ || tx_full_ : shifting_ || slave_shifting_;
+  const std::uint32_t value = sr_ | (busy ? BSY : 0);
   if ((sr_ & OVR) != 0 && ovr_dr_read_) {
     sr_ &= ~OVR;
     update();
@@ -144,6 +127,7 @@ void Spi::write_cr1(std::uint32_t value) {
     sr_ &= ~MODF;
     modf_sr_read_ = false;
   }
+  if ((value & (SPE | MSTR)) != SPE) forget_slave_bits();
   if ((before & CRCEN) == 0 && (value & CRCEN) != 0) rxcrc_ = txcrc_ = 0;
   if ((before & CRCNEXT) == 0 && (value & CRCNEXT) != 0) crc_frame_ = true;
   if (((before ^ value) & (DFF | 0x38)) != 0) clocks_changed();
@@ -180,6 +164,7 @@ bool Spi::receives() const {
 void Spi::write_dr(std::uint16_t value) {
   tx_buffer_ = (cr1_ & DFF) != 0 ? value : value & 0xFF;
   tx_full_ = true;
+  written_ns_ = chip_.events.now();
   sr_ &= ~TXE;
   if (!shifting_) next_frame();
   update();
@@ -265,17 +250,6 @@ std::uint16_t Spi::crc(std::uint32_t crc, std::uint16_t data) const {
   crc ^= data;
   for (int i = 0; i < bits; ++i) crc = (crc & top) != 0 ? (crc << 1) ^ crcpr_ : crc << 1;
   return static_cast<std::uint16_t>(crc & mask);
-}
-
-std::uint16_t Spi::exchange_as_slave(std::uint16_t mosi) {
-  const bool selected = (cr1_ & SSM) != 0 ? (cr1_ & SSI) == 0 : !pins_.nss.level();
-  if ((cr1_ & (SPE | MSTR)) != SPE || !selected || !pins_.sck.routed()) return 0xFFFF;
-  const std::uint16_t out = tx_buffer_;  // an empty buffer repeats its last content
-  tx_full_ = false;
-  sr_ |= TXE;
-  received(mosi);
-  update();
-  return pins_.miso.routed() ? out : 0xFFFF;
 }
 
 void Spi::update() {

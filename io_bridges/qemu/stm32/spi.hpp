@@ -3,12 +3,20 @@
 //   Source    RM0090 chapter 28 (F103: RM0008 chapter 25, same registers)
 //   Timing    frame = bits x 2^(BR+1) / PCLK; TXE when DR moves to the shift register, RXNE and BSY
 //             at the last bit. SPE cleared in a frame: the frame still ends (28.3.9)
-//   Findings  a frame with SCK, MOSI or MISO not muxed to a pin; I2S mode
-//   Left out  I2S, TI frame format (FRF); in slave mode frames come whole (exchange_as_slave)
+//   Slave     (spi_slave.cpp) a byte moves from DR to the shift register as its first bit goes out, and
+//             TXE rises: DR is filled one byte ahead. NSS only gates clocks: a byte that the master
+//             breaks off leaves the bit counter where it is until SPE = 0, and what waits in DR when
+//             NSS rises begins the next transfer. DR empty: its last content goes out again, which
+//             the manual does not specify. BSY from a byte's first bit to its last
+//   Findings  a frame with SCK, MOSI or MISO not muxed to a pin; I2S mode; as a slave a byte sent with
+//             DR empty, one that began before SPE was set
+//   Left out  I2S, TI frame format (FRF); as a slave 16 bits, LSB first, CRC, and the times of edges
+//             inside a byte that the bit counter splits
 #pragma once
 #include <memory>
 
 #include "io_bridges/devices/spi_bus.hpp"
+#include "io_bridges/devices/spi_slave.hpp"
 #include "io_bridges/qemu/stm32/signal.hpp"
 #include "io_bridges/qemu/stm32/word_block.hpp"
 
@@ -21,15 +29,16 @@ struct SpiPins {
   Signal& nss;
 };
 
-class Spi final : public WordBlock {
+class Spi final : public WordBlock, public io::SpiSlave {
  public:
   Spi(std::string name, Chip chip, int irq, bool on_apb2, SpiPins pins);
 
   io::SpiBus& bus() { return bus_; }
   DmaRequest& tx_request() { return tx_request_; }
   DmaRequest& rx_request() { return rx_request_; }
-  // An external master clocked one frame through this slave. Returns MISO; 0xFFFF: not selected.
-  std::uint16_t exchange_as_slave(std::uint16_t mosi);
+  // An external master's clock. 0xFF: this slave is not selected.
+  Nanoseconds shift_out(Nanoseconds now) override;
+  std::uint8_t sampled(std::uint8_t mosi, int bits, Nanoseconds now) override;
 
   void reset() override;
 
@@ -54,6 +63,11 @@ class Spi final : public WordBlock {
   std::uint16_t crc(std::uint32_t crc, std::uint16_t data) const;
   void report_once(std::uint32_t bit, const char* what);
 
+  // Slave (spi_slave.cpp)
+  bool selected_as_slave() const;
+  void load_slave_shift();
+  void forget_slave_bits();
+
   Chip chip_;
   int irq_;
   bool on_apb2_;
@@ -66,6 +80,10 @@ class Spi final : public WordBlock {
   std::uint16_t tx_buffer_ = 0, rx_buffer_ = 0, shift_ = 0;
   bool tx_full_ = false, shifting_ = false, crc_frame_ = false, frame_is_crc_ = false;
   bool ovr_dr_read_ = false, modf_sr_read_ = false;
+  Nanoseconds written_ns_ = 0;  // DR, last
+  int slave_bits_ = 0;          // clocks since the shift register was loaded
+  bool slave_loaded_ = false, slave_shifting_ = false;
+  std::uint8_t slave_in_ = 0;  // bits sampled so far
   Nanoseconds frame_ns_ = 0;
   std::uint32_t sck_Hz_ = 0;
   std::uint32_t reported_ = 0;

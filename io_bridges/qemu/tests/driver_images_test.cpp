@@ -6,78 +6,12 @@
 
 #include <filesystem>
 #include <fstream>
-#include <map>
-#include <sstream>
 #include <string>
-#include <vector>
 
-#include "harness/target/virtual_board.hpp"
-#include "io_bridges/board_description/board_text.hpp"
+#include "io_bridges/qemu/tests/image_report.hpp"
 
 namespace whirl::board_test {
 namespace {
-
-using Report = std::map<std::string, std::vector<std::uint32_t>>;
-
-struct PartUnderTest {
-  const char *mcu, *hse_Hz, *terminal;
-};
-constexpr PartUnderTest kF405 = {"stm32f405rg", "8000000", "usart2"};
-constexpr PartUnderTest kF103 = {"stm32f103cb", "12000000", "usart1"};
-
-struct ImageRun {
-  Report report;
-  std::string findings, error;
-  int faults = 0;
-};
-
-// Runs until the image says that it is done, at most so many virtual milliseconds.
-// `folder`: where its parts leave their files.
-ImageRun run_image(const std::string& image, const std::string& devices, int milliseconds,
-                   const PartUnderTest& part = kF405, const std::string& folder = "") {
-  VirtualBoardOptions options;
-  const auto start = read_board_text(
-      std::string(R"({"board":"driver images","mcu":")") + part.mcu + R"(","hse_Hz":)" +
-      part.hse_Hz + R"(,"folder":")" + folder + R"(","image":")" + WHIRL_IMAGES + "/" + image +
-      R"(.elf","devices":[{"name":"terminal","type":"serial","bus":")" + part.terminal +
-      R"(","baud":115200})" + devices + "]}");
-  EXPECT_TRUE(start) << devices;
-  if (start) options.board = start.value();
-  VirtualBoard board(options);
-  ImageRun run;
-  const auto started = board.start();
-  if (!started) {
-    run.error = started.error().message();
-    return run;
-  }
-  std::string text;
-  const auto on_messages = [&](const io::Batch& batch) {
-    for (io::Reader r(batch.bytes()); r.next();) {
-      const std::string payload(r.payload().begin(), r.payload().end());
-      if (r.header().kind == io::Kind::uart_received) text += payload;
-      if (r.header().kind == io::Kind::finding) run.findings += payload + "\n";
-      if (r.header().kind == io::Kind::cpu_fault) ++run.faults;
-    }
-  };
-  io::Batch happened;
-  for (int k = 1; k <= milliseconds && text.find("\ndone 1\n") == std::string::npos; ++k) {
-    board.run(k * 1'000'000LL, {});
-    const auto state = board.arrive(happened);
-    on_messages(happened);
-    if (!state) {
-      run.error += state.error().message();
-      break;
-    }
-    if (state.value() != TargetState::running) break;
-  }
-  board.stop(happened);
-  std::istringstream lines(text);
-  std::string name;
-  std::uint32_t value = 0;
-  while (lines >> name >> value) run.report[name].push_back(value);
-  if (run.report.count("done") == 0) run.error += "never done; it said:\n" + text + run.findings;
-  return run;
-}
 
 std::string bytes_at(const std::string& path, std::streamoff at, std::size_t count) {
   std::ifstream in(path, std::ios::binary);
@@ -87,19 +21,11 @@ std::string bytes_at(const std::string& path, std::streamoff at, std::size_t cou
   return bytes;
 }
 
-using Values = std::vector<std::uint32_t>;
-
-void expect_between(std::uint32_t low, const Values& got, std::uint32_t high) {
-  ASSERT_EQ(got.size(), 1u);
-  EXPECT_GE(got[0], low);
-  EXPECT_LE(got[0], high);
-}
-
 TEST(DriverImages, HalStyle) {
-  ImageRun run = run_image("hal_style",
-                           R"(,{"name":"v1","type":"volts","bus":"PA1","params.volts":1.65})"
-                           R"(,{"name":"wire","type":"jumper","cs":"PB6","int":"PA8"})",
-                           8000);
+  ImageRun run =
+      run_image({"hal_style", R"(,{"name":"v1","type":"volts","bus":"PA1","params.volts":1.65})"
+                              R"(,{"name":"wire","type":"jumper","cs":"PB6","int":"PA8"})"},
+                8000);
   ASSERT_EQ(run.error, "") << run.findings;
   EXPECT_EQ(run.faults, 0) << run.findings;
   Report& got = run.report;
@@ -119,11 +45,11 @@ TEST(DriverImages, HalStyle) {
 }
 
 TEST(DriverImages, SplStyle) {
-  ImageRun run = run_image("spl_style",
-                           R"(,{"name":"v1","type":"volts","bus":"PA1","params.volts":0.825})"
-                           R"(,{"name":"v4","type":"volts","bus":"PA4","params.volts":2.475})"
-                           R"(,{"name":"wire","type":"jumper","cs":"PC0","int":"PA0"})",
-                           1000);
+  ImageRun run =
+      run_image({"spl_style", R"(,{"name":"v1","type":"volts","bus":"PA1","params.volts":0.825})"
+                              R"(,{"name":"v4","type":"volts","bus":"PA4","params.volts":2.475})"
+                              R"(,{"name":"wire","type":"jumper","cs":"PC0","int":"PA0"})"},
+                1000);
   ASSERT_EQ(run.error, "") << run.findings;
   EXPECT_EQ(run.faults, 0) << run.findings;
   Report& got = run.report;
@@ -146,7 +72,7 @@ TEST(DriverImages, SplStyle) {
 }
 
 TEST(DriverImages, Libopencm3StyleLivesThroughBothWatchdogs) {
-  ImageRun run = run_image("libopencm3_style", "", 3000);
+  ImageRun run = run_image({"libopencm3_style", ""}, 3000);
   ASSERT_EQ(run.error, "") << run.findings;
   EXPECT_EQ(run.faults, 0) << run.findings;
   Report& got = run.report;
@@ -166,10 +92,10 @@ TEST(DriverImages, Libopencm3StyleLivesThroughBothWatchdogs) {
 }
 
 TEST(DriverImages, ChibiosStyle) {
-  ImageRun run = run_image("chibios_style",
-                           R"(,{"name":"v1","type":"volts","bus":"PA1","params.volts":1.1})"
-                           R"(,{"name":"wire","type":"jumper","cs":"PB0","int":"PB6"})",
-                           8000);
+  ImageRun run =
+      run_image({"chibios_style", R"(,{"name":"v1","type":"volts","bus":"PA1","params.volts":1.1})"
+                                  R"(,{"name":"wire","type":"jumper","cs":"PB0","int":"PB6"})"},
+                8000);
   ASSERT_EQ(run.error, "") << run.findings;
   EXPECT_EQ(run.faults, 0) << run.findings;
   Report& got = run.report;
@@ -193,12 +119,13 @@ TEST(DriverImages, StorageStyle) {
   const std::string folder = testing::TempDir() + "storage_style." + std::to_string(getpid());
   std::filesystem::create_directories(folder);
   ImageRun run = run_image(
-      "storage_style",
-      R"(,{"name":"card","type":"sd_card","bus":"spi3","cs":"PA4","size":268435456})"
-      R"(,{"name":"params","type":"eeprom_24xx","bus":"i2c2","address":80})"
-      R"(,{"name":"imu","type":"mpu6000","bus":"spi1","cs":"PB0"})"
-      R"(,{"name":"battery","type":"battery_sense","bus":"PC0","params.tolerance":0,"params.noise":0})",
-      2000, kF405, folder);
+      {"storage_style",
+       R"(,{"name":"card","type":"sd_card","bus":"spi3","cs":"PA4","size":268435456})"
+       R"(,{"name":"params","type":"eeprom_24xx","bus":"i2c2","address":80})"
+       R"(,{"name":"imu","type":"mpu6000","bus":"spi1","cs":"PB0"})"
+       R"(,{"name":"battery","type":"battery_sense","bus":"PC0","params.tolerance":0,"params.noise":0})",
+       kF405, folder},
+      2000);
   ASSERT_EQ(run.error, "") << run.findings;
   EXPECT_EQ(run.faults, 0) << run.findings;
   Report& got = run.report;
@@ -235,14 +162,15 @@ TEST(DriverImages, StorageStyle) {
 }
 
 TEST(DriverImages, EscStyleOnTheF103) {
-  ImageRun run = run_image("esc_style",
-                           R"(,{"name":"v1","type":"volts","bus":"PA1","params.volts":0.55})"
-                           R"(,{"name":"v2","type":"volts","bus":"PA2","params.volts":1.1})"
-                           R"(,{"name":"v3","type":"volts","bus":"PA3","params.volts":1.65})"
-                           R"(,{"name":"v4","type":"volts","bus":"PA4","params.volts":2.2})"
-                           R"(,{"name":"a","type":"jumper","cs":"PB6","int":"PA8"})"
-                           R"(,{"name":"b","type":"jumper","cs":"PB12","int":"PB13"})",
-                           1000, kF103);
+  ImageRun run = run_image({"esc_style",
+                            R"(,{"name":"v1","type":"volts","bus":"PA1","params.volts":0.55})"
+                            R"(,{"name":"v2","type":"volts","bus":"PA2","params.volts":1.1})"
+                            R"(,{"name":"v3","type":"volts","bus":"PA3","params.volts":1.65})"
+                            R"(,{"name":"v4","type":"volts","bus":"PA4","params.volts":2.2})"
+                            R"(,{"name":"a","type":"jumper","cs":"PB6","int":"PA8"})"
+                            R"(,{"name":"b","type":"jumper","cs":"PB12","int":"PB13"})",
+                            kF103},
+                           1000);
   ASSERT_EQ(run.error, "") << run.findings;
   EXPECT_EQ(run.faults, 2);  // its two reads beyond the memories
   Report& got = run.report;

@@ -2,34 +2,22 @@
 // follows from the messages that go in, the data sheets' rates and the protocols' scales.
 #include <gtest/gtest.h>
 
-#include <map>
-#include <sstream>
 #include <string>
-#include <vector>
 
 #include "base/near.hpp"
-#include "harness/target/virtual_board.hpp"
-#include "io_bridges/board_description/board_text.hpp"
+#include "io_bridges/qemu/tests/image_report.hpp"
 
 namespace whirl::board_test {
 namespace {
 
-using Values = std::vector<std::uint32_t>;
-
-struct RadioRun {
-  std::map<std::string, Values> report;
-  std::string findings, text, error;
-};
-
-std::string description(const std::string& sbus_keys) {
-  return std::string(R"({"board":"radios","mcu":"stm32f405rg","hse_Hz":8000000,"image":")") +
-         WHIRL_IMAGES + R"(/radio_style.elf","devices":[)" +
-         R"({"name":"terminal","type":"serial","bus":"usart2","baud":115200},)" +
-         R"({"name":"gps","type":"ublox_6","bus":"usart6","params.first_fix":7,)" +
-         R"("params.latitude":0.5,"params.longitude":1,"params.height":0,)" +
-         R"("params.wander_level":0,"params.wander_down":0,"params.velocity_noise":0},)" +
-         R"({"name":"sum","type":"cppm","bus":"PA10","params.jitter":0},)" +
-         R"({"name":"sbus","type":"sbus","bus":"uart4")" + sbus_keys + "}]}";
+ImageBoard radios(const std::string& sbus_keys) {
+  return {"radio_style",
+          std::string(R"(,{"name":"gps","type":"ublox_6","bus":"usart6",)") +
+              R"("params.first_fix":7,"params.latitude":0.5,"params.longitude":1,)" +
+              R"("params.height":0,"params.wander_level":0,"params.wander_down":0,)" +
+              R"("params.velocity_noise":0},)" +
+              R"({"name":"sum","type":"cppm","bus":"PA10","params.jitter":0},)" +
+              R"({"name":"sbus","type":"sbus","bus":"uart4")" + sbus_keys + "}"};
 }
 
 // 100 m east of the origin, 2 m/s north; sticks at 50 Hz.
@@ -43,42 +31,12 @@ void send_world(int millisecond, io::Batch& sensed) {
   sensed.add(io::Kind::rc_channels, 0, millisecond * 1'000'000LL, sticks);
 }
 
-RadioRun run_radios(const std::string& sbus_keys) {
-  RadioRun run;
-  VirtualBoardOptions options;
-  const auto start = read_board_text(description(sbus_keys));
-  EXPECT_TRUE(start) << sbus_keys;
-  if (start) options.board = start.value();
-  VirtualBoard board(options);
-  if (const auto started = board.start(); !started) {
-    run.error = started.error().message();
-    return run;
-  }
-  io::Batch happened, sensed;
-  for (int k = 1; k <= 20'000 && run.text.find("\ndone 1\n") == std::string::npos; ++k) {
-    sensed.clear();
-    send_world(k - 1, sensed);
-    board.run(k * 1'000'000LL, sensed);
-    const auto state = board.arrive(happened);
-    for (io::Reader r(happened.bytes()); r.next();) {
-      const std::string payload(r.payload().begin(), r.payload().end());
-      if (r.header().kind == io::Kind::uart_received) run.text += payload;
-      if (r.header().kind == io::Kind::finding) run.findings += payload + "\n";
-    }
-    if (!state || state.value() != TargetState::running) break;
-  }
-  board.stop(happened);
-  std::istringstream lines(run.text);
-  std::string name;
-  std::uint32_t value = 0;
-  while (lines >> name >> value) run.report[name].push_back(value);
-  if (run.report.count("done") == 0)
-    run.error += "never done; it said:\n" + run.text + run.findings;
-  return run;
+ImageRun run_radios(const std::string& sbus_keys) {
+  return run_image(radios(sbus_keys), 20'000, send_world);
 }
 
 TEST(RadioImages, GpsSumSignalAndSbusAreReadByInterrupts) {
-  RadioRun run = run_radios(R"(,"inverter":true)");
+  ImageRun run = run_radios(R"(,"inverter":true)");
   ASSERT_EQ(run.error, "");
   auto& got = run.report;
   EXPECT_EQ(got["gps_baud"], Values{9600});
@@ -109,7 +67,7 @@ TEST(RadioImages, GpsSumSignalAndSbusAreReadByInterrupts) {
 }
 
 TEST(RadioImages, WithoutAnInverterSbusIsGarbage) {
-  RadioRun run = run_radios("");
+  ImageRun run = run_radios("");
   ASSERT_EQ(run.error, "");
   EXPECT_EQ(run.report["sbus_frames"], Values{0});
   EXPECT_GT(run.report["line_errors"].at(0), 100u);

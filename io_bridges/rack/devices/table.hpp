@@ -14,6 +14,7 @@
   TYPE(battery_sense)            \
   TYPE(current_sense)            \
   TYPE(esc_i2c)                  \
+  TYPE(esc_dronecan)             \
   TYPE(ublox_6)                  \
   TYPE(ublox_m8)                 \
   TYPE(cppm)                     \
@@ -21,6 +22,8 @@
   TYPE(mavlink_link)             \
   TYPE(serial)                   \
   TYPE(i2c_master)               \
+  TYPE(can_port)                 \
+  TYPE(pod_replay)               \
   TYPE(power_stage)              \
   TYPE(pulse_source)             \
   TYPE(volts)                    \

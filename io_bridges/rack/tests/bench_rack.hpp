@@ -91,6 +91,7 @@ class BenchRack final : public Rack {
     return true;
   }
   io::I2cBus* i2c(int number) override { return number == 1 ? &i2c_bus : nullptr; }
+  io::CanBus* can(int number) override { return number == 1 ? &can_bus : nullptr; }
   bool join_spi(int bus, io::Wire& chip_select, io::SpiTarget& target, const BoardDevice&,
                 int) override {
     if (bus == 1) spi_bus.add(target, chip_select);
@@ -110,6 +111,7 @@ class BenchRack final : public Rack {
   io::Batch posted;
   io::I2cBus i2c_bus{"I2C1"};
   io::SpiBus spi_bus{"SPI1"};
+  io::CanBus can_bus{queue, "CAN1"};
   io::UartPeer* uart = nullptr;  // USART6
   Bytes uart_bytes;              // from it
   io::UartFormat uart_format;

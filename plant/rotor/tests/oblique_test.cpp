@@ -2,6 +2,7 @@
 #include "base/near.hpp"
 #include "plant/rotor/ring_loads.hpp"
 #include "plant/rotor/tests/test_blades.hpp"
+#include "plant/rotor/wake_bound.hpp"
 
 namespace whirl::plant {
 namespace {
@@ -21,6 +22,46 @@ TEST(Oblique, DragOpposesTheMotionAndGrowsWithIt) {
     last = drag;
   }
   EXPECT_GT(rotor.steady(forward(-4.0)).f_P_N.x(), 0.0);
+}
+
+// [Bangura2017, 4.4]: 0.04 s/m, +- 0.0035, of thrust and speed. The blades give a sixth of it; what the HP quad's
+// file adds by hand (0.033) makes it up.
+TEST(Oblique, TheBladesGiveASixthOfTheMeasuredDrag) {
+  constexpr double kSet_by_hand_spm = 0.033;
+  for (const double v : {1.0, 2.0, 5.0}) {
+    const RotorLoads l = Rotor(hobbyking(), 1).steady(forward(v, 3950.0));
+    const double blades_spm = -l.f_P_N.x() / (l.thrust_N * v);
+    EXPECT_TRUE(near(blades_spm, 0.006, stated(0.001, "of the speeds"))) << v;
+    EXPECT_TRUE(near(blades_spm + kSet_by_hand_spm, 0.04, stated(0.0035, "of the flights"))) << v;
+  }
+}
+
+// Of the HP quad: rotors 50 cm apart along the way, hover at 3950 rpm. What the flight leaves out at most.
+TEST(WakeBound, ARearRotorLosesNextToNothingAtWhatPlansFlyAndATwentiethAtTenMetresPerSecond) {
+  const Rotor rotor(hobbyking(), 1);
+  const double hover_N = rotor.steady(hover(3950.0)).thrust_N;
+  const double area_m2 = 3.14159265358979323846 * 0.127 * 0.127;
+  const double hover_mps = std::sqrt(hover_N / (2.0 * 1.225 * area_m2));
+  const auto lost_share = [&](double speed_mps) {
+    RotorConditions c = forward(speed_mps, 3950.0);
+    const double alone_N = rotor.steady(c).thrust_N;
+    c.v_AP_P_mps.z() = -wake_inflow_bound_mps(hover_mps, speed_mps, 0.5, 0.127);
+    return 1.0 - rotor.steady(c).thrust_N / alone_N;
+  };
+  EXPECT_EQ(lost_share(0.0), 0.0);
+  EXPECT_TRUE(near(lost_share(2.0), 0.003, stated(0.002, "snapshot; a third of a percent")));
+  EXPECT_TRUE(near(lost_share(5.0), 0.02, stated(0.008, "snapshot; two percent")));
+  EXPECT_TRUE(near(lost_share(10.0), 0.05, stated(0.015, "snapshot; a twentieth")));
+}
+
+// In hover u = vh; at high speed u V = vh^2. Far downstream of a slow rotor nothing of the sheet is left.
+TEST(WakeBound, HasTheLimitsOfMomentumTheoryAndOfTheSheet) {
+  EXPECT_TRUE(near(forward_induced_mps(4.0, 0.0), 4.0, round_off(4, 4.0)));
+  EXPECT_TRUE(near(forward_induced_mps(4.0, 80.0) * 80.0, 16.0, stated(0.01, "(vh/V)^4")));
+  EXPECT_LT(wake_inflow_bound_mps(4.0, 0.1, 0.5, 0.127), 1e-3);
+  const double fast = forward_induced_mps(4.0, 200.0);
+  EXPECT_TRUE(near(wake_inflow_bound_mps(4.0, 200.0, 0.5, 0.127), 2.0 * fast,
+                   stated(0.01 * fast, "the sheet has hardly sunk")));
 }
 
 TEST(Oblique, AdvancingSideOfACounterclockwiseRotorIsItsRight) {

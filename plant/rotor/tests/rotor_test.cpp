@@ -120,22 +120,39 @@ TEST(Rotor, HalvingTheStepHalvesItsError) {
   EXPECT_LT(ratio, 2.2);
 }
 
-// Cheeseman and Bennett: at the same power 1/(1 - (R/4z)^2) more thrust; at the same speed less.
+// Small rotors at a constant speed were found to gain what [CheesemanBennett] says, 1/(1 - (R/4z)^2)
+// [SanchezCuevas, fig. 3]; helicopters at a constant thrust to save more, which is what the model has
+// [Hayden].
 TEST(Rotor, GroundCarries) {
   const Rotor rotor(hobbyking(), 1);
   const RotorLoads free = rotor.steady(hover(4500.0));
   double last = free.thrust_N;
-  for (const double heights : {4.0, 2.0, 1.0, 0.6}) {
+  for (const double heights : {4.0, 2.0, 1.5, 1.0, 0.7, 0.5, 0.3}) {
     RotorConditions c = hover(4500.0);
     c.height_m = heights * 0.127;
     const RotorLoads loads = rotor.steady(c);
     EXPECT_GT(loads.thrust_N, last) << heights;
-    const double bound = 1.0 / (1.0 - std::pow(0.25 / heights, 2));
-    EXPECT_LT(loads.thrust_N / free.thrust_N, bound) << heights;
+    const double gain = 1.0 / (1.0 - std::pow(0.25 / heights, 2));
+    if (heights >= 0.7) {
+      EXPECT_TRUE(near(loads.thrust_N / free.thrust_N, gain, stated(0.03, "scatter of the figure")))
+          << heights;
+    }
     // The same thrust out of ground effect costs more power.
     const double same_FM = std::pow(loads.thrust_N / free.thrust_N, 1.5) * free.shaft_power_W;
     EXPECT_LT(loads.shaft_power_W, same_FM) << heights;
     last = loads.thrust_N;
+  }
+}
+
+// Forward flight blows the disc back, whichever way it turns; the lift of all blades cones it.
+TEST(Rotor, FlapsBackInForwardFlight) {
+  for (const int spin : {1, -1}) {
+    const Rotor rotor(hobbyking(), spin);
+    RotorConditions c = hover(4500.0);
+    EXPECT_GT(rotor.steady(c).flap_rad.x(), 0.0);
+    EXPECT_TRUE(near(rotor.steady(c).flap_rad.tail<2>().norm(), 0.0, stated(1e-6, "solver")));
+    c.v_AP_P_mps.x() = 5.0;
+    EXPECT_GT(rotor.steady(c).flap_rad.y(), 1e-4);
   }
 }
 

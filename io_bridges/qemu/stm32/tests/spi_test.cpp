@@ -191,27 +191,5 @@ TEST(Spi, DmaMovesFifteenBytesBothWaysBackToBack) {
   EXPECT_EQ(bench.get(0x40026400), (3u << 4) | (3u << 26));  // HTIF, TCIF of streams 0 and 3
 }
 
-TEST(Spi, AsASlaveItAnswersWithWhatStoodInDr) {
-  io::EventQueue events;
-  struct Nothing : InterruptLines, SystemBus {
-    void set(int, bool) override {}
-    bool read(std::uint32_t, unsigned, std::uint32_t&) override { return false; }
-    bool write(std::uint32_t, unsigned, std::uint32_t) override { return false; }
-  } nothing;
-  ChipBench clocks;
-  Signal sck("SCK"), miso("MISO"), mosi("MOSI"), nss("NSS");
-  for (Signal* s : {&sck, &miso, &mosi, &nss}) s->route(1);
-  const Clocks& c = clocks.chip().clocks();
-  Spi spi("SPI2", {events, nothing, nothing, const_cast<Clocks&>(c), {}}, 36, false,
-          {sck, miso, mosi, nss});
-  spi.write(0, 0x40, 4);
-  spi.write(0xC, 0x3C, 4);
-  EXPECT_EQ(spi.exchange_as_slave(0x99), 0xFFFF);  // NSS is high
-  nss.sense(false, 0);
-  EXPECT_EQ(spi.exchange_as_slave(0x99), 0x3C);
-  EXPECT_EQ(spi.read(8, 4), RXNE | TXE);
-  EXPECT_EQ(spi.read(0xC, 4), 0x99u);
-}
-
 }  // namespace
 }  // namespace whirl::stm32

@@ -90,6 +90,7 @@ typedef struct {
 
 int main(void);
 void say(const char* name, uint32_t value); /* "name value\n" through the image's own send() */
+void clock_168_MHz(void);                   /* from a crystal of 8 MHz; DWT counts from 0 */
 void send(char c);                          /* each image's own UART driver */
 
 #define wait_for_interrupt() __asm volatile("wfi" ::: "memory")

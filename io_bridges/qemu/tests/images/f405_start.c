@@ -30,16 +30,40 @@ void say(const char* name, uint32_t value) {
   send('\n');
 }
 
+void clock_168_MHz(void) {
+  RCC->CR |= 1u << 16;
+  while ((RCC->CR & 1u << 17) == 0) {
+  }
+  RCC->APB1ENR |= 1u << 28;
+  PWR_CR |= 1u << 14;
+  RCC->PLLCFGR = 8 | 336u << 6 | 1u << 22 | 7u << 24;
+  RCC->CR |= 1u << 24;
+  while ((RCC->CR & 1u << 25) == 0) {
+  }
+  FLASH_ACR = 1u << 8 | 1u << 9 | 1u << 10 | 5;
+  RCC->CFGR = 2 | 4u << 13 | 5u << 10;
+  while ((RCC->CFGR & 0xC) != 8) {
+  }
+  DEMCR |= 1u << 24;
+  DWT_CYCCNT = 0;
+  DWT_CTRL |= 1;
+}
+
 #define HANDLER(name) __attribute__((weak, alias("unexpected"))) void name(void)
 HANDLER(SysTick_Handler);
 HANDLER(WWDG_Handler);
 HANDLER(EXTI0_Handler);
+HANDLER(EXTI1_Handler);
+HANDLER(EXTI3_Handler);
 HANDLER(ADC_Handler);
 HANDLER(CAN1_RX0_Handler);
 HANDLER(TIM1_CC_Handler);
 HANDLER(TIM2_Handler);
 HANDLER(TIM3_Handler);
 HANDLER(TIM4_Handler);
+HANDLER(I2C2_EV_Handler);
+HANDLER(I2C2_ER_Handler);
+HANDLER(SPI2_Handler);
 HANDLER(USART2_Handler);
 HANDLER(RTC_Alarm_Handler);
 HANDLER(UART4_Handler);
@@ -66,12 +90,17 @@ const vector vectors[16 + 82] = {(vector)stack_top,
                                  SysTick_Handler,
                                  [16 + 0] = WWDG_Handler,
                                  [16 + 6] = EXTI0_Handler,
+                                 [16 + 7] = EXTI1_Handler,
+                                 [16 + 9] = EXTI3_Handler,
                                  [16 + 18] = ADC_Handler,
                                  [16 + 20] = CAN1_RX0_Handler,
                                  [16 + 27] = TIM1_CC_Handler,
                                  [16 + 28] = TIM2_Handler,
                                  [16 + 29] = TIM3_Handler,
                                  [16 + 30] = TIM4_Handler,
+                                 [16 + 33] = I2C2_EV_Handler,
+                                 [16 + 34] = I2C2_ER_Handler,
+                                 [16 + 36] = SPI2_Handler,
                                  [16 + 38] = USART2_Handler,
                                  [16 + 41] = RTC_Alarm_Handler,
                                  [16 + 52] = UART4_Handler,

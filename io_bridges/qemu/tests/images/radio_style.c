@@ -9,24 +9,10 @@
 #define CYCLES_PER_MS 168000u
 
 static void clocks(void) {
-  RCC->CR |= 1u << 16;
-  while ((RCC->CR & 1u << 17) == 0) {
-  }
-  RCC->APB1ENR |= 1u << 28 | 1u << 17 | 1u << 19;
+  clock_168_MHz();
+  RCC->APB1ENR |= 1u << 17 | 1u << 19;
   RCC->APB2ENR |= 1u << 0 | 1u << 5;
   RCC->AHB1ENR |= 7;
-  PWR_CR |= 1u << 14;
-  RCC->PLLCFGR = 8 | 336u << 6 | 1u << 22 | 7u << 24;
-  RCC->CR |= 1u << 24;
-  while ((RCC->CR & 1u << 25) == 0) {
-  }
-  FLASH_ACR = 1u << 8 | 1u << 9 | 1u << 10 | 5;
-  RCC->CFGR = 2 | 4u << 13 | 5u << 10;
-  while ((RCC->CFGR & 0xC) != 8) {
-  }
-  DEMCR |= 1u << 24;
-  DWT_CYCCNT = 0;
-  DWT_CTRL |= 1;
   SYSTICK_LOAD = CYCLES_PER_MS - 1;
   SYSTICK_VAL = 0;
   SYSTICK_CTRL = 7;

@@ -1,0 +1,36 @@
+// The host's frames, and the status that goes back 100 times a second.
+//
+//   Read     from the main loop, more often than the UART's ring of 256 bytes wraps (0.85 ms)
+//   Status   0x81, 44 bytes: PWR_MGMT_1, CONFIG, SMPLRT_DIV, GYRO_CONFIG, ACCEL_CONFIG, INT_ENABLE,
+//            INT_PIN_CFG, USER_CTRL; number of the newest sample, of the newest oddity, samples overdue
+//            (0, 1), a zero; then as u32 the samples' flags (bit 0: the newest; lost or late), as u16
+//            samples lost, late, damaged frames, oddities, overlaps, late re-arms, and as u32 transfers,
+//            bursts, samples taken, the longest turn of the main loop in us
+#pragma once
+#include <cstdint>
+
+#include "firmware/pod/host_frame.hpp"
+#include "firmware/pod/sample_watch.hpp"
+
+namespace fw::pod {
+
+class HostLink {
+ public:
+  void start();
+  void poll(std::uint32_t now_us);
+
+ private:
+  void on_frame(const Frame& frame, std::uint32_t now_us);
+  void on_slow_frame(const Frame& frame);
+  void send_setpoints();
+  void send_status(std::uint32_t now_us);
+
+  FrameReader reader_;
+  SampleWatch watch_;
+  std::uint32_t status_due_us_ = 0, turned_us_ = 0, longest_turn_us_ = 0;
+  std::uint8_t status_number_ = 0, setpoint_number_ = 0;
+};
+
+extern HostLink host_link;
+
+}  // namespace fw::pod

@@ -1,0 +1,14 @@
+// TIM2 counts microseconds; TIM7 ends the one pulse at a time that the pod makes.
+#pragma once
+#include <cstdint>
+
+namespace fw::pod {
+
+void start_time();
+std::uint32_t now_us();  // wraps after 71 minutes
+std::int64_t now_ns();   // does not; call it more often than that. In steps of a microsecond
+void pulse_timer(std::uint32_t us);  // pulse_over() then; 0: not at all
+
+void pulse_over();  // supplied by the application; from TIM7's interrupt, kPriorityParts
+
+}  // namespace fw::pod

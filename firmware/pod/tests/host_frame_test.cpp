@@ -1,0 +1,99 @@
+// The pod's side of its UART link, against frames typed from the layout (checksums by the catalogue's
+// definition of CRC-16/MCRF4XX, the same bytes as in the host's test).
+#include "firmware/pod/host_frame.hpp"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "firmware/pod/sample_watch.hpp"
+#include "io_bridges/protocols/pod_link.hpp"
+
+namespace fw::pod {
+namespace {
+
+const std::vector<std::uint8_t> kSample{0xA5, 0x01, 0x07, 0x0F, 0x00, 0x01, 0x00,
+                                        0xFE, 0xFF, 0x00, 0x08, 0xFD, 0xFF, 0x64,
+                                        0x00, 0x00, 0x80, 0xFF, 0x7F, 0x19, 0x3C};
+
+std::vector<Frame> read(const std::vector<std::uint8_t>& bytes, std::uint32_t damaged) {
+  FrameReader reader;
+  std::vector<Frame> all;
+  for (const std::uint8_t byte : bytes) {
+    if (reader.add(byte)) all.push_back(reader.frame());
+  }
+  EXPECT_EQ(reader.damaged(), damaged);
+  return all;
+}
+
+TEST(HostFrame, ASampleIsReadLowByteFirst) {
+  std::vector<std::uint8_t> bytes{0x00, 0x13};  // of no frame
+  bytes.insert(bytes.end(), kSample.begin(), kSample.end());
+  const auto all = read(bytes, 0);
+  ASSERT_EQ(all.size(), 1u);
+  EXPECT_EQ(all[0].kind, FrameKind::sample);
+  EXPECT_EQ(all[0].sequence, 7);
+  const std::int16_t want[] = {1, -2, 2048, -3, 100, -32768, 32767};
+  for (std::size_t i = 0; i < 7; ++i) EXPECT_EQ(all[0].word(1 + 2 * i), want[i]) << i;
+}
+
+TEST(HostFrame, AFlippedBitCostsThatFrameOnlyAndIsCounted) {
+  for (std::size_t at = 1; at < kSample.size(); ++at) {
+    if (at == 3) continue;  // a wrong length swallows what follows, too
+    std::vector<std::uint8_t> bytes = kSample;
+    bytes[at] ^= 0x01;
+    bytes.insert(bytes.end(), kSample.begin(), kSample.end());
+    EXPECT_EQ(read(bytes, 1).size(), 1u) << at;
+  }
+}
+
+TEST(HostFrame, ALengthThatNoFrameHasIsDropped) {
+  std::vector<std::uint8_t> bytes{0xA5, 0x01, 0x07, 0xFF};
+  bytes.insert(bytes.end(), kSample.begin(), kSample.end());
+  EXPECT_EQ(read(bytes, 1).size(), 1u);
+}
+
+TEST(HostFrame, WhatThePodWritesTheHostReads) {
+  FrameWriter out(FrameKind::status, 9);
+  for (const int byte : {1, 1, 0, 0x18, 0x18, 1, 0x10, 0x10, 7, 3, 1, 0}) {
+    out.byte(static_cast<std::uint32_t>(byte));
+  }
+  out.word(0x80000001);
+  for (std::uint32_t i = 1; i <= 6; ++i) out.half(i);
+  for (const std::uint32_t word : {100000u, 70000u, 70001u, 17u}) out.word(word);
+  int heard = 0;
+  whirl::io::PodLinkReader host([&](const whirl::io::PodStatus& s) {
+    ++heard;
+    EXPECT_EQ(s.late_rearm, 6);
+    EXPECT_EQ(s.bursts, 70000u);
+  });
+  for (const std::uint8_t byte : out.finish()) host.add(byte);
+  EXPECT_EQ(heard, 1);
+  EXPECT_EQ(host.damaged(), 0u);
+}
+
+TEST(SampleWatch, ALostSampleIsFlaggedInItsPlace) {
+  SampleWatch watch;
+  watch.came(254, 0);
+  watch.came(255, 1000);
+  watch.came(1, 3000);  // 0 never came
+  watch.came(2, 4000);
+  EXPECT_EQ(watch.lost(), 1u);
+  EXPECT_EQ(watch.late(), 0u);
+  EXPECT_EQ(watch.flagged(), 0b100u);
+}
+
+TEST(SampleWatch, ALateOneIsFlaggedItself) {
+  SampleWatch watch;
+  watch.came(1, 0);
+  EXPECT_FALSE(watch.overdue(1250));
+  EXPECT_TRUE(watch.overdue(1251));
+  watch.came(2, 1251);
+  watch.came(3, 2251);
+  EXPECT_EQ(watch.lost(), 0u);
+  EXPECT_EQ(watch.late(), 1u);
+  EXPECT_EQ(watch.flagged(), 0b10u);
+}
+
+}  // namespace
+}  // namespace fw::pod

@@ -1,0 +1,233 @@
+#include "harness/composition/stand_in_command.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cstdio>
+#include <filesystem>
+#include <thread>
+
+#include "base/interruption.hpp"
+#include "base/output_file.hpp"
+#include "base/places.hpp"
+#include "harness/catalogue/board_file.hpp"
+#include "harness/catalogue/stand_table.hpp"
+#include "harness/cli/console.hpp"
+#include "harness/cli/find_file.hpp"
+#include "harness/pacing/host_clock.hpp"
+#include "harness/stand/stand_world.hpp"
+#include "harness/standin/stand_in.hpp"
+#include "harness/target/bench/can_link.hpp"
+#include "harness/target/virtual_board.hpp"
+#include "io_bridges/hid/emulated/mcp2221_chip.hpp"
+#include "io_bridges/hid/emulated/uhid_device.hpp"
+
+namespace whirl {
+namespace {
+
+constexpr std::int64_t kTurn_ns = 2'000'000;
+
+class CarrierOfStandIn final : public io::I2cCarrier {
+ public:
+  explicit CarrierOfStandIn(StandIn& stand_in) : stand_in_(stand_in) {}
+
+  void begin(std::uint8_t address, std::vector<std::uint8_t> write, std::size_t read) override {
+    open_ = stand_in_.begin({address, std::move(write), static_cast<std::uint16_t>(read)});
+  }
+  std::optional<io::CarriedOutcome> outcome() override {
+    std::erase_if(abandoned_, [&](auto number) { return stand_in_.outcome(number).has_value(); });
+    if (!open_) return std::nullopt;
+    auto outcome = stand_in_.outcome(*open_);
+    if (!outcome) return std::nullopt;
+    open_.reset();
+    return io::CarriedOutcome{outcome->acked, outcome->timed_out, std::move(outcome->bytes)};
+  }
+  void abandon() override {
+    if (open_) abandoned_.push_back(*open_);
+    open_.reset();
+  }
+
+ private:
+  StandIn& stand_in_;
+  std::optional<std::uint32_t> open_;
+  std::vector<std::uint32_t> abandoned_;
+};
+
+// Its chip and its device live together: the kernel sees it as long as this does.
+class PlayedBridge {
+ public:
+  PlayedBridge(StandIn& stand_in, const std::string& serial)
+      : carrier_(stand_in), chip_(queue_, carrier_, serial) {}
+
+  Result<Done> plug_in() {
+    auto made = io::UhidDevice::create(queue_, chip_);
+    if (!made) return made.error();
+    device_ = std::move(made.value());
+    return Done{};
+  }
+  void serve() { device_->serve(kTurn_ns); }
+
+ private:
+  io::EventQueue queue_;
+  CarrierOfStandIn carrier_;
+  io::Mcp2221Chip chip_;
+  std::unique_ptr<io::UhidDevice> device_;
+};
+
+struct Parts {
+  BoardDescription board;
+  std::string image;
+  stand::StandParams stand;
+  bool bridge = false;  // its I2C is played
+  int can_bus = 1;
+};
+
+bool has_type(const BoardDescription& board, const std::string& type) {
+  return std::any_of(board.devices.begin(), board.devices.end(),
+                     [&](const BoardDevice& device) { return device.type == type; });
+}
+
+Result<Parts> read_parts(const cli::StandInRequest& request, const std::string& root) {
+  const cli::Asker asker{".", "whirl standin"};
+  const auto board = cli::find_file(request.board, asker, {root + "/test_plans/boards"}, ".lua");
+  if (!board) return board.error();
+  auto described = read_board(board.value());
+  if (!described) return described.error();
+  const auto image = cli::find_file(request.image, asker, image_folders(root), ".elf");
+  if (!image) return image.error();
+  const auto table = lua::read_text("return " + request.stand, "--stand");
+  if (!table) return table.error();
+  auto stand = catalogue::read_stand(table.value(), root + "/test_plans/propellers");
+  if (!stand) return stand.error();
+  if (!has_type(described.value(), "i2c_master") && request.can.empty()) {
+    return Error{ErrorKind::bad_input, board.value(), "has no i2c_master: nothing commands it",
+                 "esc32v2; of a board with a can_port: --can INTERFACE"};
+  }
+  if (!request.can.empty() && !has_type(described.value(), "can_port")) {
+    return Error{ErrorKind::bad_input, board.value(),
+                 "has no can_port: nothing joins its CAN to " + request.can, "without --can"};
+  }
+  stand.value().commands = false;
+  Parts parts{described.value(), image.value(), stand.value()};
+  parts.bridge = request.bridge && has_type(parts.board, "i2c_master");
+  for (const BoardDevice& device : parts.board.devices) {
+    if (device.type == "can_port") parts.can_bus = bus_number(device.bus).value_or(1);
+  }
+  return parts;
+}
+
+std::string bench_file(const cli::StandInRequest& request, const Parts& parts) {
+  const std::string folder = std::filesystem::absolute(request.folder);
+  const std::string i2c = "i2c" + std::to_string(parts.stand.esc.i2c);
+  const std::string usart = "usart" + std::to_string(parts.stand.esc.serial);
+  std::string text =
+      "-- A stand-in at its own wires, as `whirl standin` left it: no metal turns.\n";
+  text += "return {\n  bench = \"stand_in\", board = \"" + parts.board.name +
+          "\", pace = " + std::to_string(request.pace) +
+          ",\n  late = \"5 ms\", late_share = \"2 %\",\n  links = {\n";
+  if (!request.can.empty()) {
+    text += "    { name = \"bus\", bus = \"can" + std::to_string(parts.can_bus) +
+            "\", interface = \"" + request.can + "\" },\n";
+  }
+  if (parts.bridge) {
+    text += "    { name = \"throttle\", bus = \"" + i2c + "\", bridge = \"mcp2221a\", serial = \"" +
+            request.serial + "\" },\n";
+  }
+  text += "    { name = \"terminal\", bus = \"" + usart + "\", path = \"" + folder +
+          "/serial\", baud = \"921600 baud\" },\n  },\n";
+  text +=
+      "  instruments = { { name = \"cell\", path = \"" + folder + "/instruments\", readings = {\n";
+  text +=
+      "    { signal = \"thrust\", column = 1, scale = \"1 N\" },\n"
+      "    { signal = \"bus_voltage\", column = 2, scale = \"1 V\" },\n"
+      "    { signal = \"supply_current\", column = 3, scale = \"1 A\" } } } },\n"
+      "  signals = { speed = \"told_speed\" },\n"
+      "  safety = { phrase = \"nothing turns\", longest = \"60 s\", heartbeat = \"1 s\",\n"
+      "    limits = { { signal = \"supply_current\", low = \"-5 A\", high = \"22 A\" } } },\n}\n";
+  return text;
+}
+
+Result<StandInOptions> open_wires(const cli::StandInRequest& request, const Parts& parts) {
+  std::error_code status;
+  std::filesystem::create_directories(request.folder, status);
+  StandInOptions wires;
+  wires.pace = request.pace;
+  wires.uart = parts.stand.esc.serial;
+  wires.i2c = parts.stand.esc.i2c;
+  auto serial = io::PseudoTerminal::open(request.folder + "/serial");
+  if (!serial) return serial.error();
+  wires.serial.emplace(std::move(serial.value()));
+  auto instruments = io::PseudoTerminal::open(request.folder + "/instruments");
+  if (!instruments) return instruments.error();
+  wires.instruments.emplace(std::move(instruments.value()));
+  if (!request.can.empty()) {
+    auto can = bench::socket_can_port({"bus", request.can});
+    if (!can) return can.error();
+    wires.can = std::move(can.value());
+    wires.can_bus = static_cast<std::uint16_t>(parts.can_bus);
+  }
+  wires.told = {"thrust", "bus_voltage", "supply_current"};
+  const auto written = write_text(request.folder + "/bench.lua", bench_file(request, parts));
+  if (!written) return written.error();
+  return wires;
+}
+
+// Until a signal, the end of the time, or the board's own end.
+void wait(const cli::StandInRequest& request, PlayedBridge* bridge,
+          const std::atomic<bool>& ended) {
+  pacing::MonotonicClock clock;
+  const std::int64_t begin_ns = clock.now_ns();
+  const auto limit_ns = static_cast<std::int64_t>(request.seconds * 1e9);
+  while (interrupted_by() == 0 && !ended) {
+    if (request.seconds > 0.0 && clock.now_ns() - begin_ns > limit_ns) return;
+    bridge != nullptr ? bridge->serve() : clock.sleep_until(clock.now_ns() + kTurn_ns);
+  }
+}
+
+void say_lateness(const StandIn& stand_in, double pace) {
+  const pacing::Lateness& late = stand_in.lateness();
+  std::printf("%lld steps of 1 ms at pace %g; worst %.2f ms late, %.2f s given up\n",
+              static_cast<long long>(late.steps), pace, static_cast<double>(late.worst_ns) * 1e-6,
+              static_cast<double>(late.slipped_ns) * 1e-9);
+}
+
+}  // namespace
+
+int stand_in_command(const cli::StandInRequest& request, const std::string& root) {
+  const auto parts = read_parts(request, root);
+  if (!parts) return cli::complain(parts.error());
+  auto wires = open_wires(request, parts.value());
+  if (!wires) return cli::complain(wires.error());
+  stand::StandWorld world(parts.value().stand, 1);
+  VirtualBoardOptions options;
+  options.board = {parts.value().board, {.image = parts.value().image, .seed = 1}};
+  VirtualBoard board(std::move(options));
+  pacing::MonotonicClock clock;
+  StandIn stand_in(world, board, clock, std::move(wires.value()));
+  PlayedBridge bridge(stand_in, request.serial);
+  if (parts.value().bridge) {
+    if (const auto plugged = bridge.plug_in(); !plugged) {
+      Error refused = plugged.error();
+      refused.cure += ", or --no-bridge";
+      return cli::complain(refused);
+    }
+  }
+  std::printf(
+      "%s stands in; whirl run test_plans/bench --target bench/%s/bench.lua --arm "
+      "\"nothing turns\"\n",
+      parts.value().board.name.c_str(), request.folder.c_str());
+  std::fflush(stdout);
+  std::optional<Error> failed;
+  std::atomic<bool> ended = false;
+  std::thread runner([&] {
+    if (const auto ran = stand_in.run(); !ran) failed = ran.error();
+    ended = true;
+  });
+  wait(request, parts.value().bridge ? &bridge : nullptr, ended);
+  stand_in.end();
+  runner.join();
+  if (failed) return cli::complain(*failed);
+  say_lateness(stand_in, request.pace);
+  return 0;
+}
+
+}  // namespace whirl

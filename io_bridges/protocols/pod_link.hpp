@@ -1,0 +1,71 @@
+// The frames between a host and the pod on its UART: 0xA5, kind, sequence, length, payload, CRC-16/MCRF4XX
+// over kind to payload, low byte first.
+//
+//   To the pod   0x01 sample: flags, accelerometer x y z, temperature, gyro x y z (int16, counts)
+//                0x02 faults: flags (bit 0 frozen, bit 1 no supply), identity (0: its own)
+//                0x03 barometer: quantity (0 pressure, 1 temperature), counts; 0x04 its PROM
+//                0x05 magnetometer: x, y, z; 0x06 an ESC's status: number, mA, rpm, flags
+//   From it      0x81 status (44 bytes): settings, what was lost or late, and counters
+//                0x82 a set-point came: number of the ESC, 1: valid, value
+//   Errors       a damaged or unknown frame is skipped and counted
+#pragma once
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+namespace whirl::io {
+
+inline constexpr std::size_t kPodSampleBytes = 21;  // on the line
+
+struct PodStatus {
+  std::array<std::uint8_t, 8>
+      settings{};  // PWR_MGMT_1, CONFIG, SMPLRT_DIV, GYRO_CONFIG, ACCEL_CONFIG,
+                   // INT_ENABLE, INT_PIN_CFG, USER_CTRL
+  std::uint8_t newest_sample = 0, newest_oddity = 0;
+  bool overdue = false;
+  std::uint32_t flagged = 0;  // bit 0: the newest sample; set: it was lost or late
+  std::uint16_t lost = 0, late = 0, damaged = 0, oddities = 0, overlaps = 0, late_rearm = 0;
+  std::uint32_t transfers = 0, bursts = 0, samples = 0, longest_turn_us = 0;
+};
+
+std::vector<std::uint8_t> pack_pod_sample(std::uint8_t sequence,
+                                          const std::array<std::int16_t, 7>& counts);
+std::vector<std::uint8_t> pack_pod_faults(std::uint8_t sequence, bool frozen, bool no_supply,
+                                          std::uint8_t identity);
+
+std::vector<std::uint8_t> pack_pod_barometer(std::uint8_t sequence, std::uint8_t quantity,
+                                             std::uint32_t counts);
+std::vector<std::uint8_t> pack_pod_prom(std::uint8_t sequence,
+                                        const std::array<std::uint16_t, 8>& words);
+std::vector<std::uint8_t> pack_pod_magnetometer(std::uint8_t sequence,
+                                                const std::array<std::int16_t, 3>& counts);
+std::vector<std::uint8_t> pack_pod_esc(std::uint8_t sequence, std::uint8_t esc,
+                                       std::int16_t current_mA, std::uint16_t speed_rpm,
+                                       std::uint8_t flags);
+
+struct PodSetpoint {
+  std::uint8_t esc = 0;  // 0..3
+  bool valid = false;
+  std::uint16_t value = 0;
+};
+
+class PodLinkReader {
+ public:
+  explicit PodLinkReader(std::function<void(const PodStatus&)> on_status)
+      : on_status_(std::move(on_status)) {}
+  void on_setpoint(std::function<void(const PodSetpoint&)> sink) { on_setpoint_ = std::move(sink); }
+  void add(std::uint8_t byte);
+  std::uint64_t damaged() const { return damaged_; }
+
+ private:
+  void frame();
+
+  std::function<void(const PodStatus&)> on_status_;
+  std::function<void(const PodSetpoint&)> on_setpoint_;
+  std::vector<std::uint8_t> bytes_;
+  std::uint64_t damaged_ = 0;
+};
+
+}  // namespace whirl::io

@@ -1,0 +1,18 @@
+// Every frame on a CAN bus becomes a message, good or not.
+#pragma once
+#include <functional>
+
+#include "io_bridges/devices/can_bus.hpp"
+#include "io_bridges/messages/messages.hpp"
+#include "io_bridges/qemu/stm32/chip_model.hpp"
+
+namespace whirl::board {
+
+void log_can(io::CanBus& bus, int number, io::Batch& happened);
+
+// The first frame that firmware sends on a CAN bus with no device at all is a finding: nobody
+// acknowledges it, and it leaves no other trace.
+void watch_empty_can(const std::function<bool(int bus)>& used, stm32::ChipModel& chip,
+                     const io::FindingSink& finding);
+
+}  // namespace whirl::board
