@@ -1,5 +1,7 @@
 #include "harness/catalogue/propeller_file.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <map>
 #include <numbers>
@@ -8,8 +10,8 @@
 #include "base/rpm.hpp"
 #include "base/whole_file.hpp"
 #include "harness/lua/table.hpp"
+#include "plant/rotor/known_blades.hpp"
 #include "plant/rotor/polar.hpp"
-#include "plant/rotor/section_rules.hpp"
 #include "plant/rotor/twist_fit.hpp"
 
 namespace whirl::catalogue {
@@ -31,6 +33,15 @@ Result<std::shared_ptr<const plant::PolarFamily>> load_polar(const lua::Table& f
   return std::make_shared<const plant::PolarFamily>(std::move(polar.value()));
 }
 
+Result<std::shared_ptr<const plant::KnownBlades>> load_known() {
+  const std::string path = polar_folder() + "/../propellers/known.txt";
+  const auto text = read_whole_file(path);
+  if (!text) return text.error();
+  auto known = plant::read_known(text.value(), path);
+  if (!known) return known.error();
+  return std::make_shared<const plant::KnownBlades>(std::move(known.value()));
+}
+
 plant::BladeMaterial material_of(const lua::Table& t) {
   static const std::map<std::string, plant::BladeMaterial> kMaterials = {
       {"rigid", {}},
@@ -46,53 +57,131 @@ plant::BladeMaterial material_of(const lua::Table& t) {
   return found == kMaterials.end() ? plant::BladeMaterial{} : found->second;
 }
 
-}  // namespace
+// A whole propeller of ordinary make weighs 7 to 15 g at 10 in and grows with the cube.
+void check_mass(const lua::Table& t, const plant::PropellerDescription& d) {
+  const double usual_kg = 0.01 * std::pow(d.diameter_m / 0.254, 3.0);
+  if (d.mass_kg > 20.0 * usual_kg) {
+    t.refuse("mass", "is over twenty times that of a propeller of this diameter",
+             "give the whole propeller, e.g. \"9 g\"");
+  }
+}
 
-Result<std::shared_ptr<const plant::Blade>> read_propeller(const std::string& path) {
-  const auto file = lua::read_file(path);
-  if (!file) return file.error();
-  const lua::Table& t = file.value();
-  plant::PropellerDescription d;
+void read_stations(const lua::Table& t, plant::PropellerDescription& d) {
+  double steepest = 0.0;
+  for (const lua::Table& s : t.tables("stations")) {
+    const double beta = s.number("beta");
+    steepest = std::max(steepest, std::abs(beta));
+    d.stations.push_back({s.number("r", lua::between(0.0, 1.0)), s.number("c", lua::above(0.0)),
+                          beta * std::numbers::pi / 180.0});
+  }
+  if (!d.stations.empty() && steepest < 1.6) {
+    t.refuse("stations", "no beta is above 1.6: these look like radians", "beta is in degrees");
+  }
+}
+
+// CT and CP, or newtons and watts at the density of that day.
+void read_static(const lua::Table& t, plant::PropellerDescription& d) {
+  if (!t.has("static")) return;
+  if (t.has("tip_twist_correction")) {
+    t.refuse("tip_twist_correction", "does not go with static", "static finds it; leave one out");
+  }
+  const double density =
+      t.quantity_or("density", Dimension::density, 1.225, lua::between(0.3, 2.0));
+  for (const lua::Table& s : t.tables("static")) {
+    const double omega = radps_of(s.number("rpm", lua::above(0.0)));
+    const double n = omega / (2.0 * std::numbers::pi);
+    const double scale = density * n * n * std::pow(d.diameter_m, 4.0);
+    plant::StaticPoint p{omega};
+    p.thrust_coefficient = s.has("thrust")
+                               ? s.quantity("thrust", Dimension::force, lua::above(0.0)) / scale
+                               : s.number("CT", lua::above(0.0));
+    if (s.has("power")) {
+      p.power_coefficient =
+          s.quantity("power", Dimension::power, lua::above(0.0)) / (scale * n * d.diameter_m);
+    } else if (s.has("CP")) {
+      p.power_coefficient = s.number("CP", lua::above(0.0));
+    }
+    d.static_points.push_back(p);
+  }
+}
+
+// What a fitted blade has in its traits already.
+void refuse_without_polars(const lua::Table& t) {
+  for (const char* key : {"material", "induced_factor", "stall_delay"}) {
+    if (!t.has(key)) continue;
+    t.refuse(key, "goes with polars", "without polars it is part of what is fitted; leave it out");
+  }
+}
+
+struct Named {
+  plant::PropellerDescription description;
+  std::vector<std::pair<double, std::string>> polars;
+};
+
+Named read_table(const lua::Table& t, const std::string& path) {
+  Named named;
+  plant::PropellerDescription& d = named.description;
   d.place = path;
   std::ignore = t.choice("kind", {"propeller"});
   d.name = t.text("name");
   d.blade_count = static_cast<int>(t.integer("blades", 1, 8));
   d.diameter_m = t.quantity("diameter", Dimension::length, lua::above(0.0));
   d.mass_kg = t.quantity("mass", Dimension::mass, lua::above(0.0));
-  d.induced_factor = t.number_or("induced_factor", d.induced_factor, lua::at_least(1.0));
-  d.material = material_of(t);
+  check_mass(t, d);
+  read_stations(t, d);
+  read_static(t, d);
   d.thickness_over_chord =
       t.number_or("thickness", d.thickness_over_chord, lua::between(0.02, 0.3));
-  d.stall_delay = t.flag_or("stall_delay", d.stall_delay);
+  if (t.has("angles")) d.drawn = t.choice("angles", {"drawn", "read"}) == "drawn";
   d.tip_twist_correction_rad =
       t.quantity_or("tip_twist_correction", Dimension::angle, d.tip_twist_correction_rad);
-  for (const lua::Table& s : t.tables("stations")) {
-    d.stations.push_back({s.number("r", lua::between(0.0, 1.0)), s.number("c", lua::above(0.0)),
-                          s.number("beta") * std::numbers::pi / 180.0});
+  if (!t.has("polars")) {
+    refuse_without_polars(t);
+    return named;
   }
-  if (t.has("static")) {
-    for (const lua::Table& s : t.tables("static")) {
-      d.static_points.push_back(
-          {radps_of(s.number("rpm", lua::above(0.0))), s.number("CT", lua::above(0.0))});
-    }
+  d.induced_factor = t.number_or("induced_factor", d.induced_factor, lua::at_least(1.0));
+  d.material = material_of(t);
+  d.stall_delay = t.flag_or("stall_delay", d.stall_delay);
+  for (const lua::Table& p : t.tables("polars")) {
+    named.polars.emplace_back(p.number("r"), p.text("file"));
   }
-  std::vector<std::pair<double, std::string>> polars;
-  if (t.has("polars")) {
-    for (const lua::Table& p : t.tables("polars")) {
-      polars.emplace_back(p.number("r"), p.text("file"));
-    }
-  } else {
-    for (const auto& s : plant::sections_for(d.thickness_over_chord)) {
-      polars.emplace_back(s.r_over_R, s.polar + ".polar");
-    }
-  }
-  if (const auto good = t.finish(); !good) return good.error();
-  for (const auto& [r, name] : polars) {
-    auto polar = load_polar(t, path, name);
+  return named;
+}
+
+Result<PropellerFile> fitted(plant::PropellerDescription d) {
+  auto known = load_known();
+  if (!known) return known.error();
+  d.known = std::move(known.value());
+  auto fit = plant::fit_blade(std::move(d));
+  if (!fit) return fit.error();
+  PropellerFile read{fit.value().blade, {}};
+  read.fit = std::move(fit.value());
+  return read;
+}
+
+}  // namespace
+
+Result<PropellerFile> read_propeller_file(const std::string& path) {
+  const auto file = lua::read_file(path);
+  if (!file) return file.error();
+  Named named = read_table(file.value(), path);
+  if (const auto good = file.value().finish(); !good) return good.error();
+  plant::PropellerDescription& d = named.description;
+  if (named.polars.empty()) return fitted(std::move(d));
+  for (const auto& [r, name] : named.polars) {
+    auto polar = load_polar(file.value(), path, name);
     if (!polar) return polar.error();
     d.sections.push_back({r, polar.value()});
   }
-  return plant::make_fitted_blade(std::move(d));
+  auto blade = plant::make_fitted_blade(std::move(d));
+  if (!blade) return blade.error();
+  return PropellerFile{blade.value(), {}};
+}
+
+Result<std::shared_ptr<const plant::Blade>> read_propeller(const std::string& path) {
+  auto read = read_propeller_file(path);
+  if (!read) return read.error();
+  return read.value().blade;
 }
 
 }  // namespace whirl::catalogue

@@ -47,6 +47,7 @@ constexpr const char* kExamples = R"(Examples:
   whirl list                                   what plans there are
   whirl sweep test_plans/vehicles/hp_quad.lua  motor, propeller and hover point in figures and curves
   whirl validate                               the plant over its reference points
+  whirl validate prop.lua points_5000.txt      a propeller over its own measured points
   whirl validate --timing                      cycles of instructions, against the data sheets
   whirl calibrate esc test_plans/calibrations/hk_10x4.5.lua
                                                constants of an ESC, its motor and its propeller
@@ -296,6 +297,8 @@ CLI::App* add_sweep(CLI::App& app, SweepOptions& options) {
                      "end of the static sweep (default 6000 rpm)");
   sweeps->add_option("--voltage", options.voltage,
                      "of the bus (default: the full pack): \"16.4 V\"");
+  sweeps->add_option("--measured", options.measured,
+                     "measured points of a propeller to lay over: columns rpm J CT CP");
   return sweeps;
 }
 
@@ -334,10 +337,13 @@ int run_chosen(int argc, char** argv, Composition composition) {
 
   TimingOptions timing;
   auto* validate = app.add_subcommand("validate", "the plant against its references");
-  auto* timed = validate->add_flag("--timing", timing.wanted,
-                                   "instead: what instructions cost on the virtual board");
-  validate->add_option("file", timing.file, "judge these lines of a timing image on a real board")
-      ->needs(timed);
+  validate->add_flag("--timing", timing.wanted,
+                     "instead: what instructions cost on the virtual board");
+  std::vector<std::string> validated;
+  validate->add_option(
+      "file", validated,
+      "a propeller and files of its measured points, judged; with --timing: lines of "
+      "a timing image on a real board");
 
   CalibrateOptions calibration;
   auto* calibrates = app.add_subcommand("calibrate", "bench procedures that find constants");
@@ -383,6 +389,14 @@ int run_chosen(int argc, char** argv, Composition composition) {
   if (*exports) return export_command(exported);
   if (*sweeps) return sweep_command(sweep, composition);
   if (*validate) {
+    if (!timing.wanted && !validated.empty()) {
+      const std::vector<std::string> points(validated.begin() + 1, validated.end());
+      return validate_propeller_command(validated.front(), points, composition);
+    }
+    if (validated.size() > 1) {
+      return complain(Error{ErrorKind::bad_input, "--timing", "judges one file at a time", ""});
+    }
+    if (!validated.empty()) timing.file = validated.front();
     return timing.wanted ? timing_command(timing, composition) : validate_command(composition);
   }
   if (*calibrates) {

@@ -7,6 +7,7 @@
 #include "harness/cli/console.hpp"
 #include "harness/cli/find_plans.hpp"
 #include "harness/cli/page_command.hpp"
+#include "plant/validation/left_out.hpp"
 #include "plant/validation/rotor_proofs.hpp"
 #include "plant/validation/validation.hpp"
 #include "results/charts.hpp"
@@ -66,6 +67,11 @@ int validate_command(const Composition& composition) {
                      "keys are resolved in plant/REFERENCES.md.",
                      charts));
   if (!written) return complain(written.error());
+  // What plant/data/propellers/known.txt must hold; a figure above says whether it does.
+  const auto known = plant::known_text(plant::know(plant::measured_blades(read, "propellers")));
+  if (const auto done = write_text((folder / "known.txt").string(), known); !done) {
+    return complain(done.error());
+  }
   std::fputs(results::figures_text(charts).c_str(), stdout);
   int judged = 0, good = 0;
   for (const results::Chart& chart : charts) {

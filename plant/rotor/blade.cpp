@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "plant/rotor/blade_fit.hpp"
 #include "plant/rotor/blade_rings.hpp"
 #include "plant/rotor/torsion.hpp"
 
@@ -38,7 +39,9 @@ std::optional<Error> fault_of(const PropellerDescription& d) {
     return bad("induced_factor is outside 1..1.5", "leave it out for the default");
   }
   if (d.stations.size() < 3) return bad("stations: at least 3 are needed", "give r, c, beta rows");
-  if (d.sections.empty()) return bad("polars: none given", "name at least one section");
+  if (d.sections.empty() && d.traits == nullptr) {
+    return bad("polars: none given", "name at least one section");
+  }
   return {};
 }
 
@@ -69,19 +72,6 @@ std::optional<Error> fault_of_rows(const PropellerDescription& d) {
     last = s.r_over_R;
   }
   return {};
-}
-
-// A monotone-free cubic would overshoot at the tip; linear is what the tables were read with.
-double interpolate(const std::vector<PropellerStation>& rows, double x,
-                   double PropellerStation::*field) {
-  if (x <= rows.front().r_over_R) return rows.front().*field;
-  if (x >= rows.back().r_over_R) return rows.back().*field;
-  std::size_t i = 1;
-  while (rows[i].r_over_R < x) ++i;
-  const auto& a = rows[i - 1];
-  const auto& b = rows[i];
-  const double w = (x - a.r_over_R) / (b.r_over_R - a.r_over_R);
-  return a.*field + w * (b.*field - a.*field);
 }
 
 struct Mix {
@@ -169,19 +159,50 @@ SectionTable make_table(const Mix& mix, double chord_over_r, bool delay) {
   return table;
 }
 
+void fill_by_traits(const TraitVector& traits, Ring& ring) {
+  const double chord_over_r = ring.chord_m / ring.r_m;
+  ring.table.cells.reserve(static_cast<std::size_t>(kAngles) * kReynolds);
+  for (int level = 0; level < kReynolds; ++level) {
+    const TraitSection section = trait_section(traits, chord_over_r, reynolds_of_level(level));
+    for (int i = 0; i < kAngles; ++i) {
+      const SectionCoefficients c = coefficients(section, (0.5 * i - 180.0) * kDeg);
+      ring.table.cells.push_back({static_cast<float>(c.cl), static_cast<float>(c.cd)});
+    }
+  }
+  const TraitSection usual = trait_section(traits, chord_over_r, 60e3);
+  ring.stall_alpha_rad = stall_angle_rad(usual);
+  ring.zero_lift_rad = usual.zero_lift_rad;
+}
+
+// Twist that grows with the square of the speed and with nothing else, told as a centrifugal moment on
+// one elastic mode of compliance 1.
+void twist_by_speed(const TraitVector& traits, Blade& blade) {
+  const double D = 2.0 * blade.radius_m;
+  const double omega = 2.0 * kPi * kTwist_speed_mps / D;
+  for (Ring& ring : blade.rings) ring.twist_share = ring.r_m / blade.radius_m;
+  blade.torsion.compliance_rad_per_Nm = 1.0;
+  blade.torsion.given_kgm2 = -traits[speed_twist_deg] * kDeg / (omega * omega);
+  settle_flattening(blade);
+}
+
 void fill_rings(const PropellerDescription& d, Blade& blade) {
   const double first = std::min(d.stations.front().r_over_R, 0.15);
   blade.root_m = std::max(first, 0.05) * blade.radius_m;
   blade.hub_m = 0.5 * blade.root_m;
   const double width = (blade.radius_m - blade.root_m) / kRing_count;
+  const double twist =
+      d.traits != nullptr ? tip_twist_rad(d.traits->mean, 0.0) : d.tip_twist_correction_rad;
   for (int i = 0; i < kRing_count; ++i) {
     Ring& ring = blade.rings[static_cast<std::size_t>(i)];
     ring.r_m = blade.root_m + (i + 0.5) * width;
     ring.dr_m = width;
     const double x = ring.r_m / blade.radius_m;
-    ring.chord_m = blade.radius_m * interpolate(d.stations, x, &PropellerStation::c_over_R);
-    ring.angle_rad =
-        interpolate(d.stations, x, &PropellerStation::angle_rad) + d.tip_twist_correction_rad * x;
+    ring.chord_m = blade.radius_m * station_value(d.stations, x, &PropellerStation::c_over_R);
+    ring.angle_rad = station_value(d.stations, x, &PropellerStation::angle_rad) + twist * x;
+    if (d.traits != nullptr) {
+      fill_by_traits(d.traits->mean, ring);
+      continue;
+    }
     const Mix mix = mix_at(d.sections, x);
     ring.table = make_table(mix, ring.chord_m / ring.r_m, d.stall_delay);
     ring.stall_alpha_rad = stall_alpha_rad(mix);
@@ -208,6 +229,19 @@ void fill_inertia(const PropellerDescription& d, Blade& blade) {
 
 }  // namespace
 
+// A monotone-free cubic would overshoot at the tip; linear is what the tables were read with.
+double station_value(const std::vector<PropellerStation>& rows, double x,
+                     double PropellerStation::*field) {
+  if (x <= rows.front().r_over_R) return rows.front().*field;
+  if (x >= rows.back().r_over_R) return rows.back().*field;
+  std::size_t i = 1;
+  while (rows[i].r_over_R < x) ++i;
+  const auto& a = rows[i - 1];
+  const auto& b = rows[i];
+  const double w = (x - a.r_over_R) / (b.r_over_R - a.r_over_R);
+  return a.*field + w * (b.*field - a.*field);
+}
+
 Result<std::shared_ptr<const Blade>> make_blade(const PropellerDescription& description) {
   if (auto bad = fault_of(description)) return *bad;
   if (auto bad = fault_of_rows(description)) return *bad;
@@ -218,7 +252,12 @@ Result<std::shared_ptr<const Blade>> make_blade(const PropellerDescription& desc
   blade->induced_factor = description.induced_factor;
   fill_rings(description, *blade);
   fill_inertia(description, *blade);
-  fill_torsion(description.material, description.thickness_over_chord, *blade);
+  if (description.traits != nullptr) {
+    blade->induced_factor = description.traits->mean[hover_loss];
+    twist_by_speed(description.traits->mean, *blade);
+  } else {
+    fill_torsion(description.material, description.thickness_over_chord, *blade);
+  }
   return std::shared_ptr<const Blade>(std::move(blade));
 }
 

@@ -3,7 +3,7 @@
 //   In       PropellerDescription: what a propeller file says (columns r/R, c/R, angle; polars by
 //            radius). make_blade() checks it and answers with a Blade or one sentence with a cure.
 //   Valid    1 to 8 blades, radius 1 cm to 5 m, stations ascending within (0, 1] of the tip radius.
-//   Source   sections by thickness: section_rules.hpp; elastic twist: torsion.hpp; stall delay: [Snel].
+//   Source   sections that nobody measured: blade_traits.hpp, fitted_blade.hpp; elastic twist: torsion.hpp; stall delay: [Snel].
 //   Left out sweep, cone, section camber varying along the blade other than by mixing two polars.
 #pragma once
 #include <cstdint>
@@ -15,7 +15,9 @@
 
 namespace whirl::plant {
 
-class PolarFamily;  // polar.hpp: one section at several Reynolds numbers
+class PolarFamily;   // polar.hpp: one section at several Reynolds numbers
+struct TraitBelief;  // blade_fit.hpp: a section in ten numbers, and how sure they are
+class KnownBlades;   // known_blades.hpp
 
 struct PropellerStation {
   double r_over_R = 0.0;
@@ -32,6 +34,7 @@ struct SectionStation {
 struct StaticPoint {
   double omega_radps = 0.0;
   double thrust_coefficient = 0.0;  // T / (rho n^2 D^4)
+  double power_coefficient = 0.0;   // P / (rho n^3 D^5); 0: was not measured
 };
 
 // What resists twisting. No modulus: a rigid blade.
@@ -58,9 +61,17 @@ struct PropellerDescription {
   double flap_stiffness_Nm_per_rad = 60.0;  // root spring of one blade; stiff plastic by default
   double induced_factor = 1.15;             // in hover; fades with through-flow (ring_balance.hpp)
   BladeMaterial material;                   // rigid unless given
-  double thickness_over_chord = 0.10;       // at 0.75 R; section_rules.hpp, torsion.hpp
+  double thickness_over_chord = 0.10;       // at 0.75 R; torsion.hpp
   bool stall_delay = true;                  // rotational augmentation of the inboard sections
+  bool drawn = false;                       // built to its drawing: angles known to 0.3 deg
+  // Instead of sections: what is known of blades like it; make_fitted_blade() finds the traits.
+  std::shared_ptr<const KnownBlades> known;
+  std::shared_ptr<const TraitBelief> traits;
 };
+
+// Linear between stations, held beyond the first and the last.
+double station_value(const std::vector<PropellerStation>& rows, double r_over_R,
+                     double PropellerStation::*field);
 
 class Blade;  // blade_rings.hpp: for the solver's eyes only
 

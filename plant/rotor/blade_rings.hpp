@@ -48,6 +48,7 @@ struct Ring {
 struct Torsion {
   double compliance_rad_per_Nm = 0.0;            // 0: rigid
   double flattening_kgm2 = 0.0;                  // centrifugal moment over omega squared, nose down
+  double given_kgm2 = 0.0;                       // of it, what no ring's angle changes
   std::array<double, kRing_count> flat_kgm2{};   // share of a ring, before its angle
   std::array<double, kRing_count> lift_arm_m{};  // on a ring's thrust (all blades)
   std::array<double, kRing_count> camber_m3{};   // on a ring's dynamic pressure

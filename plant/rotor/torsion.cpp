@@ -67,7 +67,7 @@ void fill_torsion(const BladeMaterial& material, double over_chord, Blade& blade
 }
 
 void settle_flattening(Blade& blade) {
-  blade.torsion.flattening_kgm2 = 0.0;
+  blade.torsion.flattening_kgm2 = blade.torsion.given_kgm2;
   for (std::size_t i = 0; i < kRing_count; ++i) {
     const double angle = blade.rings[i].angle_rad;
     blade.torsion.flattening_kgm2 += blade.torsion.flat_kgm2[i] * std::sin(angle) * std::cos(angle);

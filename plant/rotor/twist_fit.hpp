@@ -1,4 +1,4 @@
-// A propeller's tip twist from its static thrust alone.
+// A propeller's tip twist from its static thrust alone, where its sections are named (else: fitted_blade.hpp).
 //
 //   Why    blade angles read off photographs are a few degrees low outboard; one number, added in
 //          proportion to r/R, puts the mean static thrust right and leaves torque and forward flight

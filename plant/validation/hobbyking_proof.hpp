@@ -4,7 +4,8 @@
 //   Source     [Bangura2017, 3.5 and Table 5.6]; the bounds on the downdraft's slope are those of the
 //              four measured slow flyers at the same advance ratio.
 #pragma once
-#include "plant/validation/measured_propellers.hpp"
+#include "plant/validation/data_reader.hpp"
+#include "plant/validation/report.hpp"
 
 namespace whirl::plant {
 

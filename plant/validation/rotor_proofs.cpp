@@ -2,6 +2,7 @@
 
 #include "plant/validation/blade_element_references.hpp"
 #include "plant/validation/hobbyking_proof.hpp"
+#include "plant/validation/left_out.hpp"
 #include "plant/validation/momentum_limits.hpp"
 
 namespace whirl::plant {
@@ -18,8 +19,12 @@ std::vector<Proof> rotor_proofs(const ReadData& read) {
                          reference("ccblade_naca64.txt")));
   add(validate_ccblade_c(reference("ccblade_c.txt"), reference("ccblade_naca0012.txt")));
   add(validate_qprop(reference("qprop_cam6x3.txt")));
-  add(validate_measured_propellers(read));
-  add(validate_unseen_propellers(read));
+  const auto measured = measured_blades(read, "propellers");
+  const KnownBlades known = know(measured);
+  add(validate_known(known, read("propellers/known.txt")));
+  add(validate_left_out(measured, known));
+  add(validate_strangers(measured_blades(read, "unseen"), known));
+  add(validate_in_view(measured, known));
   add(validate_hobbyking(read));
   return all;
 }

@@ -1,6 +1,7 @@
 // Every proof of the rotor, ready to be printed and drawn.
 #pragma once
-#include "plant/validation/measured_propellers.hpp"
+#include "plant/validation/data_reader.hpp"
+#include "plant/validation/validation.hpp"
 
 namespace whirl::plant {
 

@@ -1,6 +1,5 @@
 -- APC slow fly 11x4.7. Chord and angle: UIUC Propeller Database, volume 1 (Brandt, Selig et al.), taken
--- there from photographs. Thickness (an estimate) decides the sections. `static`: measured thrust
--- coefficients at rest; one twist in proportion to r is fitted on them (here +3.8 deg at the tip).
+-- there from photographs. `static`: measured coefficients at rest; section, drag and twist are fitted on them.
 -- Mass is an estimate.
 -- Columns: r and c over the tip radius, beta in degrees against the disc.
 return {
@@ -9,12 +8,11 @@ return {
   blades = 2,
   diameter = "11 in",
   mass = "14 g",
-  thickness = 0.08,
   static = {
-    { rpm = 2018, CT = 0.1005 },
-    { rpm = 3144, CT = 0.1074 },
-    { rpm = 4290, CT = 0.1151 },
-    { rpm = 5450, CT = 0.1230 },
+    { rpm = 2018, CT = 0.1005, CP = 0.0391 },
+    { rpm = 3144, CT = 0.1074, CP = 0.0411 },
+    { rpm = 4290, CT = 0.1151, CP = 0.0442 },
+    { rpm = 5450, CT = 0.1230, CP = 0.0477 },
   },
   stations = {
     { r = 0.15, c = 0.112, beta = 19.64 },

@@ -1,6 +1,5 @@
 -- APC slow fly 9x4.7. Chord and angle: UIUC Propeller Database, volume 1 (Brandt, Selig et al.), taken
--- there from photographs. Thickness (an estimate) decides the sections. `static`: measured thrust
--- coefficients at rest; one twist in proportion to r is fitted on them (here +1.9 deg at the tip).
+-- there from photographs. `static`: measured coefficients at rest; section, drag and twist are fitted on them.
 -- Mass is an estimate.
 -- Columns: r and c over the tip radius, beta in degrees against the disc.
 return {
@@ -9,12 +8,11 @@ return {
   blades = 2,
   diameter = "9 in",
   mass = "8.5 g",
-  thickness = 0.08,
   static = {
-    { rpm = 3062, CT = 0.1152 },
-    { rpm = 4153, CT = 0.1163 },
-    { rpm = 5226, CT = 0.1184 },
-    { rpm = 6285, CT = 0.1192 },
+    { rpm = 3062, CT = 0.1152, CP = 0.0482 },
+    { rpm = 4153, CT = 0.1163, CP = 0.0480 },
+    { rpm = 5226, CT = 0.1184, CP = 0.0484 },
+    { rpm = 6285, CT = 0.1192, CP = 0.0483 },
   },
   stations = {
     { r = 0.15, c = 0.127, beta = 27.54 },

@@ -1,6 +1,5 @@
 -- GWS slow fly 11x4.7. Chord and angle: UIUC Propeller Database, volume 1 (Brandt, Selig et al.), taken
--- there from photographs. Thickness (an estimate) decides the sections. `static`: measured thrust
--- coefficients at rest; one twist in proportion to r is fitted on them (here +2.3 deg at the tip).
+-- there from photographs. `static`: measured coefficients at rest; section, drag and twist are fitted on them.
 -- Mass is an estimate.
 -- Columns: r and c over the tip radius, beta in degrees against the disc.
 return {
@@ -9,13 +8,11 @@ return {
   blades = 2,
   diameter = "11 in",
   mass = "9 g",
-  thickness = 0.056,
-  material = "nylon",
   static = {
-    { rpm = 2290, CT = 0.1034 },
-    { rpm = 3414, CT = 0.1140 },
-    { rpm = 4513, CT = 0.1198 },
-    { rpm = 5657, CT = 0.1234 },
+    { rpm = 2290, CT = 0.1034, CP = 0.0426 },
+    { rpm = 3414, CT = 0.1140, CP = 0.0468 },
+    { rpm = 4513, CT = 0.1198, CP = 0.0476 },
+    { rpm = 5657, CT = 0.1234, CP = 0.0489 },
   },
   stations = {
     { r = 0.15, c = 0.103, beta = 17.31 },

@@ -1,6 +1,5 @@
 -- GWS slow fly 9x4.7. Chord and angle: UIUC Propeller Database, volume 1 (Brandt, Selig et al.), taken
--- there from photographs. Thickness (an estimate) decides the sections. `static`: measured thrust
--- coefficients at rest; one twist in proportion to r is fitted on them (here +1.8 deg at the tip).
+-- there from photographs. `static`: measured coefficients at rest; section, drag and twist are fitted on them.
 -- Mass is an estimate.
 -- Columns: r and c over the tip radius, beta in degrees against the disc.
 return {
@@ -9,13 +8,11 @@ return {
   blades = 2,
   diameter = "9 in",
   mass = "6 g",
-  thickness = 0.056,
-  material = "nylon",
   static = {
-    { rpm = 2973, CT = 0.1131 },
-    { rpm = 4071, CT = 0.1173 },
-    { rpm = 5175, CT = 0.1201 },
-    { rpm = 6268, CT = 0.1196 },
+    { rpm = 2973, CT = 0.1131, CP = 0.0502 },
+    { rpm = 4071, CT = 0.1173, CP = 0.0506 },
+    { rpm = 5175, CT = 0.1201, CP = 0.0504 },
+    { rpm = 6268, CT = 0.1196, CP = 0.0493 },
   },
   stations = {
     { r = 0.15, c = 0.086, beta = 31.66 },

@@ -1,6 +1,5 @@
 // Rotors that nobody in the house has flown: other sizes, blade counts, pitches, materials, speeds.
 #include "base/near.hpp"
-#include "plant/rotor/section_rules.hpp"
 #include "plant/rotor/tests/test_blades.hpp"
 
 namespace whirl::plant {
@@ -30,8 +29,10 @@ std::shared_ptr<const Blade> blade_of(const Shape& s) {
        {std::pair{0.15, 0.12}, {0.3, 0.18}, {0.5, 0.21}, {0.75, 0.18}, {1.0, 0.05}}) {
     d.stations.push_back({x, c, std::atan(s.pitch_in / (kPi * s.diameter_in * x))});
   }
-  for (const auto& named : sections_for(s.thickness)) {
-    d.sections.push_back({named.r_over_R, section(named.polar)});
+  if (s.thickness > 0.085) {
+    d.sections = {{0.2, section("naca4412")}};
+  } else {
+    d.sections = {{0.2, section("bw3")}, {0.9, section("naca6409")}};
   }
   return make_blade(d).value();
 }

@@ -1,0 +1,56 @@
+// The traits of one blade from measured points: the most likely ones and how sure they are.
+//
+//   Model   Gaussian prior (known_blades.hpp) times Gaussian errors; Gauss-Newton with damping from the prior's
+//           mean, so the answer is one and the same on every run.
+//   Errors  points of one propeller err together: a set counts as a few independent points however many it has.
+//   Out     mean and covariance; predict() turns them into a curve with its standard deviation, to which
+//           the model's own discrepancy is added (kThrust_off, kPower_off, set by leaving propellers out).
+#pragma once
+#include <vector>
+
+#include "plant/rotor/axial_flow.hpp"
+
+namespace whirl::plant {
+
+struct TraitBelief {
+  TraitVector mean = TraitVector::Zero();
+  TraitMatrix covariance = TraitMatrix::Zero();
+};
+
+struct MeasuredPoint {
+  double omega_radps = 0.0;
+  double advance_ratio = 0.0;
+  double CT = 0.0;
+  double CP = 0.0;  // 0: was not measured
+};
+
+// What a set of points is trusted with: relative error against its mean, and how many count.
+struct Trust {
+  double thrust = 0.0;
+  double power = 0.0;
+  double independent = 0.0;
+};
+inline constexpr Trust kStatic_trust{0.015, 0.03, 4.0};
+inline constexpr Trust kFlight_trust{0.03, 0.04, 8.0};
+
+struct TrustedSet {
+  std::vector<MeasuredPoint> points;
+  Trust trust;
+};
+
+TraitBelief fit_traits(const AxialBlade& blade, const std::vector<TrustedSet>& sets,
+                       const TraitBelief& prior);
+
+// Of static CT and CP at the same speed, one standard deviation.
+inline constexpr double kThrust_off = 0.033;
+inline constexpr double kPower_off = 0.041;
+inline constexpr double kNine_in_ten = 1.645;  // standard deviations
+
+struct Prediction {
+  PropellerCoefficients mean;
+  PropellerCoefficients deviation;  // one standard deviation
+};
+std::vector<Prediction> predict(const AxialBlade& blade, const TraitBelief& belief,
+                                const std::vector<MeasuredPoint>& where);
+
+}  // namespace whirl::plant

@@ -1,0 +1,131 @@
+#include "plant/rotor/fitted_blade.hpp"
+
+#include <cmath>
+#include <cstdio>
+#include <optional>
+
+#include "base/check.hpp"
+#include "plant/rotor/blade_rings.hpp"
+#include "plant/rotor/known_blades.hpp"
+
+namespace whirl::plant {
+namespace {
+
+constexpr double kMost_left = 0.10;
+constexpr double kLowest_twist_deg = -1.0;
+constexpr double kHighest_twist_deg = 4.0;
+constexpr double kRefused_beyond_deg = 2.0;
+constexpr double kLeast_answer =
+    0.01;  // of thrust, per degree of tip twist; healthy blades: 0.03 to 0.06
+constexpr double kStrange = 0.75;
+
+std::string said(const char* format, double a, double b = 0.0) {
+  char text[160];
+  std::snprintf(text, sizeof text, format, a, b);
+  return text;
+}
+
+std::vector<MeasuredPoint> at_rest(const std::vector<StaticPoint>& rows) {
+  std::vector<MeasuredPoint> points;
+  for (const StaticPoint& row : rows) {
+    points.push_back({row.omega_radps, 0.0, row.thrust_coefficient, row.power_coefficient});
+  }
+  return points;
+}
+
+// What the rows leave over.
+void weigh(const std::vector<StaticPoint>& rows, FittedBlade& fit) {
+  double thrust = 0.0, power = 0.0, thrust_off = 0.0, power_off = 0.0;
+  for (const StaticPoint& row : rows) {
+    const auto k = axial_coefficients(fit.axial, fit.belief.mean, row.omega_radps, 0.0);
+    thrust += row.thrust_coefficient;
+    thrust_off += std::abs(k.CT - row.thrust_coefficient);
+    if (row.power_coefficient == 0.0) continue;
+    power += row.power_coefficient;
+    power_off += std::abs(k.CP - row.power_coefficient);
+  }
+  if (thrust > 0.0) fit.thrust_off = thrust_off / thrust;
+  if (power > 0.0) fit.power_off = power_off / power;
+}
+
+double answer_to_twist(const FittedBlade& fit, double omega_radps) {
+  TraitVector more = fit.belief.mean;
+  more[tip_twist_deg] += 1.0;
+  const double here = axial_coefficients(fit.axial, fit.belief.mean, omega_radps, 0.0).CT;
+  return axial_coefficients(fit.axial, more, omega_radps, 0.0).CT / here - 1.0;
+}
+
+std::optional<Error> refusal(const PropellerDescription& d, const FittedBlade& fit) {
+  const double twist = fit.belief.mean[tip_twist_deg];
+  if (fit.thrust_off > kMost_left) {
+    return Error{ErrorKind::bad_input, d.place,
+                 said("no blade of this shape gives the static thrust: %.0f %% are left over",
+                      100.0 * fit.thrust_off),
+                 "check diameter, chord, angle and the unit of the thrust"};
+  }
+  if (twist < kLowest_twist_deg - kRefused_beyond_deg ||
+      twist > kHighest_twist_deg + kRefused_beyond_deg) {
+    return Error{ErrorKind::bad_input, d.place,
+                 said("static thrust asks for %+.1f deg of tip twist", twist),
+                 "angles read off photographs err by -1 to 4 deg; measure them again"};
+  }
+  return {};
+}
+
+void note_doubts(const PropellerDescription& d, FittedBlade& fit) {
+  const double twist = fit.belief.mean[tip_twist_deg];
+  if (d.static_points.empty()) {
+    fit.doubts.emplace_back("no static rows: its angles may be off by -1 to 4 deg, see the band");
+  } else {
+    const double answer = answer_to_twist(fit, d.static_points.back().omega_radps);
+    if (answer < kLeast_answer) {
+      fit.doubts.push_back(said(
+          "static thrust hardly answers to twist (%.1f %% per degree): the blade is stalled at "
+          "rest, and its angles stay a guess",
+          100.0 * answer));
+    }
+  }
+  if (twist < kLowest_twist_deg || twist > kHighest_twist_deg) {
+    fit.doubts.push_back(
+        said("tip twist of %+.1f deg lies outside -1 to 4 deg: measure the angles "
+             "again",
+             twist));
+  }
+  if (fit.power_off > kMost_left) {
+    fit.doubts.push_back(
+        said("static power is left over by %.0f %%: no section met thrust and power",
+             100.0 * fit.power_off));
+  }
+  if (fit.strangeness > kStrange) {
+    fit.doubts.emplace_back("its shape is like that of no propeller measured so far");
+  }
+}
+
+}  // namespace
+
+Result<FittedBlade> fit_blade(PropellerDescription d) {
+  WHIRL_CHECK(d.known != nullptr);
+  // Every fault of the description is told before anything is fitted on it.
+  d.traits = std::make_shared<const TraitBelief>(first_belief(d.drawn));
+  if (const auto sound = make_blade(d); !sound) return sound.error();
+  FittedBlade fit;
+  fit.axial = axial_blade(d, kRing_count);
+  const BladeShape shape = blade_shape(d.stations);
+  fit.strangeness = d.known->strangeness(shape);
+  const bool given = d.tip_twist_correction_rad != 0.0;
+  fit.belief = d.known->prior_for(shape, d.drawn || given);
+  if (given) fit.belief.mean[tip_twist_deg] = d.tip_twist_correction_rad * 180.0 / 3.14159265358979;
+  if (!d.static_points.empty()) {
+    fit.belief = fit_traits(fit.axial, {{at_rest(d.static_points), kStatic_trust}}, fit.belief);
+    weigh(d.static_points, fit);
+  }
+  if (auto no = refusal(d, fit)) return *no;
+  note_doubts(d, fit);
+  d.traits = std::make_shared<const TraitBelief>(fit.belief);
+  const auto made = make_blade(d);
+  if (!made) return made.error();
+  fit.blade = made.value();
+  return fit;
+}
+
+}  // namespace whirl::plant

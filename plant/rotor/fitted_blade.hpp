@@ -1,0 +1,29 @@
+// A propeller file's blade: traits by what is known of blades like it and by its own static rows.
+//
+//   In       description.known, stations, static_points (CP where measured); no sections
+//   Out      the blade to fly, how sure its traits are, what the static rows leave over, and what to doubt
+//   Refused  static thrust that is left over by more than 10 %, tip twist beyond -3 to 6 deg
+//   Warned   tip twist outside -1 to 4 deg; static power left over by more than 10 %; thrust that hardly
+//            answers to twist (stalled at rest); no static rows; a shape like none that was measured
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "plant/rotor/blade_fit.hpp"
+
+namespace whirl::plant {
+
+struct FittedBlade {
+  std::shared_ptr<const Blade> blade;
+  AxialBlade axial;
+  TraitBelief belief;
+  double thrust_off = 0.0;  // static: sum of |error| over sum of measured
+  double power_off = 0.0;
+  double strangeness = 0.0;  // 0: like a measured one, 1: like none
+  std::vector<std::string> doubts;
+};
+
+Result<FittedBlade> fit_blade(PropellerDescription description);
+
+}  // namespace whirl::plant

@@ -1,0 +1,289 @@
+#include "plant/validation/left_out.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <limits>
+#include <map>
+#include <sstream>
+
+#include "plant/rotor/blade_rings.hpp"
+#include "plant/rotor/fitted_blade.hpp"
+
+namespace whirl::plant {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr double kRadps_per_rpm = kPi / 30.0;
+constexpr double kUnjudged = std::numeric_limits<double>::infinity();
+
+// Enough for a belief; judged is always every point.
+std::vector<MeasuredPoint> thinned(const std::vector<MeasuredPoint>& all, std::size_t most) {
+  if (all.size() <= most) return all;
+  std::vector<MeasuredPoint> some;
+  for (std::size_t i = 0; i < most; ++i) some.push_back(all[i * all.size() / most]);
+  return some;
+}
+
+struct Score {  // in percent; shares of 1
+  double CT = 0, CP = 0;
+  double inside_CT = 0, inside_CP = 0;
+  double half_CT = 0, half_CP = 0;
+  bool refused = false;
+};
+
+Score score(const AxialBlade& blade, const TraitBelief& belief,
+            const std::vector<MeasuredPoint>& points) {
+  Score s;
+  double T = 0, P = 0;
+  const auto answers = predict(blade, belief, points);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Prediction& a = answers[i];
+    const double off_T = std::abs(a.mean.CT - points[i].CT);
+    const double off_P = std::abs(a.mean.CP - points[i].CP);
+    T += std::abs(points[i].CT), P += std::abs(points[i].CP);
+    s.CT += off_T, s.CP += off_P;
+    s.half_CT += kNine_in_ten * a.deviation.CT, s.half_CP += kNine_in_ten * a.deviation.CP;
+    s.inside_CT += off_T <= kNine_in_ten * a.deviation.CT ? 1 : 0;
+    s.inside_CP += off_P <= kNine_in_ten * a.deviation.CP ? 1 : 0;
+  }
+  const auto n = static_cast<double>(points.size());
+  s.CT *= 100 / T, s.CP *= 100 / P, s.half_CT *= 100 / T, s.half_CP *= 100 / P;
+  s.inside_CT /= n, s.inside_CP /= n;
+  return s;
+}
+
+std::vector<StaticPoint> static_rows(const std::vector<MeasuredPoint>& points) {
+  std::vector<StaticPoint> rows;
+  for (const MeasuredPoint& p : points) rows.push_back({p.omega_radps, p.CT, p.CP});
+  return rows;
+}
+
+// By the same door as a propeller file.
+Score foretold(const MeasuredBlade& m, std::shared_ptr<const KnownBlades> known,
+               const std::vector<MeasuredPoint>& rows, const std::vector<MeasuredPoint>& judged) {
+  PropellerDescription d = m.description;
+  d.known = std::move(known);
+  d.static_points = static_rows(rows);
+  const auto fit = fit_blade(d);
+  if (!fit) return {.refused = true};
+  return score(fit.value().axial, fit.value().belief, judged);
+}
+
+double quantile(std::vector<double> values, double share) {
+  std::sort(values.begin(), values.end());
+  const double at = share * static_cast<double>(values.size() - 1);
+  const auto i = static_cast<std::size_t>(at);
+  if (i + 1 >= values.size()) return values.back();
+  return values[i] + (at - static_cast<double>(i)) * (values[i + 1] - values[i]);
+}
+
+std::vector<double> column(const std::vector<Score>& scores, double Score::*field, bool missed) {
+  std::vector<double> values;
+  for (const Score& s : scores) {
+    if (!s.refused) values.push_back(s.*field);
+    if (s.refused && missed) values.push_back(kUnjudged);
+  }
+  return values;
+}
+
+double mean(const std::vector<double>& values) {
+  double sum = 0;
+  for (const double v : values) sum += v;
+  return sum / static_cast<double>(values.size());
+}
+
+struct Limits {
+  double median_CT, median_CP, most_CT, most_CP, outside, half_CT, half_CP, refused;
+};
+
+void add_summary(const std::string& how, const std::vector<Score>& scores, const Limits& l,
+                 Report& report) {
+  const auto add = [&](const char* what, const char* unit, double value, double limit) {
+    report.figures.push_back({how + ": " + what, unit, value, limit});
+  };
+  add("flight CT, median", "%", quantile(column(scores, &Score::CT, false), 0.5), l.median_CT);
+  add("flight CP, median", "%", quantile(column(scores, &Score::CP, false), 0.5), l.median_CP);
+  add("flight CT, nine in ten within", "%", quantile(column(scores, &Score::CT, true), 0.9),
+      l.most_CT);
+  add("flight CP, nine in ten within", "%", quantile(column(scores, &Score::CP, true), 0.9),
+      l.most_CP);
+  add("CT outside the 90 % band", "%", 100 * (1 - mean(column(scores, &Score::inside_CT, false))),
+      l.outside);
+  add("CP outside the 90 % band", "%", 100 * (1 - mean(column(scores, &Score::inside_CP, false))),
+      l.outside);
+  add("half-width of the band on CT, median", "%",
+      quantile(column(scores, &Score::half_CT, false), 0.5), l.half_CT);
+  add("half-width of the band on CP, median", "%",
+      quantile(column(scores, &Score::half_CP, false), 0.5), l.half_CP);
+  add("refused", "propellers",
+      static_cast<double>(
+          std::count_if(scores.begin(), scores.end(), [](const Score& s) { return s.refused; })),
+      l.refused);
+}
+
+std::string line(const std::string& name, const char* how, const Score& s) {
+  char text[200];
+  if (s.refused) return name + ", " + how + ": refused";
+  std::snprintf(text, sizeof text,
+                "%s, %s: flight CT %.1f %%, CP %.1f %%; inside the band %.0f %% and %.0f %%, "
+                "half-width %.0f %% and %.0f %%",
+                name.c_str(), how, s.CT, s.CP, 100 * s.inside_CT, 100 * s.inside_CP, s.half_CT,
+                s.half_CP);
+  return text;
+}
+
+using Without = std::function<bool(const MeasuredBlade&)>;
+
+std::shared_ptr<const KnownBlades> known_without(const std::vector<MeasuredBlade>& all,
+                                                 const KnownBlades& known, const Without& gone) {
+  std::vector<KnownBlade> rest;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (!gone(all[i])) rest.push_back(known.blades()[i]);
+  }
+  return std::make_shared<const KnownBlades>(std::move(rest));
+}
+
+std::vector<MeasuredPoint> every_second(std::vector<MeasuredPoint> rows, std::size_t first) {
+  std::sort(rows.begin(), rows.end(), [](const MeasuredPoint& a, const MeasuredPoint& b) {
+    return a.omega_radps < b.omega_radps;
+  });
+  std::vector<MeasuredPoint> some;
+  for (std::size_t i = first; i < rows.size(); i += 2) some.push_back(rows[i]);
+  return some;
+}
+
+}  // namespace
+
+std::vector<MeasuredBlade> measured_blades(const ReadData& read, const std::string& folder) {
+  std::vector<MeasuredBlade> all;
+  std::istringstream index(read(folder + "/index.txt"));
+  for (std::string row; std::getline(index, row);) {
+    if (row.empty() || row[0] == '#') continue;
+    std::istringstream words(row);
+    std::string name, make, angles, geometry, kind, file;
+    double inches = 0, rpm = 0;
+    words >> name >> make >> inches >> angles >> geometry >> kind >> rpm >> file;
+    const std::string base = folder + "/" + name + "/";
+    if (all.empty() || all.back().name != name) {
+      MeasuredBlade& m = all.emplace_back();
+      m.name = name, m.make = make, m.drawn = angles == "drawn";
+      for (const auto& r : read_rows(read(base + geometry + ".txt"), 3)) {
+        m.stations.push_back({r[0], r[1], r[2] * kPi / 180.0});
+      }
+      PropellerDescription& d = m.description;
+      d.place = d.name = name;
+      d.diameter_m = inches * 0.0254;
+      d.mass_kg = 0.01;
+      d.stations = m.stations;
+      d.drawn = m.drawn;
+      m.axial = axial_blade(d, kRing_count);
+    }
+    MeasuredBlade& m = all.back();
+    for (const auto& r : read_rows(read(base + file + ".txt"), 3)) {
+      if (kind == "static") {
+        m.still.push_back({r[0] * kRadps_per_rpm, 0.0, r[1], r[2]});
+      } else if (r[0] > 0.1 && r[1] > 0.0 && r[2] > 0.0) {  // positive efficiency
+        m.flying.push_back({rpm * kRadps_per_rpm, r[0], r[1], r[2]});
+      }
+    }
+  }
+  return all;
+}
+
+KnownBlades know(const std::vector<MeasuredBlade>& blades) {
+  std::vector<KnownBlade> known;
+  for (const MeasuredBlade& m : blades) {
+    known.push_back(known_blade(
+        m.name, m.drawn, m.stations, m.axial,
+        {{thinned(m.still, 10), kStatic_trust}, {thinned(m.flying, 26), kFlight_trust}}));
+  }
+  return KnownBlades(std::move(known));
+}
+
+Report validate_left_out(const std::vector<MeasuredBlade>& all, const KnownBlades& known) {
+  Report report{"Propellers never seen", "UIUC Propeller Database [UiucProp]", {}, {}, {}};
+  std::vector<Score> one, make, still;
+  std::map<std::string, std::shared_ptr<const KnownBlades>> without_make;
+  for (const MeasuredBlade& m : all) {
+    const auto others =
+        known_without(all, known, [&](const MeasuredBlade& o) { return o.name == m.name; });
+    one.push_back(foretold(m, others, m.still, m.flying));
+    still.push_back(foretold(m, others, every_second(m.still, 0), every_second(m.still, 1)));
+    auto& strangers = without_make[m.make];
+    if (strangers == nullptr) {
+      strangers =
+          known_without(all, known, [&](const MeasuredBlade& o) { return o.make == m.make; });
+    }
+    make.push_back(foretold(m, strangers, m.still, m.flying));
+    report.notes.push_back(line(m.name, "left out", one.back()));
+    report.notes.push_back(line(m.name, "its make left out", make.back()));
+  }
+  add_summary("left out", one, {7.0, 8.0, 12.0, 14.0, 10.0, 17.0, 15.0, 3.0}, report);
+  add_summary(
+      "make left out", make,
+      {kUnjudged, kUnjudged, kUnjudged, kUnjudged, kUnjudged, kUnjudged, kUnjudged, kUnjudged},
+      report);
+  report.figures.push_back({"static CT, every second speed left out, median", "%",
+                            quantile(column(still, &Score::CT, false), 0.5), 3.0});
+  report.figures.push_back({"static CP, every second speed left out, median", "%",
+                            quantile(column(still, &Score::CP, false), 0.5), 6.0});
+  return report;
+}
+
+// Static and flight of one whose flight rows are known: what the form itself can follow.
+Report validate_in_view(const std::vector<MeasuredBlade>& all, const KnownBlades& known) {
+  Report report{
+      "Known propellers: static rows given", "UIUC Propeller Database [UiucProp]", {}, {}, {}};
+  const auto shared = std::make_shared<const KnownBlades>(known);
+  std::vector<Score> scores;
+  for (const MeasuredBlade& m : all) {
+    const Score s = scores.emplace_back(foretold(m, shared, m.still, m.flying));
+    const Score still = foretold(m, shared, m.still, m.still);
+    report.figures.push_back(
+        {m.name + ": static CT", "%", still.refused ? kUnjudged : still.CT, 5.0});
+    report.figures.push_back(
+        {m.name + ": static CP", "%", still.refused ? kUnjudged : still.CP, 10.0});
+    report.notes.push_back(line(m.name, "known", s));
+  }
+  report.figures.push_back(
+      {"flight CT, median", "%", quantile(column(scores, &Score::CT, false), 0.5), 10.0});
+  report.figures.push_back(
+      {"flight CP, median", "%", quantile(column(scores, &Score::CP, false), 0.5), 10.0});
+  return report;
+}
+
+Report validate_strangers(const std::vector<MeasuredBlade>& strangers, const KnownBlades& known) {
+  Report report{"Strangers: in flight", "UIUC Propeller Database [UiucProp]", {}, {}, {}};
+  report.notes.push_back(
+      "Had no part in the form of the section, in the traits or in the choice of any constant.");
+  const auto shared = std::make_shared<const KnownBlades>(known);
+  for (const MeasuredBlade& m : strangers) {
+    const Score s = foretold(m, shared, m.still, m.flying);
+    report.notes.push_back(line(m.name, "a stranger", s));
+    report.figures.push_back({m.name + ": flight CT", "%", s.refused ? kUnjudged : s.CT, 16.0});
+    report.figures.push_back({m.name + ": flight CP", "%", s.refused ? kUnjudged : s.CP, 12.0});
+  }
+  return report;
+}
+
+Report validate_known(const KnownBlades& known, const std::string& text) {
+  Report report{"Known blades", "UIUC Propeller Database [UiucProp]", {}, {}, {}};
+  const auto kept = read_known(text, "propellers/known.txt");
+  double most = kUnjudged;
+  if (kept && kept.value().blades().size() == known.blades().size()) {
+    most = 0.0;
+    for (const KnownBlade& b : known.blades()) {
+      const TraitBelief a = kept.value().prior_for(b.shape, b.drawn);
+      const TraitBelief c = known.prior_for(b.shape, b.drawn);
+      const TraitVector off = (a.mean - c.mean).cwiseQuotient(c.covariance.diagonal().cwiseSqrt());
+      most = std::max(most, off.cwiseAbs().maxCoeff());
+    }
+  }
+  report.figures.push_back(
+      {"known.txt against the measurements", "standard deviations", most, 0.05});
+  return report;
+}
+
+}  // namespace whirl::plant
