@@ -29,6 +29,7 @@ Result<std::string> read_whole_file(const std::string& path) {
   const std::uintmax_t size = fs::file_size(path, status);
   std::string text(status ? 0 : static_cast<std::size_t>(size), '\0');
   in.read(text.data(), static_cast<std::streamsize>(text.size()));
+  if (in.bad()) return Error{ErrorKind::host, path, "cannot be read to its end", ""};
   text.resize(static_cast<std::size_t>(in.gcount()));
   if (in) text.append(std::istreambuf_iterator<char>(in), {});  // what has no size, or has grown
   return text;

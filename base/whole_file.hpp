@@ -1,7 +1,7 @@
 // A file as one text.
 //
 //   Valid    plain files up to 64 MiB: a pipe or a device might never end
-//   Errors   bad_input: no such file, a folder, no plain file, too large
+//   Errors   bad_input: no such file, a folder, no plain file, too large; host: the disk did not give it
 #pragma once
 #include <string>
 

@@ -1,4 +1,4 @@
-// The command line. CLI11 stays in this file: its header is a heavy one.
+// The command line. CLI11 stays in this file and bench_words: its header is a heavy one.
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <tuple>
@@ -6,6 +6,7 @@
 #include "base/mishap.hpp"
 #include "base/units.hpp"
 #include "harness/cli/bench_command.hpp"
+#include "harness/cli/bench_words.hpp"
 #include "harness/cli/calibrate_command.hpp"
 #include "harness/cli/composition.hpp"
 #include "harness/cli/console.hpp"
@@ -17,11 +18,8 @@
 #include "harness/cli/fuzz_command.hpp"
 #include "harness/cli/history_command.hpp"
 #include "harness/cli/job_command.hpp"
-#include "harness/cli/pace_command.hpp"
 #include "harness/cli/page_command.hpp"
-#include "harness/cli/probe_command.hpp"
 #include "harness/cli/run_command.hpp"
-#include "harness/cli/scope_command.hpp"
 #include "harness/cli/seeds.hpp"
 
 #ifndef WHIRL_VERSION
@@ -202,81 +200,12 @@ CLI::App* add_export(CLI::App& app, ExportOptions& options) {
   return command;
 }
 
-// whirl bench and what can be asked of one.
-struct BenchCommands {
-  explicit BenchCommands(CLI::App& app) {
-    auto* all = app.add_subcommand("bench", "physical boards on this host's wires");
-    all->require_subcommand(1);
-    const auto named = [all](const char* word, const char* what, std::string& name) {
-      auto* command = all->add_subcommand(word, what);
-      command->add_option("name", name, "of test_plans/benches, or a file")->required();
-      return command;
-    };
-    check = named("check", "is all there, how fast and steady is each link", checking.name);
-    check->add_option("--seconds", checking.seconds, "of each measurement (2)")
-        ->check(CLI::Range(0.1, 600.0));
-    scope = named("scope", "its signals, live in the terminal", looking.name);
-    scope->add_option("--seconds", looking.seconds, "(default: until q or Ctrl-C)")
-        ->check(CLI::Range(0.1, 1e6));
-    scope->add_option("--column", looking.column_s, "seconds behind one column (0.1)")
-        ->check(CLI::Range(0.01, 10.0));
-    flash =
-        named("flash", "write an image by the debug probe, read it back, start it", probing.name);
-    flash->add_option("image", probing.image, "of build/firmware, or a file")->required();
-    probe = named("probe", "how busy the core is, by the debug probe, while it runs", probing.name);
-    probe->add_option("image", probing.image, "that is on the board")->required();
-    probe->add_option("--samples", probing.samples, "of the program counter (1000)")
-        ->check(CLI::Range(1, 10'000'000));
-    probe->add_flag("--halt", probing.halt, "also halt the core and show the registers of a fault");
-    probe->add_flag("--reset", probing.reset, "first");
-    pace = all->add_subcommand("pace", "how steady a kilohertz is here, beside an empty loop");
-    pace->add_option("--seconds", pacing.seconds, "of each (60)")->check(CLI::Range(1.0, 3600.0));
-    pace->add_option("--late", pacing.late_us, "what counts as late, in us (200)")
-        ->check(CLI::Range(1.0, 1e5));
-    pace->add_option("--overload", pacing.overload, "threads that take the processor away")
-        ->check(CLI::Range(0, 64));
-  }
-
-  // Nothing: it was another command.
-  std::optional<int> run(const Composition& composition) const {
-    if (*check) return bench_check_command(checking, composition);
-    if (*scope) return bench_scope_command(looking, composition);
-    if (*flash) return bench_flash_command(probing, composition);
-    if (*probe) return bench_probe_command(probing, composition);
-    if (*pace) return bench_pace_command(pacing);
-    return std::nullopt;
-  }
-
-  BenchOptions checking;
-  ScopeOptions looking;
-  ProbeOptions probing;
-  PaceOptions pacing;
-  CLI::App *check = nullptr, *scope = nullptr, *flash = nullptr, *probe = nullptr, *pace = nullptr;
-};
-
 CLI::App* add_decode(CLI::App& app, DecodeOptions& options) {
   auto* decode = app.add_subcommand("decode", "a logic analyser's capture as rows of bus.csv");
   decode->add_option("capture", options.capture, ".sr, .vcd")->required();
   decode->add_option("--board", options.board, "whose wires its channels name")->required();
   decode->add_option("--rate", options.rate, "at which a .vcd is looked at (50 MHz)");
   return decode;
-}
-
-CLI::App* add_stand_in(CLI::App& app, StandInRequest& request) {
-  auto* stand_in = app.add_subcommand(
-      "standin", "a virtual board as if it were metal: its lines on this host, in real time");
-  stand_in->add_option("board", request.board, "of test_plans/boards, or a file (esc32v2)");
-  stand_in->add_option("--image", request.image, "of build/firmware, or an ELF (esc)");
-  stand_in->add_option("--stand", request.stand, "the stand's table, as a plan writes it");
-  stand_in->add_option("--pace", request.pace, "of the host's time (1)")
-      ->check(CLI::Range(0.001, 10.0));
-  stand_in->add_option("--folder", request.folder,
-                       "where its lines and its bench file stand (standin)");
-  stand_in->add_option("--serial", request.serial, "number of the played bridge");
-  stand_in->add_flag("!--no-bridge", request.bridge, "play no USB bridge (no /dev/uhid)");
-  stand_in->add_option("--can", request.can, "interface that its CAN is joined to: vcan0");
-  stand_in->add_option("--seconds", request.seconds, "end after so long (default: a signal)");
-  return stand_in;
 }
 
 CLI::App* add_parity(CLI::App& app, ParityOptions& options) {
@@ -356,11 +285,9 @@ int run_chosen(int argc, char** argv, Composition composition) {
 
   esc->add_option("--data", calibration.data, "fit this data.txt of an earlier run again");
 
-  const BenchCommands benches(app);
+  const BenchWords benches(app);
   DecodeOptions decoding;
   auto* decode = add_decode(app, decoding);
-  StandInRequest standing;
-  auto* stand_in = add_stand_in(app, standing);
   ParityOptions pair;
   auto* parity = add_parity(app, pair);
 
@@ -407,7 +334,6 @@ int run_chosen(int argc, char** argv, Composition composition) {
   }
   if (const auto code = benches.run(composition)) return *code;
   if (*decode) return decode_command(decoding, composition);
-  if (*stand_in) return composition.stand_in(standing);
   if (*parity) return parity_command(pair);
   if (*fuzz) return fuzz_command(fuzzing);
   if (*job) return job_command(composition);

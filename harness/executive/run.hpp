@@ -49,6 +49,7 @@ struct Progress {
 // What the file of messages says of a run before it begins.
 results::RunHead run_head(const plan::Plan& plan, const std::vector<Node>& nodes,
                           const World& world, std::uint64_t seed);
+std::vector<results::Column> columns_of(const World& world);
 
 using ProgressSink = std::function<void(const Progress&)>;  // every 10 ms of virtual time
 

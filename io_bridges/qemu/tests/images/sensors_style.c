@@ -235,12 +235,6 @@ static void i2c_stop(void) {
   i2c_busy = 0;
 }
 
-static void i2c_addressed(void) {
-  (void)I2C2->SR2;
-  if (i2c_to_write == 0 && i2c_to_read != 0) I2C2->CR2 |= 1u << 10;
-  if (i2c_to_write != 0) I2C2->CR2 |= 1u << 10;
-}
-
 static void i2c_received(void) {
   i2c_in[i2c_got++] = (uint8_t)I2C2->DR;
   if (i2c_got + 1 == i2c_to_read) I2C2->CR1 = (I2C2->CR1 & ~(1u << 10)) | 1u << 9;
@@ -270,7 +264,8 @@ void I2C2_EV_Handler(void) {
   if ((sr1 & 1) != 0) {
     I2C2->DR = (uint32_t)i2c_address << 1 | (i2c_to_write == 0);
   } else if ((sr1 & 2) != 0) {
-    i2c_addressed();
+    (void)I2C2->SR2;
+    I2C2->CR2 |= 1u << 10;
   } else if ((sr1 & 1u << 6) != 0) {
     i2c_received();
   } else if ((sr1 & (1u << 7 | 1u << 2)) != 0) {
