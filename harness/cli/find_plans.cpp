@@ -16,9 +16,9 @@ namespace {
 namespace fs = std::filesystem;
 
 bool is_data_folder(const fs::path& path) {
-  const std::string name = path.filename().string();
-  return name == "benches" || name == "boards" || name == "vehicles" || name == "propellers" ||
-         name == "include" || name == "calibrations";
+  static const std::set<std::string> kNames = {"batteries", "benches",    "boards",  "calibrations",
+                                               "include",   "propellers", "vehicles"};
+  return kNames.count(path.filename().string()) != 0;
 }
 
 // The plan files below a folder; each folder once, however many links lead to it.

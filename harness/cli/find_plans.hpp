@@ -19,8 +19,8 @@ struct PlanChoice {
   std::optional<std::uint64_t> seed = {};  // of this run; nothing: the plan's own
 };
 
-// Lua files below the given paths that declare plans. Files in folders named benches, boards, vehicles or
-// propellers are data. An unreadable or wrong file is an Error in the list, not the end of it.
+// Lua files below the given paths that declare plans. Files in folders of parts (batteries, boards,
+// propellers and so on: is_data_folder) are data. An unreadable or wrong file is an Error in the list, not the end of it.
 struct FoundPlans {
   std::vector<PlanChoice> plans;
   std::vector<Error> errors;
