@@ -54,8 +54,10 @@ std::vector<std::string> export_formats() {
 
 int export_command(const ExportOptions& options) {
   if (options.formats.empty()) {
+    std::vector<std::string> flags = export_formats();
+    for (std::string& flag : flags) flag.insert(0, "--");
     return complain({ErrorKind::bad_input, "", "whirl export: no format is asked for",
-                     "say one: --" + word_list(export_formats())});
+                     "say one: " + word_list(flags)});
   }
   std::error_code ignored;
   const std::string messages = fs::is_directory(options.run, ignored)

@@ -49,7 +49,7 @@ TEST_F(Export, EveryMessageThatCrossedIsInIt) {
 TEST_F(Export, WhatItCannotDoIsSaid) {
   const Outcome none = whirl(root_, {"export", run()});
   EXPECT_EQ(none.code, 2);
-  EXPECT_NE(none.err.find("no format is asked for (say one: --csv)"), std::string::npos)
+  EXPECT_NE(none.err.find("no format is asked for (say one: --csv, --vcd)"), std::string::npos)
       << none.err;
   const Outcome gone = whirl(root_, {"export", root_.path() + "/results", "--csv"});
   EXPECT_EQ(gone.code, 2);

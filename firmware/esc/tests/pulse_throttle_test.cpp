@@ -83,7 +83,6 @@ TEST(ThrottleSources, WhoArmedItKeepsIt) {
 }
 
 TEST(ThrottleSources, CanStandsBetweenI2cAndPulses) {
-  using Source = ThrottleSources::Source;
   ThrottleSources s;
   EXPECT_TRUE(s.admit(Source::pulses, false));
   EXPECT_TRUE(s.admit(Source::can, false));

@@ -275,8 +275,9 @@ TEST(BoardFile, AMistakeIsToldWithItsLineAndWithWhatThereIs) {
   };
   EXPECT_EQ(said("{ name = 'b',\n type = 'toaster' }"),
             "b.lua:4: devices[2].type: unknown type 'toaster' (use one of mpu6000, ms5611, "
-            "hmc5883l, sd_card, eeprom_24xx, battery_sense, current_sense, esc_i2c, "
-            "ublox_6, ublox_m8, cppm, sbus, mavlink_link, serial, i2c_master, power_stage, "
+            "hmc5883l, sd_card, eeprom_24xx, battery_sense, current_sense, esc_i2c, esc_dronecan, "
+            "ublox_6, ublox_m8, cppm, sbus, mavlink_link, serial, i2c_master, can_port, "
+            "pod_replay, power_stage, "
             "pulse_source, volts, jumper)");
   EXPECT_EQ(said("{ name = 'b', type = 'serial', bus = 'usart2', baud = '1 baud' }"),
             "b.lua:3: devices[2].baud: 1 baud is outside 50..1.2e+07 baud");
