@@ -33,6 +33,22 @@ void EventLog::add_pin(const io::Header& header, bool level) {
   before->second = level;
 }
 
+void EventLog::add_can(const io::Header& header, const io::CanRecord& r) {
+  const std::size_t last = std::clamp<std::size_t>(r.frame.length, 1, 8) - 1;
+  can.push_back({header.port, r.sender, r.frame.id, (r.frame.flags & 1) != 0, r.error == 0,
+                 (r.frame.data[last] & 0x80) != 0, r.busy_ns, r.tec, r.start_ns, header.t_ns});
+}
+
+void EventLog::add_latency(const io::Header& header, std::int64_t raised_ns) {
+  const double took_ns = static_cast<double>(header.t_ns) - static_cast<double>(raised_ns);
+  LatencyRecord& record = latencies[header.port];
+  ++record.count;
+  record.sum_ns += took_ns;
+  if (took_ns <= record.max_ns && record.count > 1) return;
+  record.max_ns = took_ns;
+  record.max_at_ns = header.t_ns;
+}
+
 bool EventLog::add(const io::Batch& batch) {
   io::Reader reader(batch.bytes());
   while (reader.next()) add(reader);
@@ -48,13 +64,9 @@ void EventLog::add(const io::Reader& reader) {
     case io::Kind::spi_transaction:
       add_bus(reader, true);
       break;
-    case io::Kind::can_transfer: {
-      const auto r = reader.as<io::CanRecord>();
-      const std::size_t last = std::clamp<std::size_t>(r.frame.length, 1, 8) - 1;
-      can.push_back({header.port, r.sender, r.frame.id, (r.frame.flags & 1) != 0, r.error == 0,
-                     (r.frame.data[last] & 0x80) != 0, r.busy_ns, r.tec, r.start_ns, header.t_ns});
+    case io::Kind::can_transfer:
+      add_can(header, reader.as<io::CanRecord>());
       break;
-    }
     case io::Kind::data_ready:
       data_ready_ns[header.port].push_back(header.t_ns);
       break;
@@ -121,17 +133,9 @@ void EventLog::add(const io::Reader& reader) {
     case io::Kind::gnss_solution:
     case io::Kind::signals:
       break;  // no window asks for them
-    case io::Kind::interrupt_latency: {
-      const double took_ns = static_cast<double>(header.t_ns) -
-                             static_cast<double>(reader.as<io::InterruptLatency>().raised_ns);
-      LatencyRecord& record = latencies[header.port];
-      ++record.count;
-      record.sum_ns += took_ns;
-      if (took_ns <= record.max_ns && record.count > 1) break;
-      record.max_ns = took_ns;
-      record.max_at_ns = header.t_ns;
+    case io::Kind::interrupt_latency:
+      add_latency(header, reader.as<io::InterruptLatency>().raised_ns);
       break;
-    }
   }
 }
 

@@ -116,6 +116,8 @@ class EventLog {
  private:
   void add_bus(const io::Reader& reader, bool spi);
   void add_pin(const io::Header& header, bool level);
+  void add_can(const io::Header& header, const io::CanRecord& r);
+  void add_latency(const io::Header& header, std::int64_t raised_ns);
 
   std::map<std::uint16_t, bool> pin_levels_;
 };

@@ -22,6 +22,7 @@ struct Teller {
   std::vector<Prediction> tell(const std::vector<MeasuredPoint>& where) const {
     if (fit) return plant::predict(fit->axial, fit->belief, where);
     std::vector<Prediction> told;
+    told.reserve(where.size());
     for (const MeasuredPoint& p : where) {
       told.push_back({plant::propeller_coefficients(blade, p.omega_radps, p.advance_ratio), {}});
     }

@@ -27,6 +27,7 @@ std::string said(const char* format, double a, double b = 0.0) {
 
 std::vector<MeasuredPoint> at_rest(const std::vector<StaticPoint>& rows) {
   std::vector<MeasuredPoint> points;
+  points.reserve(rows.size());
   for (const StaticPoint& row : rows) {
     points.push_back({row.omega_radps, 0.0, row.thrust_coefficient, row.power_coefficient});
   }
