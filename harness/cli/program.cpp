@@ -240,6 +240,28 @@ CLI::App* add_history(CLI::App& app, HistoryOptions& history, RunOptions& option
   return past;
 }
 
+CLI::App* add_calibrate(CLI::App& app, CalibrateOptions& options) {
+  auto* calibrates = app.add_subcommand("calibrate", "bench procedures that find constants");
+  calibrates->require_subcommand(1);
+  auto* esc = calibrates->add_subcommand(
+      "esc", "motor, current sense and propeller of an ESC on the thrust stand");
+  esc->add_option("file", options.file, "what stands there (test_plans/calibrations/*.lua)")
+      ->required();
+  esc->add_option("--write", options.write, "the constants as a file that plans include");
+  esc->add_option("--data", options.data, "fit this data.txt of an earlier run again");
+  return calibrates;
+}
+
+CLI::App* add_fuzz(CLI::App& app, FuzzOptions& options) {
+  auto* fuzz =
+      app.add_subcommand("fuzz", "random inputs by seed; whatever breaks is a bug of whirl");
+  fuzz->add_option("fuzzers", options.names, "registers, images, parsers (default: all)");
+  fuzz->add_flag("--smoke", options.smoke, "a few seconds of each");
+  fuzz->add_option("--seeds", options.seeds, "so many of each");
+  fuzz->add_option("--first", options.first, "the first seed (default 0)");
+  return fuzz;
+}
+
 int run_chosen(int argc, char** argv, Composition composition) {
   CLI::App app{"Whirlstand: a test stand for rotorcraft firmware", "whirl"};
   app.footer(kExamples);
@@ -275,15 +297,7 @@ int run_chosen(int argc, char** argv, Composition composition) {
       "a timing image on a real board");
 
   CalibrateOptions calibration;
-  auto* calibrates = app.add_subcommand("calibrate", "bench procedures that find constants");
-  calibrates->require_subcommand(1);
-  auto* esc = calibrates->add_subcommand(
-      "esc", "motor, current sense and propeller of an ESC on the thrust stand");
-  esc->add_option("file", calibration.file, "what stands there (test_plans/calibrations/*.lua)")
-      ->required();
-  esc->add_option("--write", calibration.write, "the constants as a file that plans include");
-
-  esc->add_option("--data", calibration.data, "fit this data.txt of an earlier run again");
+  auto* calibrates = add_calibrate(app, calibration);
 
   const BenchWords benches(app);
   DecodeOptions decoding;
@@ -292,12 +306,7 @@ int run_chosen(int argc, char** argv, Composition composition) {
   auto* parity = add_parity(app, pair);
 
   FuzzOptions fuzzing;
-  auto* fuzz =
-      app.add_subcommand("fuzz", "random inputs by seed; whatever breaks is a bug of whirl");
-  fuzz->add_option("fuzzers", fuzzing.names, "registers, images, parsers (default: all)");
-  fuzz->add_flag("--smoke", fuzzing.smoke, "a few seconds of each");
-  fuzz->add_option("--seeds", fuzzing.seeds, "so many of each");
-  fuzz->add_option("--first", fuzzing.first, "the first seed (default 0)");
+  auto* fuzz = add_fuzz(app, fuzzing);
 
   auto* job = app.add_subcommand("job", "one run, for whirl itself")->group("");
   auto* devices = app.add_subcommand("devices", "what a board file's devices may be, key by key");
