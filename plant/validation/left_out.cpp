@@ -56,6 +56,7 @@ Score score(const AxialBlade& blade, const TraitBelief& belief,
 
 std::vector<StaticPoint> static_rows(const std::vector<MeasuredPoint>& points) {
   std::vector<StaticPoint> rows;
+  rows.reserve(points.size());
   for (const MeasuredPoint& p : points) rows.push_back({p.omega_radps, p.CT, p.CP});
   return rows;
 }
@@ -194,6 +195,7 @@ std::vector<MeasuredBlade> measured_blades(const ReadData& read, const std::stri
 
 KnownBlades know(const std::vector<MeasuredBlade>& blades) {
   std::vector<KnownBlade> known;
+  known.reserve(blades.size());
   for (const MeasuredBlade& m : blades) {
     known.push_back(known_blade(
         m.name, m.drawn, m.stations, m.axial,
