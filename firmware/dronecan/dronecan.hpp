@@ -139,7 +139,8 @@ constexpr std::uint32_t to_half(float value) {
   if (size > 0x7F80'0000) return sign | 0x7E00;  // NaN: not known
   if (size < 0x3880'0000) {                      // below 2^-14: whole steps of 2^-24
     const float steps = std::bit_cast<float>(size) * 16777216.0f;
-    return sign | static_cast<std::uint32_t>(steps + 0.5f);
+    const float up = steps + 0.5f;  // below 1024: exact
+    return sign | static_cast<std::uint32_t>(up);
   }
   const std::uint32_t rounded = size + 0xFFF + (size >> 13 & 1);
   return sign | std::min<std::uint32_t>((rounded - (112u << 23)) >> 13, 0x7BFF);
