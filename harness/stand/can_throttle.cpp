@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "io_bridges/messages/can_message.hpp"
 #include "io_bridges/protocols/dronecan/esc_extended.hpp"
 
 namespace whirl::stand {
@@ -44,25 +45,14 @@ void CanThrottle::send(std::int64_t t_ns, io::Batch& sensed) {
     if (changed_) awaited_id_ = transfer_id_;
     awaited_ = awaited_ || changed_;
     changed_ = false;
-    const io::CanFrame frame = command();
-    io::CanMessage order;
-    order.id = frame.id;
-    order.flags = 1;
-    order.length = frame.length;
-    std::copy(frame.data.begin(), frame.data.end(), order.data);
-    sensed.add(io::Kind::can_order, bus_, at, order);
+    sensed.add(io::Kind::can_order, bus_, at, io::to_message(command()));
   }
 }
 
 void CanThrottle::on_message(const io::Reader& message) {
   if (message.header().port != bus_) return;
   const auto record = message.as<io::CanRecord>();
-  io::CanFrame frame;
-  frame.id = record.frame.id;
-  frame.extended = (record.frame.flags & 1) != 0;
-  frame.remote = (record.frame.flags & 2) != 0;
-  frame.length = std::min<std::uint8_t>(record.frame.length, 8);
-  std::copy_n(record.frame.data, frame.length, frame.data.begin());
+  const io::CanFrame frame = io::frame_of(record.frame);
   const bool ours = record.sender >= 0;
   if (ours && record.error != 0) ++reported_.refused;
   if (record.error != 0 || frame.length == 0) return;

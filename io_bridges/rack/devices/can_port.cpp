@@ -1,6 +1,7 @@
 // A node by which the harness sends frames on a board's CAN bus: each from its time on, in their order.
 #include <deque>
 
+#include "io_bridges/messages/can_message.hpp"
 #include "io_bridges/rack/devices/table.hpp"
 
 namespace whirl::rack {
@@ -20,14 +21,9 @@ class CanPortDevice final : public RackDevice, private io::CanNode {
 
   std::vector<Intake> intakes() const override { return {{io::Kind::can_order, bus_number_}}; }
   void on_message(const io::Reader& message) override {
-    const auto order = message.as<io::CanMessage>();
     Waiting& next = waiting_.emplace_back();
     next.t_ns = message.header().t_ns;
-    next.frame.id = order.id;
-    next.frame.extended = (order.flags & 1) != 0;
-    next.frame.remote = (order.flags & 2) != 0;
-    next.frame.length = std::min<std::uint8_t>(order.length, 8);
-    std::copy_n(order.data, next.frame.length, next.frame.data.begin());
+    next.frame = io::frame_of(message.as<io::CanMessage>());
     wake();
   }
 
