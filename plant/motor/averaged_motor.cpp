@@ -66,10 +66,15 @@ MotorBooks& MotorBooks::operator+=(const MotorBooks& other) {
 }
 
 AveragedMotor::AveragedMotor(const MotorParams& params)
-    : params_(params),
+    : cold_(params),
+      params_(params),
       temperature_K_(params.winding_ref_temp_K),
       resistance_(params.resistance_ohm) {
   WHIRL_CHECK(validate(params, "motor").ok());
+  if (params.heat_capacity_JpK <= 0.0) return;
+  temperature_K_ = params.start_temp_K;
+  params_ = at_temperature(cold_, temperature_K_);
+  resistance_ = params_.resistance_ohm;
 }
 
 MotorBooks AveragedMotor::step(const Drive& drive, const ShaftLoad& load, double dt_s) {
@@ -275,15 +280,11 @@ void AveragedMotor::set_speed(double speed_radps) {
 }
 
 void AveragedMotor::warm(const MotorBooks& books, double dt_s) {
-  if (params_.heat_capacity_JpK <= 0.0) return;
-  const double share = params_.winding_resistance_ohm / params_.resistance_ohm;
-  const double heat_W = (books.copper_J * share + books.no_load_J) / dt_s;
-  const double settled_K = params_.ambient_temp_K + heat_W * params_.heat_resistance_KpW;
-  const double time_s = params_.heat_capacity_JpK * params_.heat_resistance_KpW;
-  temperature_K_ += (settled_K - temperature_K_) * -std::expm1(-dt_s / time_s);
-  resistance_ = params_.resistance_ohm + params_.winding_resistance_ohm *
-                                             params_.copper_temp_coefficient_pK *
-                                             (temperature_K_ - params_.winding_ref_temp_K);
+  if (cold_.heat_capacity_JpK <= 0.0) return;
+  const double heat_J = books.copper_J * winding_share(cold_, params_) + books.no_load_J;
+  temperature_K_ = warmed_K(cold_, temperature_K_, heat_J / dt_s, dt_s);
+  params_ = at_temperature(cold_, temperature_K_);
+  resistance_ = params_.resistance_ohm;
 }
 
 }  // namespace whirl::plant

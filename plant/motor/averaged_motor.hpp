@@ -99,7 +99,7 @@ class AveragedMotor {
   void diode_limit(const Drive& drive, double dt_s, Winding& winding) const;
   void settle(const Winding& winding, double mean_radps, double dt_s, Trial& trial) const;
 
-  MotorParams params_;
+  MotorParams cold_, params_;              // as built, and at the winding's temperature
   double speed_ = 0.0, rise_radps_ = 0.0;  // the second over the last sub-step
   double current_ = 0.0;
   double temperature_K_;

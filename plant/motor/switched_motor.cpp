@@ -46,18 +46,20 @@ int sector_of(double angle_rad) {
 // Which terminals are tied to what, and where the star point lies.
 struct SwitchedMotor::Circuit {
   std::array<double, 3> terminal_V{}, emf_V{};
+  std::array<double, 3> admittance{1.0, 1.0, 1.0};  // of each phase, relative
   std::array<bool, 3> tied{}, diode{}, to_bus{};
   double star_V = 0.0;
   int count = 0;
   void find_star() {
     count = 0;
-    double sum = 0.0;
+    double sum = 0.0, weights = 0.0;
     for (int k = 0; k < 3; ++k) {
       if (!tied[k]) continue;
-      sum += terminal_V[k] - emf_V[k];
+      sum += (terminal_V[k] - emf_V[k]) * admittance[k];
+      weights += admittance[k];
       ++count;
     }
-    if (count > 0) star_V = sum / count;
+    if (count > 0) star_V = sum / weights;
   }
   void tie(int k, double volts, bool bus, bool through_diode) {
     tied[k] = true;
@@ -67,8 +69,19 @@ struct SwitchedMotor::Circuit {
   }
 };
 
-SwitchedMotor::SwitchedMotor(const MotorParams& params) : params_(params) {
+SwitchedMotor::SwitchedMotor(const MotorParams& params)
+    : cold_(params), params_(params), temperature_K_(params.winding_ref_temp_K) {
   WHIRL_CHECK(validate(params, "motor").ok());
+  if (params.heat_capacity_JpK <= 0.0) return;
+  temperature_K_ = params.start_temp_K;
+  params_ = at_temperature(cold_, temperature_K_);
+}
+
+void SwitchedMotor::warm(const MotorBooks& books, double dt_s) {
+  if (cold_.heat_capacity_JpK <= 0.0) return;
+  const double heat_J = books.copper_J * winding_share(cold_, params_) + books.no_load_J;
+  temperature_K_ = warmed_K(cold_, temperature_K_, heat_J / dt_s, dt_s);
+  params_ = at_temperature(cold_, temperature_K_);
 }
 
 void SwitchedMotor::set_angle(double electrical_rad) {
@@ -77,9 +90,11 @@ void SwitchedMotor::set_angle(double electrical_rad) {
 
 double SwitchedMotor::back_emf(int phase, double angle) const {
   const double own = angle - phase * 2.0 * kPi / 3.0;
-  const double shape =
+  const double sine = params_.phases.sine_share;
+  double shape =
       params_.back_emf == BackEmf::trapezoidal ? 0.5 * trapezoid(own) : kSineShare * std::sin(own);
-  return params_.torque_constant_NmpA * shape;
+  if (sine > 0.0) shape += sine * (kSineShare * std::sin(own) - shape);
+  return params_.torque_constant_NmpA * shape * (1.0 + params_.phases.emf[phase]);
 }
 
 // Ties the terminal of a phase whose switches are off to a diode's rail if one conducts.
@@ -102,6 +117,7 @@ SwitchedMotor::Circuit SwitchedMotor::circuit(double angle, double speed) const 
   Circuit c;
   for (int k = 0; k < 3; ++k) {
     c.emf_V[k] = back_emf(k, angle) * speed;
+    c.admittance[k] = 1.0 / impedance(k);
     Leg leg = bridge_.leg[k];
     if (leg == Leg::pwm) {
       leg = bridge_.pwm_on ? Leg::high : bridge_.synchronous ? Leg::low : Leg::off;
@@ -151,7 +167,8 @@ double SwitchedMotor::advance(double dt_s, MotorBooks& books) {
   const double pace = params_.pole_pairs * std::abs(speed_);
   double h = std::min(dt_s, kMostStep_s);
   if (pace > 0.0) h = std::min(h, kMostTurn_rad / pace);
-  const double R = 0.5 * params_.resistance_ohm, L = 0.5 * params_.inductance_H, tau = L / R;
+  const double half_R = 0.5 * params_.resistance_ohm, half_L = 0.5 * params_.inductance_H,
+               tau = half_L / half_R;
   const double speed = speed_ + 0.5 * h * acceleration_;
   const double angle = angle_ + 0.5 * h * params_.pole_pairs * speed;
   const Circuit c = circuit(angle, speed);
@@ -160,7 +177,7 @@ double SwitchedMotor::advance(double dt_s, MotorBooks& books) {
   int dies = -1;
   for (int k = 0; k < 3; ++k) {
     if (!c.tied[k] || c.count < 2) continue;
-    ends[k] = (c.terminal_V[k] - c.star_V - c.emf_V[k]) / R;
+    ends[k] = (c.terminal_V[k] - c.star_V - c.emf_V[k]) / (half_R * impedance(k));
     if (!c.diode[k] || current_[k] == 0.0 || ends[k] * current_[k] >= 0.0) continue;
     const double when = tau * std::log1p(-current_[k] / ends[k]);
     if (when <= h) h = when, dies = k;
@@ -169,6 +186,7 @@ double SwitchedMotor::advance(double dt_s, MotorBooks& books) {
   double impulse = 0.0;
   for (int k = 0; k < 3; ++k) {
     if (!c.tied[k] || c.count < 2) continue;
+    const double R = half_R * impedance(k), L = half_L * impedance(k);
     const double gap = current_[k] - ends[k];
     const double charge = ends[k] * h + gap * tau * blend;
     const double square = ends[k] * ends[k] * h + 2.0 * ends[k] * gap * tau * blend +
@@ -192,7 +210,12 @@ void SwitchedMotor::turn(double impulse, double h, double angle_gain, MotorBooks
   if (blocked_) return;
   const double before = speed_, J = params_.inertia_kgm2;
   const double air = load_.quadratic_Nm_s2 * before * std::abs(before) + load_.constant_Nm;
-  const double free = before + (impulse - h * air) / J;
+  const double cogging =
+      params_.phases.cogging_Nm == 0.0
+          ? 0.0
+          : params_.phases.cogging_Nm *
+                std::sin(PhaseErrors::kCogs * (angle_ + 0.5 * angle_gain * before));
+  const double free = before + (impulse - h * (air + cogging)) / J;
   const double friction =
       h * params_.torque_constant_NmpA * params_.no_load_current_A / J;  // as a change of speed
   speed_ = std::abs(free) <= friction ? 0.0 : free - std::copysign(friction, free);
@@ -200,7 +223,7 @@ void SwitchedMotor::turn(double impulse, double h, double angle_gain, MotorBooks
   books.kinetic_J += 0.5 * J * (speed_ * speed_ - before * before);
   books.air_J += air * mean * h;
   books.air_torque_Nm += air * h;
-  books.no_load_J += J * (free - speed_) * mean;
+  books.no_load_J += J * (free - speed_) * mean + h * cogging * mean;
   acceleration_ = h > 0.0 ? (speed_ - before) / h : 0.0;
   angle_ = wrapped(angle_ + angle_gain * mean);
 }

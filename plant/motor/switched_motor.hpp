@@ -10,7 +10,9 @@
 //            event, found in closed form
 //   Valid    any pattern, both senses of rotation; inner steps turn at most 2 electrical degrees
 //   Error    power balance to 1e-4 of the throughput, closed forms (tests/switched_motor_test.cpp)
-//   Left out cogging, saliency, dead time (the board's patterns bring their own), ringing
+//   Phases   each has resistance and inductance in one proportion (PhaseErrors), so that L/R is one time
+//            constant and the star point stays in closed form; cogging's work is booked as no-load loss
+//   Left out saliency, dead time (the board's patterns bring their own), ringing
 #pragma once
 #include <array>
 
@@ -43,6 +45,9 @@ class SwitchedMotor {
   void release() { blocked_ = false; }
 
   MotorBooks run(double dt_s);
+  // Winding, magnets and bearings after dt_s in which `books` came together; nothing without a heat capacity.
+  void warm(const MotorBooks& books, double dt_s);
+  double winding_temperature_K() const { return temperature_K_; }
 
   std::array<double, 3> phase_voltages() const;  // terminals against the bus's negative, V
   const std::array<double, 3>& phase_currents_A() const { return current_; }  // into the motor
@@ -60,8 +65,10 @@ class SwitchedMotor {
   void turn(double impulse_Nms, double dt_s, double angle_gain, MotorBooks& books);
   double along(int phase, double charge_C) const;
   double back_emf(int phase, double angle) const;  // V s/rad of the shaft
+  double impedance(int phase) const { return 1.0 + params_.phases.impedance[phase]; }
 
-  MotorParams params_;
+  MotorParams cold_, params_;  // as built, and at the winding's temperature
+  double temperature_K_;
   Bridge bridge_;
   ShaftLoad load_;
   double bus_V_ = 0.0;

@@ -169,7 +169,7 @@ TEST(AveragedMotor, WarmWindingHasMoreResistance) {
   const double rise = motor.winding_temperature_K() - 293.15;
   const double R = 0.12 + 0.07 * 0.00393 * rise, i = 1.6 / R;
   EXPECT_TRUE(near(motor.resistance_ohm(), R, round_off(8, R)));
-  EXPECT_TRUE(near(rise, 3.0 * i * i * R * 0.07 / 0.12, stated(0.5, "settled")));
+  EXPECT_TRUE(near(rise, 3.0 * i * i * (R - 0.05), stated(0.5, "settled")));
 }
 
 TEST(MotorParams, RefusesWhatNoMotorIs) {

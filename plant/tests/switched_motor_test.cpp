@@ -110,10 +110,83 @@ TEST(SwitchedMotor, LateCommutationCostsTorque) {
   EXPECT_GT(torque(20.0), 1.1 * torque(40.0));
 }
 
+// A motor out of the bag: phases that differ, cogging, a shape between trapezoid and sine.
+MotorParams uneven() {
+  MotorParams params;
+  params.phases = {.impedance = {0.03, -0.02, 0.01},
+                   .emf = {-0.01, 0.005, 0.01},
+                   .sine_share = 0.4,
+                   .cogging_Nm = 5e-3};
+  return params;
+}
+
+// Phases a and b in series are the line-to-line circuit times the mean of what they are off by.
+TEST(SwitchedMotor, UnevenPhasesCarryTheCurrentOfTheirOwnImpedance) {
+  SwitchedMotor motor{uneven()};
+  motor.block();
+  motor.set_bus(1.6);
+  motor.set_bridge({.leg = {Leg::high, Leg::low, Leg::off}});
+  motor.run(4e-4);
+  const double want = 1.6 / (0.12 * 1.005) * (1.0 - std::exp(-4e-4 * 0.12 / 2.0e-5));
+  EXPECT_TRUE(near(motor.phase_currents_A()[0], want, round_off(200, 16.0)));
+  // The open phase shows the star point: less than half where the upper phase is the larger one.
+  EXPECT_TRUE(near(motor.phase_voltages()[2], 1.6 * 0.98 / 2.01, round_off(16, 1.6)));
+}
+
+TEST(SwitchedMotor, PhaseWithMoreBackEmfShowsItWhereItFloats) {
+  MotorParams params;
+  params.phases.emf = {0.0, 0.0, 0.01};
+  SwitchedMotor motor{params};
+  motor.set_bus(10.0);
+  motor.set_speed(400.0);
+  motor.set_angle(50.0 * kDeg);
+  motor.set_bridge(six_step(0, true, true));
+  const double emf = 1.01 * 0.01005 / 2.0 * 400.0 / 3.0;
+  EXPECT_TRUE(near(motor.phase_voltages()[2], 5.0 + emf, round_off(64, 5.0)));
+}
+
+// A rotor let go with no friction swings about a detent as a pendulum does.
+TEST(SwitchedMotor, CoggingPullsToTheNextDetent) {
+  MotorParams params;
+  params.no_load_current_A = 0.0;
+  params.phases.cogging_Nm = 5e-3;
+  SwitchedMotor motor{params};
+  constexpr double kPeriods = 12 * 7;  // in a turn of the shaft
+  motor.set_angle(1.0 * kDeg);         // 12 degrees of a period: a small swing
+  motor.run(1e-3);
+  const double w = std::sqrt(5e-3 * kPeriods / params.inertia_kgm2);  // of the swing, rad/s
+  const double want = -1.0 * kDeg / 7.0 * w * std::sin(w * 1e-3);
+  EXPECT_TRUE(near(motor.speed_radps(), want, stated(0.02 * std::abs(want), "12 degrees, not 0")));
+}
+
+TEST(SwitchedMotor, WarmMotorHasMoreResistanceLessFluxAndThinnerGrease) {
+  MotorParams cold;
+  cold.bearing_share = 0.3;
+  const MotorParams hot = at_temperature(cold, 293.15 + 50.0);
+  EXPECT_TRUE(near(hot.resistance_ohm, 0.12 + 0.07 * 0.1965, round_off(8, 0.12)));
+  EXPECT_TRUE(near(hot.torque_constant_NmpA, 0.95 * 0.01005, round_off(8, 0.01)));
+  const double friction = 0.01005 * (0.7 + 0.3 * std::exp(-2.0));  // as a torque
+  EXPECT_TRUE(
+      near(hot.no_load_current_A * hot.torque_constant_NmpA, friction, round_off(16, 0.01)));
+}
+
+TEST(SwitchedMotor, HeldShaftSettlesWhereHeatLeavesAsFastAsItComes) {
+  MotorParams params;
+  params.heat_capacity_JpK = 0.02;
+  SwitchedMotor motor{params};
+  motor.block();
+  motor.set_bus(1.2);
+  motor.set_bridge({.leg = {Leg::high, Leg::low, Leg::off}});
+  for (int ms = 0; ms < 1000; ++ms) motor.warm(motor.run(1e-3), 1e-3);
+  const double rise = motor.winding_temperature_K() - 293.15, R = 0.12 + 0.07 * 0.00393 * rise;
+  EXPECT_GT(rise, 15.0);
+  EXPECT_TRUE(near(rise, 3.0 * 1.44 / R / R * (R - 0.05), stated(0.1, "settled")));
+}
+
 TEST(SwitchedMotor, EnergyBooksCloseForAnyPattern) {
-  for (BackEmf shape : {BackEmf::trapezoidal, BackEmf::sinusoidal}) {
-    MotorParams params;
-    params.back_emf = shape;
+  for (int copy : {0, 1, 2}) {
+    MotorParams params = copy == 2 ? uneven() : MotorParams{};
+    params.back_emf = copy == 1 ? BackEmf::sinusoidal : BackEmf::trapezoidal;
     SwitchedMotor motor{params};
     motor.set_load({2e-7, 0.0});
     motor.set_speed(300.0);

@@ -18,10 +18,6 @@ constexpr double kStands_radps = 5.0;
 constexpr double kBackwards_radps = -30.0;  // a start swings a little to both sides
 constexpr int kBackward_reports = 50;       // one each millisecond
 
-double at_pin(double volts) {
-  return std::clamp(volts, 0.0, kReference_V);
-}
-
 plant::Leg leg_of(const std::array<bool, 2>& on) {
   if (on[0]) return plant::Leg::low;
   return on[1] ? plant::Leg::high : plant::Leg::off;
@@ -30,7 +26,21 @@ plant::Leg leg_of(const std::array<bool, 2>& on) {
 }  // namespace
 
 PowerStage::PowerStage(const PowerStageParams& params, std::uint64_t seed, const std::string& name)
-    : params_(params), motor_(params.motor), shunt_(params.shunt, seed, name + ".shunt") {}
+    : params_(params), motor_(params.motor), shunt_(params.shunt, seed, name + ".shunt") {
+  for (const char* pin : {"a", "b", "c", "bus", "shunt"}) {
+    noise_.emplace_back(seed, name + ".adc." + pin);
+  }
+}
+
+// `nominal`: what the board's drawing makes of a volt there.
+double PowerStage::at_pin(std::size_t pin, double volts, double nominal) {
+  const PinErrors& e = params_.pins[pin];
+  double shown = volts * nominal;
+  if (e.divider != 0.0) shown *= 1.0 + e.divider;
+  if (e.gain != 0.0 || e.offset_V != 0.0) shown = (1.0 + e.gain) * shown + e.offset_V;
+  if (e.noise_V > 0.0) shown += e.noise_V * noise_[pin].normal();
+  return std::clamp(shown, 0.0, kReference_V);
+}
 
 void PowerStage::wire(int leg, bool upper, io::Wire& wire) {
   wire.drive(wire.add_driver(), io::Drive::pull_low, now_ns_);
@@ -66,17 +76,18 @@ void PowerStage::end_shot(int leg, Nanoseconds now) {
 
 double PowerStage::phase_V(int leg, Nanoseconds now) {
   advance(now);
-  return at_pin(motor_.phase_voltages()[phase_at(static_cast<std::size_t>(leg))] * kDivider);
+  const auto pin = static_cast<std::size_t>(leg);
+  return at_pin(pin, motor_.phase_voltages()[phase_at(pin)], kDivider);
 }
 
 double PowerStage::bus_V(Nanoseconds now) {
   advance(now);
-  return at_pin(bus_V_ * kDivider);
+  return at_pin(PowerStageParams::kBus, bus_V_, kDivider);
 }
 
 double PowerStage::shunt_V(Nanoseconds now) {
   advance(now);
-  return at_pin(shunt_.sample_A() * kShunt_VpA);
+  return at_pin(PowerStageParams::kShunt, shunt_.sample_A(), kShunt_VpA);
 }
 
 void PowerStage::set_load(const io::ShaftLoad& load, Nanoseconds now) {
@@ -113,12 +124,7 @@ void PowerStage::run(double dt_s) {
   sum.air_torque_Nm *= dt_s;  // a mean; here its integral is kept
   books_ += sum;
 
-  // The capacitor between supply and bridge, implicit in its own voltage.
-  const double C = params_.bus_capacitance_F, R = load_.source_ohm;
-  if (R > 0.0) {
-    bus_V_ = (bus_V_ + dt_s / C * (load_.source_V / R - bridge_A)) / (1.0 + dt_s / (R * C));
-    source_charge_C_ += (load_.source_V - bus_V_) / R * dt_s;
-  }
+  if (load_.source_ohm > 0.0) source_charge_C_ += feed(bridge_A, dt_s);
   state_.bus_highest_V = std::max(state_.bus_highest_V, bus_V_);
   state_.bus_lowest_V = std::min(state_.bus_lowest_V, bus_V_);
   window_charge_C_ += books.bus_charge_C;
@@ -126,6 +132,22 @@ void PowerStage::run(double dt_s) {
   if (window_s_ < kWindow_s) return;
   state_.bridge_peak_A = std::max(state_.bridge_peak_A, window_charge_C_ / window_s_);
   window_charge_C_ = window_s_ = 0.0;
+}
+
+// The capacitor between supply and bridge, implicit in its own voltage. Source and bridge meet outside of
+// its series resistance.
+double PowerStage::feed(double bridge_A, double dt_s) {
+  const double C = params_.bus_capacitance_F, R = load_.source_ohm, E = params_.bus_esr_ohm;
+  if (E == 0.0) {
+    bus_V_ = (bus_V_ + dt_s / C * (load_.source_V / R - bridge_A)) / (1.0 + dt_s / (R * C));
+    return (load_.source_V - bus_V_) / R * dt_s;
+  }
+  const double both = R + E;
+  capacitor_V_ = (capacitor_V_ + dt_s / C * (load_.source_V - R * bridge_A) / both) /
+                 (1.0 + dt_s / (both * C));
+  // What the converter and the bridge see next: at the current of this instant, not at the step's mean.
+  bus_V_ = (load_.source_V * E + capacitor_V_ * R - motor_.bus_current_A() * R * E) / both;
+  return (load_.source_V - capacitor_V_ + E * bridge_A) / both * dt_s;
 }
 
 void PowerStage::watch_direction(double speed_radps, Nanoseconds now) {
@@ -140,6 +162,7 @@ io::ShaftState PowerStage::report(Nanoseconds now) {
   WHIRL_CHECK(dt_s > 0.0, now, reported_ns_);
   io::ShaftState told = state_;
   told.speed_radps = motor_.speed_radps();
+  motor_.warm(books_, dt_s);
   watch_direction(told.speed_radps, now);
   told.angle_rad = motor_.electrical_angle_rad();
   told.air_torque_Nm = books_.air_torque_Nm / dt_s;

@@ -17,7 +17,8 @@ constexpr Nanoseconds kUs = 1000, kMs = 1'000'000;
 constexpr double kDivider = 1.5 / 11.5;
 
 struct Stand {
-  explicit Stand(bool swap_wires = false) : stage(params(swap_wires), 1, "motor") {
+  explicit Stand(bool swap_wires = false) : Stand(params(swap_wires)) {}
+  explicit Stand(const PowerStageParams& params) : stage(params, 1, "motor") {
     for (int leg = 0; leg < 3; ++leg) {
       for (const bool upper : {false, true}) {
         auto& slot = wire[static_cast<std::size_t>(leg)][upper ? 1 : 0];
@@ -206,6 +207,65 @@ TEST(PowerStage, BrakeStopsTheRotorAsItsTorqueAndInertiaSay) {
   s.load(0.0);
   s.spin(0.4, 10'000);
   EXPECT_GT(s.stage.motor().speed_radps(), 100.0);  // released, it turns again
+}
+
+// ---- The converter's channels and the capacitor as they are bought
+
+struct Pins {
+  explicit Pins(const PowerStageParams& params) : stage(params, 1, "motor") {
+    stage.set_load({.source_V = 12.0, .source_ohm = 0.03}, 0);
+  }
+  PowerStage stage;
+};
+
+TEST(PowerStageParts, PinShowsDividerThenGainThenOffset) {
+  PowerStageParams params = Stand::params(false);
+  params.pins[PowerStageParams::kBus] = {.divider = 0.017, .gain = -0.002, .offset_V = 1.5e-3};
+  Pins exact(Stand::params(false)), off(params);
+  const double drawn = exact.stage.bus_V(50 * kMs), shown = off.stage.bus_V(50 * kMs);
+  EXPECT_TRUE(near(drawn, 12.0 * kDivider, stated(1e-6, "charged")));
+  EXPECT_TRUE(near(shown, 0.998 * 1.017 * drawn + 1.5e-3, round_off(8, 1.6)));
+}
+
+TEST(PowerStageParts, NoiseIsWhiteAndEachChannelsOwn) {
+  PowerStageParams params = Stand::params(false);
+  for (PinErrors& pin : params.pins) pin.noise_V = 2e-3;
+  Pins noisy(params), exact(Stand::params(false));
+  const double truth = exact.stage.bus_V(50 * kMs);
+  double sum = 0.0, squares = 0.0, product = 0.0;
+  constexpr int kSamples = 4000;
+  for (int n = 0; n < kSamples; ++n) {
+    const double bus = noisy.stage.bus_V(50 * kMs) - truth;
+    const double shunt = noisy.stage.shunt_V(50 * kMs) - exact.stage.shunt_V(50 * kMs);
+    sum += bus, squares += bus * bus, product += bus * shunt;
+  }
+  EXPECT_TRUE(near(sum / kSamples, 0.0, stated(1e-4, "three standard errors")));
+  EXPECT_TRUE(near(std::sqrt(squares / kSamples), 2e-3, stated(7e-5, "three standard errors")));
+  EXPECT_TRUE(near(product / kSamples / 4e-6, 0.0, stated(0.05, "three standard errors")));
+}
+
+// Four microseconds after an edge the capacitor has given hardly any charge: without a resistance the bus
+// stands, with it the current drops over source and capacitor in parallel.
+TEST(PowerStageParts, SeriesResistanceDropsTheBusWithTheEdge) {
+  PowerStageParams params = Stand::params(false);
+  params.bus_esr_ohm = 0.06;
+  Stand exact, real(params);
+  for (Stand* s : {&exact, &real}) {
+    s->load(0.5);  // held
+    s->now = 20 * kMs;
+    s->stage.report(s->now);
+    s->set(0, true, true), s->set(1, false, true);
+    s->now += 4 * kUs;
+  }
+  const double sag_V = (exact.stage.bus_V(exact.now) - real.stage.bus_V(real.now)) / kDivider;
+  const double bridge_A = std::abs(real.stage.motor().bus_current_A());
+  EXPECT_GT(bridge_A, 2.5);
+  // Both capacitors gave some 7 uC of their 470 uF; the one without resistance alone shows it.
+  EXPECT_TRUE(near(sag_V, bridge_A * 0.06 * 0.03 / 0.09, stated(0.015, "7 uC of 470 uF")));
+  // In the long run the capacitor carries nothing, and its resistance does not matter.
+  const double late_exact = exact.stage.bus_V(exact.now + 5 * kMs);
+  const double late_real = real.stage.bus_V(real.now + 5 * kMs);
+  EXPECT_TRUE(near(late_real, late_exact, stated(1e-4, "settled")));
 }
 
 }  // namespace
