@@ -82,6 +82,13 @@ struct Note {
   std::string text;
 };
 
+// A number of this copy of the hardware, as drawn from the seed.
+struct PartRow {
+  std::string name;  // "divider.a.upper"
+  double value = 0;  // SI
+  std::string unit;  // "" is a share of the nominal
+};
+
 // Where the host's time went.
 struct HostTimes {
   double total_s = 0;
@@ -120,6 +127,7 @@ struct Report {
   HostTimes host;
   std::string timing_profile;  // "8 ns per instruction"
   std::vector<std::pair<std::string, std::string>> versions;
+  std::vector<PartRow> parts;  // empty: the drawing itself
   std::vector<Expectation> expectations;
   std::vector<Histogram> histograms;
   std::vector<TaskRow> tasks;

@@ -117,6 +117,11 @@ std::string run_json(const Report& r) {
   out["timing_profile"] = r.timing_profile;
   out["versions"] = ordered_json::object();
   for (const auto& [what, version] : r.versions) out["versions"][legal_text(what)] = version;
+  out["parts"] = ordered_json::array();
+  for (const PartRow& part : r.parts) {
+    out["parts"].push_back(
+        {{"name", part.name}, {"value", number(part.value)}, {"unit", part.unit}});
+  }
   out["expectations"] = ordered_json::array();
   for (const Expectation& e : r.expectations) out["expectations"].push_back(expectation(e));
   out["tasks"] = ordered_json::array();

@@ -17,6 +17,7 @@ plant/air                base/ plant/air/ plant/base/
 plant/airframe           base/ plant/air/ plant/airframe/ plant/base/
 plant/battery            base/ plant/base/ plant/battery/
 plant/motor              base/ plant/base/ plant/motor/
+plant/parts              base/ plant/parts/
 plant/rotor              base/ plant/rotor/
 plant/sensors            base/ plant/base/ plant/sensors/
 io_bridges/board_description base/ io_bridges/board_description/

@@ -26,9 +26,9 @@ Bench::Bench(World& world, Target& target, std::uint16_t serial)
       serial_(serial),
       thrust_(column(world, "cell_thrust")),
       torque_(column(world, "cell_torque")),
-      current_(column(world, "bus_current")),
-      voltage_(column(world, "bus_voltage")),
-      wind_(column(world, "wind")) {
+      current_(column(world, "meter_current")),
+      voltage_(column(world, "meter_voltage")),
+      wind_(column(world, "meter_wind")) {
   line_.on_line([this](const std::string& text) { answers_.push_back(text); });
 }
 

@@ -1,7 +1,7 @@
 // The stand as a technician has it: the ESC's serial line, the instruments, the flow generator.
 //
-//   Instruments  load cell (thrust, torque), ammeter and voltmeter in the supply's lead, the flow's
-//                set speed; nothing else of the world is read
+//   Instruments  load cell (thrust, torque), ammeter and voltmeter in the supply's lead, an anemometer in
+//                the flow, each with the errors of the stand's copy; nothing else of the world is read
 //   ESC          typed commands and the binary stream; set-points on the bus are silent
 //   Errors       a fault of the core, a reset, an answer that does not come, a motor that gave up:
 //                one sentence each, and the calibration ends
@@ -20,7 +20,7 @@ namespace whirl::calibrate {
 struct Instruments {
   double thrust_N = 0.0, torque_Nm = 0.0;   // load cell
   double current_A = 0.0, voltage_V = 0.0;  // meters
-  double wind_mps = 0.0;                    // of the flow generator
+  double wind_mps = 0.0;                    // of the anemometer
 };
 
 class Bench {

@@ -15,6 +15,7 @@
 #include "harness/pacing/host_clock.hpp"
 #include "harness/plan/needs.hpp"
 #include "harness/stand/bench_stand.hpp"
+#include "harness/stand/stand_parts.hpp"
 #include "harness/stand/stand_world.hpp"
 #include "harness/target/bench/analyser_link.hpp"
 #include "harness/target/bench/bench_target.hpp"
@@ -28,7 +29,11 @@ namespace whirl {
 namespace {
 
 Result<stand::StandParams> stand_of(const cli::Setup& setup) {
-  return catalogue::read_stand(*setup.plan.stand, setup.root + "/test_plans/propellers");
+  auto params = catalogue::read_stand(*setup.plan.stand, setup.root + "/test_plans/propellers");
+  if (params && setup.bench == nullptr) {
+    stand::draw_parts(params.value(), setup.board, setup.seed);
+  }
+  return params;
 }
 
 // Each motor has its ESC on the board, and each ESC its motor.
@@ -181,8 +186,7 @@ Result<std::unique_ptr<Target>> make_target(const cli::Setup& setup,
   if (setup.plan.stand && setup.node == 0 && !brings_its_world(setup.board)) {
     const auto params = stand_of(setup);
     if (!params) return params.error();
-    const auto set =
-        stand::set_stage(options.board.board, params.value().esc.motor, params.value().stage);
+    const auto set = stand::set_parts(options.board.board, params.value());
     if (!set) return set.error();
   }
   options.any_qemu_version = std::getenv("WHIRL_ANY_QEMU") != nullptr;

@@ -115,6 +115,9 @@ class Run {
     Stopwatch watch(record_.report.host.start_s);
     if (auto started = lockstep_.start(); !started) return ended_by(started.error());
     record_.report.versions = parts_.target.versions();
+    for (const DrawnPart& part : parts_.world.drawn_parts()) {
+      record_.report.parts.push_back({part.name, part.value, part.unit});
+    }
     file_row();
     return true;
   }

@@ -1,14 +1,19 @@
 // What a thrust stand is made of: what turns, what feeds it, what commands it.
 #pragma once
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "harness/stand/esc_master.hpp"
 #include "harness/stand/stage_params.hpp"
+#include "harness/world/drawn_part.hpp"
 #include "plant/battery/battery_params.hpp"
+#include "plant/parts/spread.hpp"
 #include "plant/rotor/blade.hpp"
 #include "plant/sensors/load_cell.hpp"
+#include "plant/sensors/meter.hpp"
 
 namespace whirl::stand {
 
@@ -16,7 +21,13 @@ struct StandParams {
   std::shared_ptr<const plant::Blade> blade;
   plant::BatteryParams battery;
   plant::LoadCellParams cell;
-  StageParams stage;  // what differs from the board's own motor and shunt
+  plant::MeterParams ammeter, voltmeter;  // in the supply's lead
+  plant::MeterParams anemometer;
+  StageParams stage;                        // what differs from the board's own motor and shunt
+  double hse_error = 0.0, hsi_error = 0.0;  // of the board's clocks, beside what its file says
+  std::map<std::string, plant::ToleranceClass>
+      tolerance;                 // by group (plant/parts/esc_stand.hpp); none where missing
+  std::vector<DrawnPart> drawn;  // what came of it (stand_parts.hpp)
   EscMasterParams esc;
   bool commands = true;  // false: somebody else commands the ESC (whirl standin)
 };

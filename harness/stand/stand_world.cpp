@@ -175,6 +175,12 @@ void StandWorld::name_signals() {
   add_signal("charge_used", D::charge, "of the battery",
              [this] { return battery_.charge_used_C(); });
   add_signal("wind", D::speed, "down along the shaft", [this] { return wind_mps_; });
+  add_signal("meter_current", D::current, "as the ammeter reads bus_current",
+             [this] { return plant::read_meter(params_.ammeter, shaft_.bridge_current_A); });
+  add_signal("meter_voltage", D::voltage, "as the voltmeter reads bus_voltage",
+             [this] { return plant::read_meter(params_.voltmeter, shaft_.bus_voltage_V); });
+  add_signal("meter_wind", D::speed, "as the anemometer reads wind",
+             [this] { return plant::read_meter(params_.anemometer, wind_mps_); });
   for (EscLine::Named& told : master_.signals()) {
     add_signal(told.signal.name, told.signal.dimension, told.signal.about, std::move(told.value));
   }

@@ -6,7 +6,8 @@
 //   Command  those of esc_master.hpp, and Brake
 //   Air      Wind down the shaft, the flow generator's; without a duration for ever
 //   Faults   supply_dip (value: volts below)
-//   Left out warm windings, the flow's own turbulence
+//   Meters   load cell, ammeter, voltmeter and anemometer as bought ones read; without a tolerance the truth
+//   Left out the flow's own turbulence
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -34,6 +35,7 @@ class StandWorld : public World {
   std::int64_t command_on_wire_ns() const override { return master_.on_wire_ns(); }
   Result<bool> take_fault(const FaultSpec& fault) override;
   std::vector<std::uint32_t> applied_faults() const override { return faults_.acted(); }
+  const std::vector<DrawnPart>& drawn_parts() const override { return params_.drawn; }
   std::string status() const override;
   Result<Done> say(const std::string& line) override { return master_.ask(line); }
   const std::vector<std::string>& heard() const override { return master_.heard(); }

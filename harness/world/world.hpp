@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "base/result.hpp"
+#include "harness/world/drawn_part.hpp"
 #include "harness/world/fault.hpp"
 #include "harness/world/request.hpp"
 #include "harness/world/signal_table.hpp"
@@ -41,6 +42,12 @@ class World {
   }
   virtual const std::vector<std::string>& heard() const {
     static const std::vector<std::string> nothing;
+    return nothing;
+  }
+
+  // In what this copy of the hardware differs from the drawing; empty: in nothing.
+  virtual const std::vector<DrawnPart>& drawn_parts() const {
+    static const std::vector<DrawnPart> nothing;
     return nothing;
   }
 

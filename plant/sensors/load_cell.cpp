@@ -6,11 +6,11 @@ namespace whirl::plant {
 
 LoadCell::LoadCell(const LoadCellParams& p, std::uint64_t seed, const std::string& name)
     : params_(p),
-      channels_{Channel{.gain = 1.0 + draw_normal(p.gain_error, seed, name + ".thrust.gain"),
-                        .offset = draw_normal(p.thrust_offset_N, seed, name + ".thrust.offset"),
+      channels_{Channel{.gain = 1.0 + p.thrust_gain_error,
+                        .offset = p.thrust_offset_N,
                         .noise = WhiteNoise(p.thrust_noise_N, seed, name + ".thrust")},
-                Channel{.gain = 1.0 + draw_normal(p.gain_error, seed, name + ".torque.gain"),
-                        .offset = draw_normal(p.torque_offset_Nm, seed, name + ".torque.offset"),
+                Channel{.gain = 1.0 + p.torque_gain_error,
+                        .offset = p.torque_offset_Nm,
                         .noise = WhiteNoise(p.torque_noise_Nm, seed, name + ".torque")}} {}
 
 double LoadCell::Channel::read(double x, double rate_dt, double dt_s) {

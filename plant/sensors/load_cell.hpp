@@ -13,8 +13,8 @@ namespace whirl::plant {
 struct LoadCellParams {
   double bandwidth_Hz = 150.0;                           // each of two equal poles
   double thrust_noise_N = 1e-3, torque_noise_Nm = 2e-5;  // densities, per root Hz
-  double thrust_offset_N = 0.0, torque_offset_Nm = 0.0;  // standard deviations, drawn once
-  double gain_error = 0.0;                               // standard deviation, drawn once
+  double thrust_offset_N = 0.0, torque_offset_Nm = 0.0;  // of this cell
+  double thrust_gain_error = 0.0, torque_gain_error = 0.0;
 };
 
 struct LoadReading {
