@@ -61,8 +61,10 @@ class Catching {
   static constexpr std::uint8_t kUnknown = 3;
   static constexpr std::uint8_t kSettling = 6;  // samples
   static constexpr std::uint8_t kBackward = 3;  // changes in a row: a revolution (electrical)
-  static constexpr int kClear_counts = 6;       // noise alone does not reach that
-  static constexpr Ticks kStanding = 30'000;    // 15 ms: under 20 rad/s with 7 pole pairs
+  // 0.15 V: offsets of two channels (5 counts) and their noise (1.5 to 2 rms each, 300 looks) do not reach
+  // it; a rotor of 0.01 V s does from 30 rad/s on, and is aligned below.
+  static constexpr int kClear_counts = 24;
+  static constexpr Ticks kStanding = 30'000;  // 15 ms: under 20 rad/s with 7 pole pairs
 
   std::uint8_t highest_ = kUnknown, settling_ = 0, backward_ = 0;
   bool followed_ = false;  // the last change was forward: the next one has a length

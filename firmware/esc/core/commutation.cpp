@@ -22,7 +22,8 @@ void Commutation::stop() {
   state_ = State::stopped;
   sectors_.fill(0);
   good_ = missed_ = unfit_ = 0;
-  ordered_ = braked_ = false;
+  ordered_ = braked_ = measured_ = false;
+  last_length_ = 0;
 }
 
 void Commutation::join(Ticks now, std::uint8_t step, Ticks sector) {
@@ -99,10 +100,27 @@ bool Commutation::back_emf_fits() {
   return fits;
 }
 
-Commutation::Order Commutation::crossed(Ticks at) {
+// The crossing before this one is the one that has two neighbours now.
+void Commutation::learn(Ticks length, int bus_counts) {
+  const int more = static_cast<int>(length) - static_cast<int>(last_length_);
+  const int sector = sector_;
+  last_length_ = length;
+  if (more == static_cast<int>(length) || 4 * more > sector || -4 * more > sector) return;
+  // Half of the difference is a time; in it the phase moves by twice the back-EMF per sector.
+  const auto emf_counts =
+      static_cast<int>(config_.flux_count_ticks / static_cast<unsigned>(sector));
+  middles_.learn(previous_step(), more * emf_counts / sector, bus_counts);
+}
+
+Commutation::Order Commutation::crossed(Ticks at, bool measured, int bus_counts) {
   if (crossing_known_) {
     const Ticks length = since(at, crossed_at_);
     const bool odd = length > 2u * sector_ || 2u * length < sector_;
+    if (measured && measured_ && !odd && state_ == State::running) {
+      learn(length, bus_counts);
+    } else {
+      last_length_ = 0;
+    }
     if (state_ == State::running && odd && ++missed_ >= kInARow / 2) {
       lose();
       return {};
@@ -116,6 +134,7 @@ Commutation::Order Commutation::crossed(Ticks at) {
     if (sector_ < config_.shortest_sector) sector_ = config_.shortest_sector;
   }
   crossing_known_ = true;
+  measured_ = measured;
   crossed_at_ = at;
   waited_ = since(sampled_at_, at);
   const Ticks half = static_cast<Ticks>(sector_ / 2);
@@ -139,7 +158,7 @@ Commutation::Order Commutation::on_sample(Ticks now, int floating_counts, int bu
   wait(now);
   // Positive before the crossing, negative after it, whatever the step.
   const auto side_in = [&](std::uint8_t step) {
-    const int doubled = 2 * floating_counts - bus_counts;
+    const int doubled = middles_.off(step, floating_counts, bus_counts);
     return (step & 1) != 0 ? -doubled : doubled;
   };
   // At a rail a diode still carries the old current: that says nothing about the rotor. At low duty
@@ -159,7 +178,7 @@ Commutation::Order Commutation::on_sample(Ticks now, int floating_counts, int bu
   }
   const int side = at_rail ? 0 : side_in(step_);
   if (side > highest_counts_ || -side > highest_counts_) highest_counts_ = side > 0 ? side : -side;
-  const int clear = state_ == State::running ? 0 : config_.start_clear_counts;
+  const int clear = state_ == State::running ? 0 : start_clear();
   if (side > clear) {
     seen_before_ = true;
     before_at_ = now;
@@ -168,12 +187,11 @@ Commutation::Order Commutation::on_sample(Ticks now, int floating_counts, int bu
     const std::uint32_t gap = since(now, before_at_);
     const auto height = static_cast<std::uint32_t>(before_counts_ - side);
     const auto back = static_cast<Ticks>(gap * static_cast<std::uint32_t>(-side) / height);
-    return crossed(static_cast<Ticks>(now - back));
-  } else if (side < -config_.start_clear_counts &&
-             (state_ == State::starting || elapsed >= sector_ / 2)) {
+    return crossed(static_cast<Ticks>(now - back), true, bus_counts);
+  } else if (side < -start_clear() && (state_ == State::starting || elapsed >= sector_ / 2)) {
     // It had crossed before we could look: believe the expected moment, if there is one.
     const auto expected = static_cast<Ticks>(commutated_at_ + sector_ / 2);
-    return crossed(state_ == State::running ? expected : now);
+    return crossed(state_ == State::running ? expected : now, false, bus_counts);
   }
   // No crossing where one and a half sectors have passed: go on blindly, but not for ever, and not if
   // there is hardly any back-EMF: then the rotor has been stopped.

@@ -14,6 +14,8 @@
 #include <array>
 #include <cstdint>
 
+#include "firmware/esc/core/middles.hpp"
+
 namespace fw::esc {
 
 using Ticks = std::uint16_t;
@@ -21,10 +23,11 @@ using Ticks = std::uint16_t;
 struct CommutationConfig {
   float ticks_per_s = 2.0e6f;
   std::uint8_t pole_pairs = 7;
-  Ticks align_sector = 24'000;     // a forced sector while starting: 12 ms, shrinking
-  Ticks shortest_sector = 180;     // 90 us: beyond 13,000 rpm with 7 pole pairs
-  Ticks start_blank = 300;         // while starting, sectors are only guessed: 150 us
-  int start_clear_counts = 10;     // doubled counts off the middle that noise alone does not reach
+  Ticks align_sector = 24'000;  // a forced sector while starting: 12 ms, shrinking
+  Ticks shortest_sector = 180;  // 90 us: beyond 13,000 rpm with 7 pole pairs
+  Ticks start_blank = 300;      // while starting, sectors are only guessed: 150 us
+  int start_clear_counts =
+      10;  // doubled counts off the middle, or twice the noise's range, if more
   std::uint8_t blank_share = 32;   // of 256: share of a sector that is not looked at
   std::uint8_t advance_share = 8;  // of 256: commutate earlier by this share of a sector
   // Line-to-line back-EMF in counts times a sector's ticks: the same at every speed. 0.01005 V s over
@@ -72,6 +75,7 @@ class Commutation {
   // The ordered time has come and the bridge has been set to step().
   Order on_commutated(Ticks now);
 
+  Middles& middles() { return middles_; }
   State state() const { return state_; }
   std::uint8_t step() const { return step_; }
   Pace pace() const;
@@ -90,7 +94,12 @@ class Commutation {
 
   std::uint8_t previous_step() const { return static_cast<std::uint8_t>((step_ + 5) % 6); }
   Order overtaken(Ticks now, int side, int bus_counts);
-  Order crossed(Ticks at);
+  Order crossed(Ticks at, bool measured, int bus_counts);
+  void learn(Ticks length, int bus_counts);
+  int start_clear() const {
+    const int noise = 2 * middles_.noise_counts();
+    return noise > config_.start_clear_counts ? noise : config_.start_clear_counts;
+  }
   void lose();
   void note_sector(Ticks length);
   void wait(Ticks now);
@@ -113,6 +122,9 @@ class Commutation {
   Ticks sampled_at_ = 0;
   std::uint32_t waited_ = 0;  // since the last crossing; does not wrap
   int highest_counts_ = 0;    // of the floating phase off the middle, doubled, in this sector
+  Middles middles_;
+  Ticks last_length_ = 0;  // of the sector before, between two measured crossings; 0: it was not
+  bool measured_ = false;  // the last crossing was
   std::array<Ticks, 6> sectors_{};
   std::uint8_t newest_ = 0;
   std::uint32_t bad_detections_ = 0;

@@ -81,9 +81,13 @@ void start() {
 }
 
 void off() {
+  let_go();
+  set_duty(0);
+}
+
+void let_go() {
   TIM4::CCER::write(TIM4::CC4E);
   lower_off();
-  set_duty(0);
 }
 
 void apply(std::uint8_t step) {

@@ -20,6 +20,7 @@ inline constexpr std::uint32_t kShortest_on = 120;  // counts that leave room fo
 
 void start();                         // everything off
 void off();                           // all six switches off: the motor coasts
+void let_go();                        // likewise, and the duty stays as it is
 void apply(std::uint8_t step);        // 0..5, see commutation.hpp
 void set_duty(std::uint32_t counts);  // of kPeriod; taken over at the next PWM period
 std::uint32_t duty();

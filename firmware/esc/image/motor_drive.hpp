@@ -1,6 +1,8 @@
 // Between the control core and the bridge: catches a rotor that turns, starts one that stands by
 // alignment, commutates, keeps the winding current within its limits from one PWM period to the next.
 //
+//   Probing  between alignment and start, where the rotor stands for certain: every other PWM period one pulse
+//            in each of the six steps, for the middles of their floating phases (middles.hpp)
 //   Threads  on_sample and on_commutation from their interrupts (commutation preempts sampling);
 //            sense and follow from the control tick, under a lock where they share
 #pragma once
@@ -25,11 +27,13 @@ class MotorDrive {
   bool tripped();  // the PWM-rate over-current trip has acted since the last call
 
  private:
-  enum class Phase : std::uint8_t { off, catching, aligning, turning };
+  enum class Phase : std::uint8_t { off, catching, aligning, probing, turning };
 
   void go_off();
   void go_catching();
+  void go_probing();
   void look_for_rotor();
+  void probe();
   void watch_current(int shunt_counts, int bus_counts);
   void commutate_by(int floating_counts, int bus_counts);
   void record(int shunt_counts, int bus_counts);
@@ -40,6 +44,7 @@ class MotorDrive {
   Phase phase_ = Phase::off;
   std::uint16_t align_ms_ = 0;
   std::uint16_t phase_ms_ = 0;     // aligning, or not in sync
+  bool pulsed_ = false;            // probing: this period has a pulse
   std::uint32_t wanted_duty_ = 0;  // PWM counts, before the guard
   std::uint32_t shunt_sum_ = 0, bus_sum_ = 0, samples_ = 0;
   int zero_counts_ = 0;  // 64 times the shunt's, while off: the guard counts from there

@@ -1,6 +1,7 @@
 #include "firmware/esc/core/commutation.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -47,6 +48,7 @@ class TestMotor {
   double speed = 0.0;  // mechanical, rad/s
   double angle = 0.0;  // electrical
   double noise_counts = 0.0;
+  std::array<double, 3> reads_more{};  // of each phase's divider, as a share
   double load_Nm = 0.0;
   double worst_error_deg = 0.0;
   double current_A = 0.0;
@@ -77,7 +79,9 @@ class TestMotor {
     static constexpr int kFloating[] = {2, 1, 0, 2, 1, 0};
     const double emf_V = 0.5 * kKt * speed * shape(kFloating[bridge_]);
     const double noise = noise_counts * std::sin(12.9898 * static_cast<double>(ticks_));
-    return static_cast<int>(std::lround(kBus_counts / 2.0 + emf_V / 6.2e-3 + noise));
+    const double shown =
+        (kBus_counts / 2.0 + emf_V / 6.2e-3) * (1.0 + reads_more[kFloating[bridge_]]);
+    return static_cast<int>(std::lround(shown + noise));
   }
   void note_error() {
     const double error = std::remainder(angle - bridge_ * kPi / 3.0, 2.0 * kPi) * 180.0 / kPi;
@@ -143,6 +147,21 @@ TEST(Commutation, ToleratesNoiseOfTheSamples) {
   t.motor.run(t.commutation, 5.0, 0.5);
   EXPECT_LT(t.motor.worst_error_deg, 12.0);
   EXPECT_TRUE(t.commutation.in_sync());
+}
+
+// Dividers of 1 % resistors: what rest has not told, the spacing of the crossings does.
+TEST(Commutation, LearnsUnevenDividersWhileItTurns) {
+  Turning t;
+  t.motor.reads_more = {0.03, -0.03, 0.01};
+  t.motor.worst_error_deg = 0.0;
+  t.motor.run(t.commutation, 2.0, 0.01);
+  const double before = t.motor.worst_error_deg;
+  t.motor.run(t.commutation, 2.0, 1.0);
+  t.motor.worst_error_deg = 0.0;
+  t.motor.run(t.commutation, 2.0, 0.1);
+  EXPECT_TRUE(t.commutation.in_sync());
+  EXPECT_LT(t.motor.worst_error_deg, 1.5);
+  EXPECT_GT(before, 8.0);
 }
 
 TEST(Commutation, StartsUnderLoad) {
