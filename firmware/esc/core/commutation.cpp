@@ -24,6 +24,7 @@ void Commutation::stop() {
   good_ = missed_ = unfit_ = 0;
   ordered_ = braked_ = measured_ = false;
   last_length_ = 0;
+  longer_ = 0;
 }
 
 void Commutation::join(Ticks now, std::uint8_t step, Ticks sector) {
@@ -43,6 +44,8 @@ void Commutation::join(Ticks now, std::uint8_t step, Ticks sector) {
 
 Commutation::Order Commutation::start(Ticks now) {
   stop();
+  const int noise = 2 * middles_.noise_counts();
+  start_clear_counts_ = noise > config_.start_clear_counts ? noise : config_.start_clear_counts;
   state_ = State::starting;
   sampled_at_ = now;
   waited_ = 0;
@@ -100,27 +103,25 @@ bool Commutation::back_emf_fits() {
   return fits;
 }
 
-// The crossing before this one is the one that has two neighbours now.
-void Commutation::learn(Ticks length, int bus_counts) {
-  const int more = static_cast<int>(length) - static_cast<int>(last_length_);
+// Of the crossing before the last, which has two neighbours now. The sample after a crossing has time for it.
+void Commutation::learn(int bus_counts) {
+  const int more = longer_;
+  longer_ = 0;
   const int sector = sector_;
-  last_length_ = length;
-  if (more == static_cast<int>(length) || 4 * more > sector || -4 * more > sector) return;
+  if (more == 0 || 4 * more > sector || -4 * more > sector) return;
   // Half of the difference is a time; in it the phase moves by twice the back-EMF per sector.
   const auto emf_counts =
       static_cast<int>(config_.flux_count_ticks / static_cast<unsigned>(sector));
-  middles_.learn(previous_step(), more * emf_counts / sector, bus_counts);
+  middles_.learn(previous_of(previous_step()), more * emf_counts / sector, bus_counts);
 }
 
-Commutation::Order Commutation::crossed(Ticks at, bool measured, int bus_counts) {
+Commutation::Order Commutation::crossed(Ticks at, bool measured) {
   if (crossing_known_) {
     const Ticks length = since(at, crossed_at_);
     const bool odd = length > 2u * sector_ || 2u * length < sector_;
-    if (measured && measured_ && !odd && state_ == State::running) {
-      learn(length, bus_counts);
-    } else {
-      last_length_ = 0;
-    }
+    const bool fair = measured && measured_ && !odd && state_ == State::running;
+    longer_ = fair && last_length_ > 0 ? static_cast<int>(length) - last_length_ : 0;
+    last_length_ = fair ? length : Ticks{0};
     if (state_ == State::running && odd && ++missed_ >= kInARow / 2) {
       lose();
       return {};
@@ -157,18 +158,17 @@ Commutation::Order Commutation::on_sample(Ticks now, int floating_counts, int bu
   if (state_ == State::stopped) return {};
   wait(now);
   // Positive before the crossing, negative after it, whatever the step.
-  const auto side_in = [&](std::uint8_t step) {
-    const int doubled = middles_.off(step, floating_counts, bus_counts);
-    return (step & 1) != 0 ? -doubled : doubled;
-  };
+  const std::uint8_t seen = ordered_ ? previous_step() : step_;
+  const int doubled = middles_.off(seen, floating_counts, bus_counts);
+  const int off = (seen & 1) != 0 ? -doubled : doubled;
   // At a rail a diode still carries the old current: that says nothing about the rotor. At low duty
   // this outlasts the blank time, for the current dies slowly while the PWM is off.
   const int rail = bus_counts / 64;
   const bool at_rail = floating_counts <= rail || floating_counts >= bus_counts - rail;
   if (ordered_) {
-    const int side = side_in(previous_step());
-    if (!at_rail && -side > highest_counts_) highest_counts_ = -side;
-    return overtaken(now, side, bus_counts);
+    if (longer_ != 0) learn(bus_counts);
+    if (!at_rail && -off > highest_counts_) highest_counts_ = -off;
+    return overtaken(now, off, bus_counts);
   }
   const Ticks elapsed = since(now, commutated_at_);
   const Ticks blank = share_of(sector_, config_.blank_share);
@@ -176,9 +176,9 @@ Commutation::Order Commutation::on_sample(Ticks now, int floating_counts, int bu
       (state_ == State::running || blank < config_.start_blank ? blank : config_.start_blank)) {
     return {};
   }
-  const int side = at_rail ? 0 : side_in(step_);
+  const int side = at_rail ? 0 : off;
   if (side > highest_counts_ || -side > highest_counts_) highest_counts_ = side > 0 ? side : -side;
-  const int clear = state_ == State::running ? 0 : start_clear();
+  const int clear = state_ == State::running ? 0 : start_clear_counts_;
   if (side > clear) {
     seen_before_ = true;
     before_at_ = now;
@@ -187,11 +187,11 @@ Commutation::Order Commutation::on_sample(Ticks now, int floating_counts, int bu
     const std::uint32_t gap = since(now, before_at_);
     const auto height = static_cast<std::uint32_t>(before_counts_ - side);
     const auto back = static_cast<Ticks>(gap * static_cast<std::uint32_t>(-side) / height);
-    return crossed(static_cast<Ticks>(now - back), true, bus_counts);
-  } else if (side < -start_clear() && (state_ == State::starting || elapsed >= sector_ / 2)) {
+    return crossed(static_cast<Ticks>(now - back), true);
+  } else if (side < -start_clear_counts_ && (state_ == State::starting || elapsed >= sector_ / 2)) {
     // It had crossed before we could look: believe the expected moment, if there is one.
     const auto expected = static_cast<Ticks>(commutated_at_ + sector_ / 2);
-    return crossed(state_ == State::running ? expected : now, false, bus_counts);
+    return crossed(state_ == State::running ? expected : now, false);
   }
   // No crossing where one and a half sectors have passed: go on blindly, but not for ever, and not if
   // there is hardly any back-EMF: then the rotor has been stopped.

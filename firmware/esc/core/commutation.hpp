@@ -60,7 +60,8 @@ class Commutation {
     Ticks at = 0;
   };
 
-  constexpr explicit Commutation(const CommutationConfig& config) : config_(config) {}
+  constexpr explicit Commutation(const CommutationConfig& config)
+      : config_(config), start_clear_counts_(config.start_clear_counts) {}
 
   void stop();
   void know(float Kt_NmpA) {
@@ -92,14 +93,13 @@ class Commutation {
  private:
   static constexpr int kInARow = 6;  // crossings that make a start, or their lack a loss
 
-  std::uint8_t previous_step() const { return static_cast<std::uint8_t>((step_ + 5) % 6); }
-  Order overtaken(Ticks now, int side, int bus_counts);
-  Order crossed(Ticks at, bool measured, int bus_counts);
-  void learn(Ticks length, int bus_counts);
-  int start_clear() const {
-    const int noise = 2 * middles_.noise_counts();
-    return noise > config_.start_clear_counts ? noise : config_.start_clear_counts;
+  static std::uint8_t previous_of(std::uint8_t step) {
+    return static_cast<std::uint8_t>(step == 0 ? 5 : step - 1);
   }
+  std::uint8_t previous_step() const { return previous_of(step_); }
+  Order overtaken(Ticks now, int side, int bus_counts);
+  Order crossed(Ticks at, bool measured);
+  __attribute__((noinline)) void learn(int bus_counts);  // not on every sample's way
   void lose();
   void note_sector(Ticks length);
   void wait(Ticks now);
@@ -120,14 +120,16 @@ class Commutation {
   bool crossing_known_ = false;  // of the last sector
   std::uint8_t good_ = 0, missed_ = 0, unfit_ = 0;
   Ticks sampled_at_ = 0;
-  std::uint32_t waited_ = 0;  // since the last crossing; does not wrap
-  int highest_counts_ = 0;    // of the floating phase off the middle, doubled, in this sector
-  Middles middles_;
+  std::uint32_t waited_ = 0;    // since the last crossing; does not wrap
+  int highest_counts_ = 0;      // of the floating phase off the middle, doubled, in this sector
+  int start_clear_counts_ = 0;  // of the latest start
   Ticks last_length_ = 0;  // of the sector before, between two measured crossings; 0: it was not
+  int longer_ = 0;         // the last sector than the one before, both so measured; 0: learnt
   bool measured_ = false;  // the last crossing was
   std::array<Ticks, 6> sectors_{};
   std::uint8_t newest_ = 0;
   std::uint32_t bad_detections_ = 0;
+  Middles middles_;
 };
 
 }  // namespace fw::esc

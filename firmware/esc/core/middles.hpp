@@ -54,26 +54,26 @@ class Middles {
     // Later is lower where the phase falls (even steps) and higher where it rises.
     move(step, share);
     rest_ += share;
-    const int each = rest_ / 6;
-    if (each == 0) return;
-    for (std::uint8_t k = 0; k < 6; ++k) move(k, -each);
-    rest_ -= 6 * each;
+    const int each = rest_ / 6;  // from one after the other, for an interrupt's time is short
+    move(next_, -each);
+    rest_ -= each;
+    next_ = next_ == 5 ? std::uint8_t{0} : static_cast<std::uint8_t>(next_ + 1);
   }
 
  private:
   static constexpr int kOne = 1 << 15, kMost_off = kOne / 20, kSlowness = 8;
 
-  static int bounded(int one) {
-    return one < kOne - kMost_off   ? kOne - kMost_off
-           : one > kOne + kMost_off ? kOne + kMost_off
-                                    : one;
+  static std::uint16_t bounded(int one) {
+    if (one < kOne - kMost_off) return kOne - kMost_off;
+    return static_cast<std::uint16_t>(one > kOne + kMost_off ? kOne + kMost_off : one);
   }
   void move(std::uint8_t step, int later) {
     one_[step] = bounded(one_[step] + ((step & 1) != 0 ? later : -later));
   }
 
-  std::array<int, 6> one_{kOne, kOne, kOne, kOne, kOne, kOne};
-  int rest_ = 0;  // of what all six have been moved by alike, still to be taken off
+  std::array<std::uint16_t, 6> one_{kOne, kOne, kOne, kOne, kOne, kOne};
+  int rest_ = 0;           // of what all six have been moved by alike, still to be taken off
+  std::uint8_t next_ = 0;  // whose turn it is
   std::uint8_t step_ = 0;
   int samples_ = 0, least_ = 0, most_ = 0, noise_counts_ = 0;
   std::uint32_t floating_sum_ = 0, bus_sum_ = 0;

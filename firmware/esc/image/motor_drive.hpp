@@ -32,13 +32,13 @@ class MotorDrive {
   void go_off();
   void go_catching();
   void go_probing();
-  void look_for_rotor();
-  void probe();
+  // Apart from what runs in every period, which is short of time.
+  __attribute__((noinline)) void look_for_rotor();
+  __attribute__((noinline)) void probe();
   void watch_current(int shunt_counts, int bus_counts);
   void commutate_by(int floating_counts, int bus_counts);
   void record(int shunt_counts, int bus_counts);
 
-  Commutation commutation_{CommutationConfig{}};
   Catching catching_;
   WindingGuard guard_;
   Phase phase_ = Phase::off;
@@ -50,6 +50,7 @@ class MotorDrive {
   int zero_counts_ = 0;  // 64 times the shunt's, while off: the guard counts from there
   bool tripped_ = false;
   SmoothSpeed speed_;
+  Commutation commutation_{CommutationConfig{}};  // last: the others have short addresses then
 };
 
 }  // namespace fw::esc
