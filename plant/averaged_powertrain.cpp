@@ -26,15 +26,15 @@ EnergyBooks sum_of(const std::vector<MotorBooks>& motors, const BatteryBooks& pa
 
 }  // namespace
 
-AveragedPowertrain::AveragedPowertrain(std::size_t motors, const MotorParams& motor,
+AveragedPowertrain::AveragedPowertrain(const std::vector<MotorParams>& motors,
                                        const BatteryParams& battery, double avionics_current_A)
     : battery_(battery),
       avionics_current_A_(avionics_current_A),
-      motors_(motors, AveragedMotor(motor)),
-      drives_(motors, Drive{.diode = true}),
-      loads_(motors),
-      books_(motors),
-      total_(motors) {}
+      motors_(motors.begin(), motors.end()),
+      drives_(motors.size(), Drive{.diode = true}),
+      loads_(motors.size()),
+      books_(motors.size()),
+      total_(motors.size()) {}
 
 void AveragedPowertrain::command(std::size_t motor, const MotorCommand& command) {
   drives_.at(motor).duty = std::clamp(command.duty, 0.0, 1.0);

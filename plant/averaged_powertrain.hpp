@@ -12,7 +12,7 @@ namespace whirl::plant {
 
 class AveragedPowertrain final : public Powertrain {
  public:
-  AveragedPowertrain(std::size_t motors, const MotorParams& motor, const BatteryParams& battery,
+  AveragedPowertrain(const std::vector<MotorParams>& motors, const BatteryParams& battery,
                      double avionics_current_A);
 
   std::size_t count() const override { return motors_.size(); }

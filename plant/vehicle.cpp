@@ -31,6 +31,13 @@ struct Push {
   double end_s;
 };
 
+std::vector<MotorParams> motors_of(const VehicleParams& params) {
+  const std::size_t count = params.airframe.rotors.size();
+  if (params.motors.empty()) return std::vector<MotorParams>(count, params.motor);
+  WHIRL_CHECK(params.motors.size() == count, params.motors.size(), count);
+  return params.motors;
+}
+
 ShaftLoad shaft_load(const RotorLoads& loads, double at_speed_radps) {
   const double torque = loads.shaft_torque_Nm;
   const bool brakes = torque * at_speed_radps > 0.0;
@@ -101,8 +108,11 @@ struct Vehicle::Parts {
 
 Vector3d Vehicle::Parts::spin_B() const {
   double sum = 0.0;  // counter-clockwise seen from above is about -z
-  for (std::size_t i = 0; i < count(); ++i)
-    sum -= params.airframe.rotors[i].spin * powertrain->speed_radps(i);
+  for (std::size_t i = 0; i < count(); ++i) {
+    const double share =  // of the inertia that all have
+        params.motors.empty() ? 1.0 : params.motors[i].inertia_kgm2 / params.motor.inertia_kgm2;
+    sum -= params.airframe.rotors[i].spin * powertrain->speed_radps(i) * share;
+  }
   return {0.0, 0.0, params.motor.inertia_kgm2 * sum};
 }
 
@@ -239,8 +249,8 @@ void Vehicle::Parts::publish_air() {
 
 Vehicle::Vehicle(const VehicleParams& params, RotorSet rotors, std::uint64_t seed)
     : Vehicle(params, std::move(rotors),
-              std::make_unique<AveragedPowertrain>(params.airframe.rotors.size(), params.motor,
-                                                   params.battery, params.avionics_current_A),
+              std::make_unique<AveragedPowertrain>(motors_of(params), params.battery,
+                                                   params.avionics_current_A),
               seed) {}
 
 Vehicle::Vehicle(const VehicleParams& params, RotorSet rotors,

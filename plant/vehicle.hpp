@@ -40,6 +40,8 @@ RotorSet blade_element_rotors(std::shared_ptr<const Blade> blade, const Airframe
 struct VehicleParams {
   AirframeParams airframe;
   MotorParams motor;  // of each rotor
+  std::vector<MotorParams>
+      motors;  // or of one after the other, where they differ; empty: they do not
   BatteryParams battery;
   double avionics_current_A = 0.25;
   AirParams air;

@@ -32,6 +32,7 @@ Result<Done> validate(const VehicleParams& params, const std::string& place) {
   Bounds b(place);
   b.merge(validate(params.airframe, place + ": airframe"));
   b.merge(validate(params.motor, place + ": motor"));
+  for (const MotorParams& motor : params.motors) b.merge(validate(motor, place + ": motors"));
   b.merge(validate(params.battery, place + ": battery"));
   if (params.load) {
     b.within("load.mass_kg", params.load->mass_kg, 1e-3, 100.0);

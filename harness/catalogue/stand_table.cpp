@@ -5,6 +5,7 @@
 #include "harness/catalogue/motor.hpp"
 #include "harness/catalogue/propeller_file.hpp"
 #include "harness/catalogue/shunt.hpp"
+#include "harness/catalogue/tolerance_key.hpp"
 #include "plant/parts/esc_stand.hpp"
 
 namespace whirl::catalogue {
@@ -43,22 +44,6 @@ void read_stage_shunt(const lua::Table& t, stand::StageParams& stage) {
   pass("wander", "shunt.wander", s.wander_A);
 }
 
-// tolerance = "typical", or by group: { dividers = "worst", rest = "typical" }.
-void read_tolerance(const lua::Table& t, std::map<std::string, plant::ToleranceClass>& tolerance) {
-  if (!t.has("tolerance")) return;
-  const std::vector<std::string> words = {"none", "typical", "worst"};
-  const auto chosen = [&words](const lua::Table& in, const char* key) {
-    return plant::tolerance_named(in.choice(key, words)).value_or(plant::ToleranceClass::none);
-  };
-  const bool by_group = t.kind("tolerance") == lua::Kind::table;
-  const lua::Table groups = by_group ? t.table("tolerance") : t;
-  const char* const for_rest = by_group ? "rest" : "tolerance";
-  const auto rest = groups.has(for_rest) ? chosen(groups, for_rest) : plant::ToleranceClass::none;
-  for (const char* group : plant::esc_stand_groups()) {
-    tolerance[group] = by_group && groups.has(group) ? chosen(groups, group) : rest;
-  }
-}
-
 double read_pulse_rate(const lua::Table& t) {
   const bool pulses = t.has("throttle") && t.choice("throttle", {"i2c", "pwm", "can"}) == "pwm";
   if (!pulses) return 0.0;
@@ -73,7 +58,7 @@ Result<stand::StandParams> read_stand(const lua::Table& t, const std::string& pr
   p.battery = read_feed(t);
   if (t.has("motor")) read_stage_motor(t.table("motor"), p.stage);
   if (t.has("shunt")) read_stage_shunt(t.table("shunt"), p.stage);
-  read_tolerance(t, p.tolerance);
+  p.tolerance = read_tolerance(t, plant::esc_stand_groups());
   if (t.has("mode")) p.esc.mode = read_esc_mode(t, "mode").on_wire;
   p.esc.address = static_cast<std::uint8_t>(t.integer_or("address", p.esc.address, 0x08, 0x77));
   p.esc.pulse_rate_Hz = read_pulse_rate(t);

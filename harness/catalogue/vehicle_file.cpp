@@ -4,8 +4,10 @@
 #include "harness/catalogue/feed.hpp"
 #include "harness/catalogue/motor.hpp"
 #include "harness/catalogue/propeller_file.hpp"
+#include "harness/catalogue/tolerance_key.hpp"
 #include "harness/flight/controllers.hpp"
 #include "harness/lua/table.hpp"
+#include "plant/parts/vehicle.hpp"
 
 namespace whirl::catalogue {
 namespace {
@@ -148,6 +150,7 @@ Result<flight::FlightParams> read_vehicle(const std::string& path, const Setting
                                                p.vehicle.avionics_current_A, at_least(0.0));
   p.vehicle.motor = read_motor(t.table("motor"), MissingKeys::refused);
   p.vehicle.battery = read_feed(t);
+  p.tolerance = read_tolerance(t, plant::vehicle_groups());
   const Table esc = t.table("esc");
   p.controller = controller_of(esc);
   p.esc = read_esc(esc);

@@ -12,6 +12,7 @@
 #include "harness/catalogue/vehicle_file.hpp"
 #include "harness/composition/stand_in_command.hpp"
 #include "harness/flight/flight_world.hpp"
+#include "harness/flight/vehicle_parts.hpp"
 #include "harness/pacing/host_clock.hpp"
 #include "harness/plan/needs.hpp"
 #include "harness/stand/bench_stand.hpp"
@@ -33,6 +34,12 @@ Result<stand::StandParams> stand_of(const cli::Setup& setup) {
   if (params && setup.bench == nullptr) {
     stand::draw_parts(params.value(), setup.board, setup.seed);
   }
+  return params;
+}
+
+Result<flight::FlightParams> vehicle_of(const cli::Setup& setup) {
+  auto params = catalogue::read_vehicle(setup.vehicle_file, setup.settings);
+  if (params) flight::draw_parts(params.value(), setup.seed);
   return params;
 }
 
@@ -106,7 +113,7 @@ Result<std::unique_ptr<World>> make_world(const cli::Setup& setup) {
     if (setup.bench != nullptr) return bench_world(setup, params.value());
     return std::unique_ptr<World>(std::make_unique<stand::StandWorld>(params.value(), setup.seed));
   }
-  auto params = catalogue::read_vehicle(setup.vehicle_file, setup.settings);
+  auto params = vehicle_of(setup);
   if (!params) return params.error();
   const auto around = catalogue::read_surroundings(*setup.plan.surroundings, params.value());
   if (!around) return around.error();
@@ -188,6 +195,11 @@ Result<std::unique_ptr<Target>> make_target(const cli::Setup& setup,
     if (!params) return params.error();
     const auto set = stand::set_parts(options.board.board, params.value());
     if (!set) return set.error();
+  }
+  if (!setup.vehicle_file.empty() && setup.node == 0) {
+    const auto params = vehicle_of(setup);
+    if (!params) return params.error();
+    flight::set_parts(options.board.board, params.value());
   }
   options.any_qemu_version = std::getenv("WHIRL_ANY_QEMU") != nullptr;
   auto board = std::make_unique<VirtualBoard>(std::move(options));

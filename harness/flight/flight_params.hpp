@@ -1,12 +1,16 @@
 // What a flight is made of. What is physics goes to the plant's params, what is belief or protocol to
 // the ESC's.
 #pragma once
+#include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "harness/flight/capture.hpp"
 #include "harness/flight/native_esc.hpp"
 #include "harness/flight/surroundings.hpp"
+#include "harness/world/drawn_part.hpp"
+#include "plant/parts/spread.hpp"
 #include "plant/rotor/blade.hpp"
 #include "plant/vehicle.hpp"
 
@@ -27,6 +31,13 @@ struct FlightParams {
   CaptureParams capture;
   Surroundings place;
   BoardEars ears;
+  // One copy of the hardware (vehicle_parts.hpp): classes by group (plant/parts/vehicle.hpp), none where
+  // missing, and what came of it beside the vehicle's own numbers.
+  std::map<std::string, plant::ToleranceClass> tolerance;
+  std::map<std::string, double> imu;  // by the board's keys of an mpu6000
+  Eigen::Vector3d imu_place_m = Eigen::Vector3d::Zero(), imu_turn_rad = Eigen::Vector3d::Zero();
+  double hse_error = 0.0;
+  std::vector<DrawnPart> drawn;
 };
 
 }  // namespace whirl::flight

@@ -39,6 +39,7 @@ FlightWorld::FlightWorld(const FlightParams& params, plant::RotorSet rotors, std
       airframe_(params.vehicle.airframe),
       obstacles_(params.vehicle.obstacles),
       seed_(seed),
+      drawn_(params.drawn),
       capture_(params.capture, seed),
       drag_truth_(params.vehicle.airframe) {
   const ControllerType& type = type_named(params.controller, types);

@@ -50,6 +50,7 @@ class FlightWorld : public World {
   std::int64_t command_on_wire_ns() const override { return station_.on_wire_ns(); }
   Result<bool> take_fault(const FaultSpec& fault) override;
   std::vector<std::uint32_t> applied_faults() const override { return faults_.acted(); }
+  const std::vector<DrawnPart>& drawn_parts() const override { return drawn_; }
   std::string status() const override;
 
   const plant::VehicleState& truth() const { return vehicle_.state(); }
@@ -102,6 +103,7 @@ class FlightWorld : public World {
   const plant::AirframeParams airframe_;
   const std::vector<plant::Obstacle> obstacles_;
   std::uint64_t seed_;
+  std::vector<DrawnPart> drawn_;
   std::optional<Hand> hand_;
   Capture capture_;
   Station station_;

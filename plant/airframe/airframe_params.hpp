@@ -20,6 +20,7 @@ struct RotorMount {
   Eigen::Vector3d p_BP_B_m = Eigen::Vector3d::Zero();
   int spin = 1;             // +1: counter-clockwise seen from above, reaction on the body along +z
   double radius_m = 0.127;  // of the disc that may strike the ground
+  double thrust_error = 0.0, torque_error = 0.0;  // shares by which this one's blades give more
   double unbalance_kgm = 0.0;  // of propeller and bell: mass x arm; what a balancer leaves is 1e-7
 };
 

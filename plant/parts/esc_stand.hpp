@@ -9,20 +9,10 @@
 //   Left out dead time and ringing (the stage has neither), lead inductance, the ESC's own heat
 #pragma once
 #include <span>
-#include <string>
 
-#include "plant/parts/spread.hpp"
+#include "plant/parts/part_number.hpp"
 
 namespace whirl::plant {
-
-struct PartNumber {
-  const char* group;
-  const char* name;
-  const char* unit;  // of what is drawn; "" is a share
-  bool of_nominal;
-  Spread spread;
-  const char* source;
-};
 
 std::span<const PartNumber> esc_stand_numbers();
 std::span<const char* const> esc_stand_groups();

@@ -24,10 +24,15 @@ struct Triad {
       drift.emplace_back(params.bias_instability, seed, axis + ".drift");
       turn_on[i] = draw_normal(params.turn_on_bias, seed, axis + ".turn_on");
       scale[i] = 1.0 + draw_normal(params.scale_error, seed, axis + ".scale");
+      for (int of = 0; of < 3; ++of) {
+        if (of == i) continue;
+        cross(i, of) = draw_normal(params.cross_axis, seed, axis + ".cross." + "xyz"[of]);
+      }
     }
   }
   Vector3d read(const Vector3d& truth, const Vector3d& shake, double dt_s) {
     Vector3d out = scale.cwiseProduct(truth) + turn_on + p.vibration_per_radps2 * shake;
+    if (p.cross_axis > 0.0) out += cross * truth;
     for (int i = 0; i < 3; ++i) out[i] += white[i].sample(dt_s) + drift[i].step(dt_s);
     return out;
   }
@@ -35,6 +40,7 @@ struct Triad {
   std::vector<WhiteNoise> white;
   std::vector<Flicker> drift;
   Vector3d turn_on, scale;
+  Eigen::Matrix3d cross = Eigen::Matrix3d::Zero();
 };
 
 void check(Bounds& b, const TriadParams& p) {
@@ -42,6 +48,7 @@ void check(Bounds& b, const TriadParams& p) {
   b.within("bias_instability", p.bias_instability, 0.0, 10.0);
   b.within("turn_on_bias", p.turn_on_bias, 0.0, 20.0);
   b.within("scale_error", p.scale_error, 0.0, 0.5);
+  b.within("cross_axis", p.cross_axis, 0.0, 0.5);
   b.within("vibration_per_radps2", p.vibration_per_radps2, 0.0, 1.0);
 }
 

@@ -30,6 +30,7 @@ struct TriadParams {
   double bias_instability = 0.0;      // unit: Allan floor / 0.664
   double turn_on_bias = 0.0;          // unit, standard deviation per axis
   double scale_error = 0.0;           // standard deviation per axis, 1 = 100 %
+  double cross_axis = 0.0;            // of one axis in each other, standard deviation
   double vibration_per_radps2 = 0.0;  // unit / (rad/s)^2: amplitude by rotor speed squared
 };
 

@@ -14,6 +14,7 @@ void read_triad(const DeviceSlot& slot, const std::string& group, plant::TriadPa
   triad.bias_instability = slot.quantity(path + "bias_instability");
   triad.turn_on_bias = slot.quantity(path + "turn_on_bias");
   triad.scale_error = slot.quantity(path + "scale_error");
+  triad.cross_axis = slot.quantity(path + "cross_axis");
   triad.vibration_per_radps2 = slot.quantity(path + "vibration");
 }
 
@@ -88,6 +89,9 @@ void add_triad(std::vector<DeviceKey>& keys, const std::string& group, const std
   keys.push_back(quantity_key(path + "scale_error", Dimension::ratio, "%", {0.0, 0.5},
                               "standard deviation per axis")
                      .with(usual.scale_error));
+  keys.push_back(quantity_key(path + "cross_axis", Dimension::ratio, "%", {0.0, 0.5},
+                              "of one axis in each other, standard deviation")
+                     .with(usual.cross_axis));
   keys.push_back(bare("vibration", unit + "/(rad/s)^2", 1.0, "by rotor speed squared, bare")
                      .with(usual.vibration_per_radps2));
 }

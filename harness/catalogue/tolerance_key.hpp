@@ -1,0 +1,19 @@
+// The key `tolerance` of stands and vehicles: one class, or one by group.
+//
+//   tolerance = "typical"
+//   tolerance = { dividers = "worst", rest = "typical" }     -- without `rest`: none
+#pragma once
+#include <map>
+#include <span>
+#include <string>
+
+#include "harness/lua/table.hpp"
+#include "plant/parts/spread.hpp"
+
+namespace whirl::catalogue {
+
+// Complaints stay with the table.
+std::map<std::string, plant::ToleranceClass> read_tolerance(const lua::Table& t,
+                                                            std::span<const char* const> groups);
+
+}  // namespace whirl::catalogue
