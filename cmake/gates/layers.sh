@@ -61,6 +61,7 @@ harness/catalogue        base/ harness/calibrate/setup.hpp harness/catalogue/ ha
 harness/flight           base/ harness/flight/ harness/world/ io_bridges/messages/ io_bridges/protocols/ plant/ firmware/esc/core/
 harness/standin          base/ harness/lockstep/ harness/pacing/ harness/standin/ harness/target/ harness/world/ io_bridges/messages/ io_bridges/serial/ io_bridges/socketcan/
 harness/stand            base/ harness/stand/ harness/world/ io_bridges/board_description/ io_bridges/messages/ io_bridges/protocols/ plant/
+harness/inflow_bound     base/ harness/inflow_bound/ plant/ results/
 harness/sweep            base/ harness/flight/controllers.hpp harness/flight/flight_params.hpp harness/sweep/ plant/ results/
 harness/timing           base/ harness/target/ harness/timing/
 harness/calibrate        base/ harness/calibrate/ harness/lockstep/ harness/target/ harness/world/ io_bridges/protocols/ results/ firmware/esc/core/
