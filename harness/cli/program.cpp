@@ -49,6 +49,8 @@ constexpr const char* kExamples = R"(Examples:
   whirl validate --timing                      cycles of instructions, against the data sheets
   whirl calibrate esc test_plans/calibrations/hk_10x4.5.lua
                                                constants of an ESC, its motor and its propeller
+  whirl calibrate bound test_plans/calibrations/hk_10x4.5.lua
+                                               which inflow that ESC can tell from power at best
   whirl history hover                          how the margins went, run by run
   whirl export results/runs/latest --csv       every message that crossed, with its fields, as text
   whirl fuzz --smoke                           random registers, images and files, for bugs of whirl
@@ -240,7 +242,11 @@ CLI::App* add_history(CLI::App& app, HistoryOptions& history, RunOptions& option
   return past;
 }
 
-CLI::App* add_calibrate(CLI::App& app, CalibrateOptions& options) {
+struct Calibrates {
+  CLI::App *all, *bound;
+};
+
+Calibrates add_calibrate(CLI::App& app, CalibrateOptions& options) {
   auto* calibrates = app.add_subcommand("calibrate", "bench procedures that find constants");
   calibrates->require_subcommand(1);
   auto* esc = calibrates->add_subcommand(
@@ -249,7 +255,11 @@ CLI::App* add_calibrate(CLI::App& app, CalibrateOptions& options) {
       ->required();
   esc->add_option("--write", options.write, "the constants as a file that plans include");
   esc->add_option("--data", options.data, "fit this data.txt of an earlier run again");
-  return calibrates;
+  auto* bound = calibrates->add_subcommand(
+      "bound", "which inflow that ESC can tell from power at all, by its parts' stated errors");
+  bound->add_option("file", options.file, "what stands there (test_plans/calibrations/*.lua)")
+      ->required();
+  return {calibrates, bound};
 }
 
 CLI::App* add_fuzz(CLI::App& app, FuzzOptions& options) {
@@ -297,7 +307,7 @@ int run_chosen(int argc, char** argv, Composition composition) {
       "a timing image on a real board");
 
   CalibrateOptions calibration;
-  auto* calibrates = add_calibrate(app, calibration);
+  const Calibrates calibrates = add_calibrate(app, calibration);
 
   const BenchWords benches(app);
   DecodeOptions decoding;
@@ -335,7 +345,8 @@ int run_chosen(int argc, char** argv, Composition composition) {
     if (!validated.empty()) timing.file = validated.front();
     return timing.wanted ? timing_command(timing, composition) : validate_command(composition);
   }
-  if (*calibrates) {
+  if (*calibrates.all) {
+    if (*calibrates.bound) return inflow_bound_command(calibration.file, composition);
     calibration.command = "whirl calibrate esc " + calibration.file +
                           (calibration.write.empty() ? "" : " --write " + calibration.write) +
                           (calibration.data.empty() ? "" : " --data " + calibration.data);

@@ -28,7 +28,8 @@ class SignalCurve {
   Signals at(double torque_Nm) const {
     const double place = std::clamp((torque_Nm - low_Nm_) / step_Nm_, 0.0, kPoints - 1.0);
     const auto left = std::min(static_cast<std::size_t>(place), kPoints - 2);
-    return points_[left] + (place - static_cast<double>(left)) * (points_[left + 1] - points_[left]);
+    return points_[left] +
+           (place - static_cast<double>(left)) * (points_[left + 1] - points_[left]);
   }
 
  private:
@@ -101,8 +102,8 @@ BoundFinder::BoundFinder(const Copy& copy, double least_N, double most_N, double
     : copy_(copy),
       rotor_(copy.blade, copy.density_kgpm3,
              0.9 * speed_of(copy, least_N, 0.0, top_radps(copy, top_bus_V)),
-             std::min(top_radps(copy, top_bus_V),
-                      1.1 * speed_of(copy, most_N, kLast * kEvery_mps, top_radps(copy, top_bus_V)))) {}
+             std::min(top_radps(copy, top_bus_V), 1.1 * speed_of(copy, most_N, kLast * kEvery_mps,
+                                                                 top_radps(copy, top_bus_V)))) {}
 
 Point BoundFinder::point(const Doubts& doubts, Prior prior, double thrust_N, double inflow_mps,
                          double bus_V) const {

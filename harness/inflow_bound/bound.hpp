@@ -41,8 +41,8 @@ enum class Prior { any, from_above };
 
 struct Point {
   double inflow_mps = 0.0, speed_radps = 0.0;
-  double rpm_error = 0.0;           // of the static map at its own speed: what inflow does to thrust
-  double sigma = 0.0, sigma2 = 0.0;  // that cannot be avoided
+  double rpm_error = 0.0;  // of the static map at its own speed: what inflow does to thrust
+  double sigma = 0.0, sigma2 = 0.0;      // that cannot be avoided
   double low_mps = 0.0, high_mps = 0.0;  // the inflows within one sigma
 };
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "plant/motor/averaged_motor.hpp"
 
@@ -47,27 +46,30 @@ double squared(double x) {
 
 }  // namespace
 
-// Torque over duty is nearly a line.
+// Torque over duty is nearly a line, with a kink where the current begins to have gaps.
 Signals signals_of(const plant::MotorParams& motor, const Shaft& shaft, double bus_V) {
   const auto at = [&](double duty) { return at_duty(motor, shaft.speed_radps, bus_V, duty); };
-  double last_duty = 1.0;
-  Held last = at(last_duty);
-  if (last.torque_Nm <= shaft.torque_Nm) return last.signals;
-  double duty = std::min(0.99, motor.torque_constant_NmpA * shaft.speed_radps / bus_V + 0.05);
-  Held held = at(duty);
-  for (int i = 0; i < 20; ++i) {
+  double low = 0.0, high = 1.0;
+  Held below = at(low), above = at(high);
+  if (above.torque_Nm <= shaft.torque_Nm) return above.signals;
+  for (int i = 0; i < 60 && high - low > 1e-9; ++i) {
+    const double lack = (shaft.torque_Nm - below.torque_Nm) / (above.torque_Nm - below.torque_Nm);
+    const double share = i % 3 == 2 ? 0.5 : std::clamp(lack, 0.001, 0.999);
+    const double duty = low + share * (high - low);
+    const Held held = at(duty);
     const double off_Nm = held.torque_Nm - shaft.torque_Nm;
-    if (std::abs(off_Nm) <= 1e-9 * (1.0 + shaft.torque_Nm)) break;
-    const double slope = (held.torque_Nm - last.torque_Nm) / (duty - last_duty);
-    last_duty = std::exchange(duty, std::clamp(duty - off_Nm / slope, 0.0, 1.0));
-    last = std::exchange(held, at(duty));
+    if (std::abs(off_Nm) <= 1e-9) return held.signals;
+    if (off_Nm < 0.0) {
+      low = duty, below = held;
+    } else {
+      high = duty, above = held;
+    }
   }
-  return held.signals;
+  return 0.5 * (below.signals + above.signals);
 }
 
 double current_sigma_A(const plant::CurrentShuntParams& s, const Doubts& d, double bus_A) {
-  const double wander2 =
-      2.0 * squared(s.wander_A) * -std::expm1(-d.since_zero_s / s.wander_time_s);
+  const double wander2 = 2.0 * squared(s.wander_A) * -std::expm1(-d.since_zero_s / s.wander_time_s);
   const double warm = s.warm_up_A * std::exp(-d.powered_s / s.warm_up_time_s) *
                       -std::expm1(-d.since_zero_s / s.warm_up_time_s);
   const double noise2 =
@@ -87,8 +89,7 @@ Eigen::Matrix2d covariance(const plant::MotorParams& motor, const plant::Current
     sum += moved * moved.transpose();
   };
   add(d.winding_K, [&](plant::MotorParams& m, Shaft&) {
-    m.resistance_ohm +=
-        m.winding_resistance_ohm * m.copper_temp_coefficient_pK * d.winding_K;
+    m.resistance_ohm += m.winding_resistance_ohm * m.copper_temp_coefficient_pK * d.winding_K;
   });
   add(d.magnet_K, [&](plant::MotorParams& m, Shaft&) {
     m.torque_constant_NmpA *= 1.0 + kMagnet_pK * d.magnet_K;

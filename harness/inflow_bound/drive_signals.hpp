@@ -34,7 +34,7 @@ struct Doubts {
   // Of the voltmeter, where in a step it is: 12 bits of 3.3 V behind 1.5/11.5, over the root of 12.
   double step_V = 1.8e-3;
   // Since it was calibrated.
-  double gain = 0.0;      // of the current sense, relative
+  double gain = 0.0;  // of the current sense, relative
   double winding_K = 0.0, magnet_K = 0.0;
   double friction = 0.0;  // no-load current, relative
   double density = 0.0;   // of the air, relative
@@ -47,11 +47,8 @@ inline Doubts as_calibrated() {
 // Ten minutes into a flight on another day: temperatures within 5 K by a model of them, friction of warm grease
 // against cold, air told to 1 % (pressure of the day by 10 hPa, temperature by 2 K).
 inline Doubts another_day() {
-  return {.since_zero_s = 600.0,
-          .winding_K = 5.0,
-          .magnet_K = 5.0,
-          .friction = 0.05,
-          .density = 0.01};
+  return {
+      .since_zero_s = 600.0, .winding_K = 5.0, .magnet_K = 5.0, .friction = 0.05, .density = 0.01};
 }
 
 // Of the current alone: wander since the zero, what is left of the warm-up, noise of both means.

@@ -18,8 +18,8 @@ inline constexpr double kLow_mps = -4.0, kHigh_mps = 6.0;
 
 class RotorMap {
  public:
-  RotorMap(const std::shared_ptr<const plant::Blade>& blade, double density_kgpm3,
-           double low_radps, double high_radps);
+  RotorMap(const std::shared_ptr<const plant::Blade>& blade, double density_kgpm3, double low_radps,
+           double high_radps);
 
   struct Loads {
     double thrust_N = 0.0, torque_Nm = 0.0;

@@ -14,8 +14,8 @@ namespace {
 
 const Copy& stock() {
   static const Copy copy = [] {
-    const auto read = catalogue::read_propeller(std::string(WHIRL_ROOT) +
-                                                "/test_plans/propellers/hk_10x4.5.lua");
+    const auto read =
+        catalogue::read_propeller(std::string(WHIRL_ROOT) + "/test_plans/propellers/hk_10x4.5.lua");
     EXPECT_TRUE(read.ok());
     return Copy{read.value(), {}, {}, 1.225};
   }();
@@ -109,7 +109,8 @@ Signals reading(const Signals& truth, const Doubts& d, std::uint64_t seed) {
   return {mean_A(truth.x(), d.averaged_s) - zero_A, truth.y() + step};
 }
 
-struct Fit {  // the best that can be had: every inflow tried, weighed by the scatter that the copies show
+struct
+    Fit {  // the best that can be had: every inflow tried, weighed by the scatter that the copies show
   std::vector<double> thrust_N;
   std::vector<Signals> seen;
   double best_N(const Signals& reading, const Eigen::Matrix2d& weight) const {
@@ -141,8 +142,7 @@ struct Scatter {
 Scatter scatter_of(const Doubts& doubts, double thrust_N, double inflow_mps, double bus_V) {
   constexpr int kCopies = 150;
   const double w = finder().rotor().speed_for(thrust_N, inflow_mps);
-  const Signals truth =
-      signals_of({}, {w, finder().rotor().at(w, inflow_mps).torque_Nm}, bus_V);
+  const Signals truth = signals_of({}, {w, finder().rotor().at(w, inflow_mps).torque_Nm}, bus_V);
   std::vector<Signals> readings;
   Scatter s;
   for (int i = 0; i < kCopies; ++i) {
