@@ -133,7 +133,7 @@ Point BoundFinder::point(const Doubts& doubts, Prior prior, double thrust_N, dou
 Bound BoundFinder::at(const Doubts& doubts, Prior prior, double thrust_N, double bus_V) const {
   Bound bound{thrust_N, bus_V, {}, {}, {}};
   const int first = prior == Prior::any ? kFirst : 0;
-  bound.points.reserve(static_cast<std::size_t>(kLast - first + 1));
+  bound.points.reserve(kLast - kFirst + 1);
   for (int i = first; i <= kLast; ++i) {
     bound.points.push_back(point(doubts, prior, thrust_N, i * kEvery_mps, bus_V));
   }
