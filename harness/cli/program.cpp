@@ -149,7 +149,7 @@ struct Calibrates {
   CLI::App *all, *bound;
 };
 
-Calibrates add_calibrate(CLI::App& app, CalibrateOptions& options) {
+Calibrates add_calibrate(CLI::App& app, CalibrateOptions& options, std::string& seed) {
   auto* calibrates = app.add_subcommand("calibrate", "bench procedures that find constants");
   calibrates->require_subcommand(1);
   auto* esc = calibrates->add_subcommand(
@@ -158,6 +158,8 @@ Calibrates add_calibrate(CLI::App& app, CalibrateOptions& options) {
       ->required();
   esc->add_option("--write", options.write, "the constants as a file that plans include");
   esc->add_option("--data", options.data, "fit this data.txt of an earlier run again");
+  esc->add_option("--seed", seed, "of another copy of the hardware, into a folder of its own")
+      ->check(seed_complaint);
   auto* bound = calibrates->add_subcommand(
       "bound", "which inflow that ESC can tell from power at all, by its parts' stated errors");
   bound->add_option("file", options.file, "what stands there (test_plans/calibrations/*.lua)")
@@ -211,7 +213,7 @@ int run_chosen(int argc, char** argv, Composition composition) {
       "a timing image on a real board");
 
   CalibrateOptions calibration;
-  const Calibrates calibrates = add_calibrate(app, calibration);
+  const Calibrates calibrates = add_calibrate(app, calibration, run.seed);
 
   const BenchWords benches(app);
   DecodeOptions decoding;
@@ -251,7 +253,9 @@ int run_chosen(int argc, char** argv, Composition composition) {
   }
   if (*calibrates.all) {
     if (*calibrates.bound) return inflow_bound_command(calibration.file, composition);
+    calibration.seed = options.seed;
     calibration.command = "whirl calibrate esc " + calibration.file +
+                          (run.seed.empty() ? "" : " --seed " + run.seed) +
                           (calibration.write.empty() ? "" : " --write " + calibration.write) +
                           (calibration.data.empty() ? "" : " --data " + calibration.data);
     return calibrate_esc_command(calibration, composition);

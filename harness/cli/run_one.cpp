@@ -201,12 +201,28 @@ void add_versions(const Prepared& prepared, const plan::Plan& plan, const std::s
   add_host(record.report.versions, root);
 }
 
+// What each seed's own ESC was told by `whirl calibrate esc --seed`, in place of the constants that plans share.
+Result<plan::PlanFile::Instead> own_calibration(const RunOptions& options, std::uint64_t seed) {
+  namespace fs = std::filesystem;
+  if (options.calibrations.empty()) return plan::PlanFile::Instead{};
+  const fs::path folder = (fs::path(options.calibrations) / "").parent_path();
+  const std::string path = folder / ("seed_" + std::to_string(seed)) / "constants.lua";
+  const std::string name = folder.filename();
+  if (fs::is_regular_file(path)) return plan::PlanFile::Instead{name + "_calibration.lua", path};
+  return Error{ErrorKind::bad_input, path,
+               "is not there: the ESC of seed " + std::to_string(seed) + " was not calibrated",
+               "whirl calibrate esc test_plans/calibrations/" + name + ".lua --seed " +
+                   std::to_string(seed)};
+}
+
 // `folder`: where its messages are written; null: nowhere.
 Result<RunRecord> run_record(const PlanChoice& choice, const RunOptions& options,
                              const Composition& composition, const ProgressSink& progress,
                              const RunFolder* folder, const Company* company = nullptr) {
   // Loaded anew: no run sees what another left in its Lua.
-  auto file = plan::PlanFile::load(choice.file, {}, options.settings);
+  const auto own = own_calibration(options, choice.seed.value_or(1));
+  if (!own) return own.error();
+  auto file = plan::PlanFile::load(choice.file, {}, options.settings, own.value());
   if (!file) return file.error();
   const plan::Plan* plan = nullptr;
   for (const plan::Plan& p : file.value()->plans()) {
@@ -232,6 +248,9 @@ Result<RunRecord> run_record(const PlanChoice& choice, const RunOptions& options
               progress);
   record.messages = std::move(messages);
   add_versions(parts, *plan, composition.root, record);
+  if (!own.value().path.empty()) {
+    add_files(record.report.versions, {{own.value().file_name, own.value().path}});
+  }
   if (company != nullptr && folder != nullptr) {
     const auto left =
         company->leave(folder->path(), record.report, *plan, file.value()->sandbox().files_below());

@@ -76,6 +76,10 @@ RunCommand::RunCommand(CLI::App& app) {
       ->check(setting_complaint)
       ->allow_extra_args(false);
   run->add_option("--out", options.out, "where runs and the history go (default: results)");
+  run->add_option(
+      "--calibrations", options.calibrations,
+      "results/calibrations/NAME: what `whirl calibrate esc --seed` found of each seed's ESC, in "
+      "place of NAME_calibration.lua");
   auto* target = run->add_option("--target", options.target,
                                  "bench/NAME: a physical board, as test_plans/benches/NAME.lua "
                                  "describes it (default: the virtual board)");
@@ -98,12 +102,17 @@ void RunCommand::add_limits(CLI::App& app) {
   limits_->add_option("--margin", margin_, "beyond the worst of them (default 30 %)");
   limits_->add_option("--jobs,-j", options.jobs, "so many plans at once")
       ->check(CLI::Range(1, 256));
+  limits_->add_option("--calibrations", options.calibrations, "as of whirl run");
   limits_->add_option("--out", options.out, "where the runs go (default: results)");
 }
 
 Result<Done> RunCommand::parse_texts() {
   if (!seed.empty()) options.seed = read_seed(seed).value();
   if (!seeds_.empty()) options.seeds = read_seeds(seeds_).value();
+  if (!options.calibrations.empty() && !options.seed && options.seeds.empty()) {
+    return Error{ErrorKind::bad_input, "--calibrations", "are of seeds: say which",
+                 "--seed or --seeds"};
+  }
   if (*limits_) options.limits_margin = 0.3;
   auto read =
       read_within(margin_, Dimension::ratio, "--margin", "1 %", "1000 %", options.limits_margin);

@@ -219,8 +219,9 @@ int PlanFile::add_plan(lua_State* L) {
 }
 
 Result<std::unique_ptr<PlanFile>> PlanFile::load(const std::string& path, lua::Limits limits,
-                                                 const Settings& settings) {
+                                                 const Settings& settings, const Instead& instead) {
   std::unique_ptr<PlanFile> file(new PlanFile(path, limits, settings));
+  file->sandbox_.put_instead(instead.file_name, instead.path);
   file->sandbox_.set_owner(file.get());
   const auto registered =
       file->sandbox_.protect(0, [](lua_State* L) { lua_register(L, "plan", declare); });

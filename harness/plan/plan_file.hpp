@@ -63,9 +63,14 @@ Plan plan_of_one_board(const std::string& name, const std::string& place);
 
 class PlanFile {
  public:
+  struct Instead {
+    std::string file_name, path;  // empty: nothing is replaced
+  };
   // settings: those of "plan." and "stand." take the place of what each plan of the file says.
+  // instead: an included file of that name is read from there.
   static Result<std::unique_ptr<PlanFile>> load(const std::string& path, lua::Limits limits = {},
-                                                const Settings& settings = {});
+                                                const Settings& settings = {},
+                                                const Instead& instead = {});
 
   const std::vector<Plan>& plans() const { return plans_; }
   lua::Sandbox& sandbox() { return sandbox_; }

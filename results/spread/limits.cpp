@@ -113,7 +113,7 @@ std::vector<ProposedLimit> propose_limits(const std::vector<const SeedRun*>& run
   std::vector<Measured> all;
   for (const SeedRun* run : runs) {
     for (const Expectation& e : run->report.expectations) {
-      const auto [found, is_new] = at.emplace(e.place, all.size());
+      const auto [found, is_new] = at.emplace(e.place + "\n" + e.how + "\n" + e.unit, all.size());
       if (is_new) all.emplace_back();
       add(e, run->report.seed, all[found->second]);
     }
