@@ -62,7 +62,8 @@ TEST(Seeds, EachTakesWhatItsOwnCalibrationFound) {
   FakeRoot root;
   root.write("test_plans/a.lua",
              "local c = include 'include/x_calibration.lua'\n" +
-                 plan_text("t:wait \"1 s\" t:expect(t:quantity(c .. \" s\"), \"c\"):at_most(7)"));
+                 plan_text("t:wait \"1 s\" t:expect(t:value \"tilt\"):at_most \"1 rad\" "
+                           "t:expect(t:quantity(c .. \" s\"), \"c\"):at_most(7)"));
   root.write("test_plans/include/x_calibration.lua", "return 1");
   root.write("results/calibrations/x/seed_3/constants.lua", "return 3");
   root.write("results/calibrations/x/seed_9/constants.lua", "return 9");
