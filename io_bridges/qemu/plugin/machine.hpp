@@ -93,7 +93,10 @@ class Machine final : public board::Emulator {
   };
   static std::uint64_t read_window(void* window, hwaddr offset, unsigned size);
   static void write_window(void* window, hwaddr offset, std::uint64_t value, unsigned size);
-  void anchor() { clock_->anchor(now()); }
+  void anchor() {
+    clock_->settle();
+    clock_->anchor(now());
+  }
   [[noreturn]] void clock_not_as_known();
   void wake();
   void on_timer();
