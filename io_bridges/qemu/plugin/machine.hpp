@@ -49,9 +49,11 @@ class Machine final : public board::Emulator {
 
   // The core cannot go on, by the firmware's doing. Ends the process.
   [[noreturn]] void core_stopped(board::StoppedCore why);
-  // The core reaches for what is no memory.
+  // The core reaches for what is no memory. DMA may too, and is nothing that the core waits for.
   void accessed(std::uint32_t address);
-  void waits_for_bus(std::uint32_t address, bool write) { clock_->accessed(address, write); }
+  void waits_for_bus(std::uint32_t address, bool write) {
+    if (!moves_by_dma_) clock_->accessed(address, write);
+  }
   // Around what a register does: its events wait for the end.
   void begin_access() { ++accesses_; }
   void end_access();
@@ -106,6 +108,7 @@ class Machine final : public board::Emulator {
   MemoryRegion& new_region();
   void map_block(MemoryRegion* parent, const stm32::Region& block, int priority);
   std::uint8_t* map_ram(MemoryRegion* parent, const char* name, const board::MemoryBlock& block);
+  bool move_by_dma(std::uint32_t address, void* bytes, std::size_t size, bool write);
   std::uint8_t* sram_at(std::uint32_t address, std::size_t size) const;
   void bar(std::uint32_t from, std::uint32_t to);
   void map_memories();
@@ -148,6 +151,7 @@ class Machine final : public board::Emulator {
   static constexpr io::Nanoseconds kNothing_wanted = -1;
   io::Nanoseconds wanted_ns_ = kNothing_wanted;  // by what is accessed
   int accesses_ = 0;                             // under way: one, or within it by DMA another
+  bool moves_by_dma_ = false;                    // what is accessed through QEMU's address spaces
   Timer jump_;                                   // under gdb: moves the clock of a core that sleeps
   std::unique_ptr<CoreClock> clock_;
   ExitRequest exit_request_;
