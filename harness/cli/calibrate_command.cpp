@@ -104,8 +104,12 @@ int calibrate_esc_command(const CalibrateOptions& options, const Composition& co
   const std::string constants = lua_file(c, options.command);
   const std::string page = (folder / "index.html").string();
   const std::string about = "Calibration of an ESC on the stand: " + options.command;
+  const auto bound = inflow_bound_of(options.file, composition.root);
+  if (!bound) return complain(bound.error());
+  auto all = charts(c);
+  all.insert(all.end(), bound.value().charts.begin(), bound.value().charts.end());
   std::vector<std::pair<std::string, std::string>> files = {
-      {page, results::charts_html(name, about, charts(c))},
+      {page, results::charts_html(name, about, all, {bound.value().table})},
       {(folder / "constants.lua").string(), constants}};
   const auto believed = physical(c);
   if (believed.ok() && !options.write.empty()) files.emplace_back(options.write, constants);
@@ -114,7 +118,7 @@ int calibrate_esc_command(const CalibrateOptions& options, const Composition& co
       return complain(written.error());
     }
   }
-  std::printf("%s", table(c).c_str());
+  std::printf("%s\n%s\n", table(c).c_str(), inflow_bound::text(bound.value().table).c_str());
   for (const auto& [path, text] : files) std::printf("%s\n", shown_path(path).c_str());
   if (!believed) return complain(believed.error());
   return 0;

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "harness/cli/composition.hpp"
+#include "harness/inflow_bound/report.hpp"
 
 namespace whirl::cli {
 
@@ -13,6 +14,12 @@ struct CalibrateOptions {
   std::string data;     // of an earlier run: only fit it again, without the stand
   std::string command;  // as typed, noted in that file
 };
+
+// Errors  bad_input: the calibration's file, its stand or its propeller
+Result<inflow_bound::Report> inflow_bound_of(const std::string& file, const std::string& root);
+
+// What inflow an ESC of that stand can tell from power: table, and a page of curves.
+int inflow_bound_command(const std::string& file, const Composition& composition);
 
 int calibrate_esc_command(const CalibrateOptions& options, const Composition& composition);
 

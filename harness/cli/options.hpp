@@ -13,6 +13,7 @@ struct RunOptions {
   std::vector<std::string> paths;  // plans or folders; empty: test_plans
   std::optional<std::uint64_t> seed;
   std::vector<std::uint64_t> seeds;  // each plan on each of them; empty: once, on `seed` or its own
+  double limits_margin = 0.0;        // relative; 0: no limits are proposed
   int jobs = 1;
   bool gdb = false;
   int gdb_port = 1234;

@@ -12,6 +12,7 @@
 #include "results/folder.hpp"
 #include "results/history.hpp"
 #include "results/spread/file_spread.hpp"
+#include "results/spread/limits.hpp"
 
 namespace whirl::cli {
 namespace {
@@ -104,6 +105,9 @@ void Outcomes::file_spreads() {
       tally_.worsen(complain(filed.error()));
     } else if (!json_) {
       print(results::spread_text(spread) + "  " + shown_path(filed.value()) + "\n");
+    }
+    if (limits_margin_ > 0.0) {
+      print(results::limits_text(results::propose_limits(runs, limits_margin_), limits_margin_));
     }
   }
 }

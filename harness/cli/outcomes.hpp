@@ -13,7 +13,9 @@ namespace whirl::cli {
 class Outcomes {
  public:
   // results: the folder of runs, where history and the merged junit.xml go.
-  Outcomes(std::string results, bool json) : results_(std::move(results)), json_(json) {}
+  // limits_margin: of limits proposed from several seeds (results/spread/limits.hpp); 0: none are.
+  Outcomes(std::string results, bool json, double limits_margin)
+      : results_(std::move(results)), json_(json), limits_margin_(limits_margin) {}
 
   // What is printed is the report's run.json, or `text`.
   void add(const Finished& finished, const std::string& text, const std::string& run_json);
@@ -34,6 +36,7 @@ class Outcomes {
 
   std::string results_;
   bool json_;
+  double limits_margin_;
   Tally tally_;
   std::vector<results::SeedRun> runs_;
 };

@@ -1,4 +1,4 @@
-// The command line. CLI11 stays in this file and bench_words: its header is a heavy one.
+// The command line. CLI11 stays in this file, run_words and bench_words: its header is a heavy one.
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <tuple>
@@ -20,7 +20,7 @@
 #include "harness/cli/job_command.hpp"
 #include "harness/cli/page_command.hpp"
 #include "harness/cli/run_command.hpp"
-#include "harness/cli/seeds.hpp"
+#include "harness/cli/run_words.hpp"
 
 #ifndef WHIRL_VERSION
 #define WHIRL_VERSION "unknown"
@@ -36,6 +36,8 @@ constexpr const char* kExamples = R"(Examples:
   whirl run test_plans/flight/hover.lua --seed 7 --twice
   whirl run test_plans/flight/gust_crossing.lua --seeds 2..21 --jobs 2
                                                mean, spread and worst, and a page of all laid over
+  whirl limits test_plans/flight/hover.lua --seeds 1..20
+                                               limits that a small regression would break
   whirl run test_plans/flight/hover.lua --gdb  then: gdb-multiarch build/firmware/flight.elf
   whirl run test_plans/bench --target bench/esc_stand --arm "the propeller is clear"
                                                the same plan on a physical board, in real time
@@ -49,6 +51,8 @@ constexpr const char* kExamples = R"(Examples:
   whirl validate --timing                      cycles of instructions, against the data sheets
   whirl calibrate esc test_plans/calibrations/hk_10x4.5.lua
                                                constants of an ESC, its motor and its propeller
+  whirl calibrate bound test_plans/calibrations/hk_10x4.5.lua
+                                               which inflow that ESC can tell from power at best
   whirl history hover                          how the margins went, run by run
   whirl export results/runs/latest --csv       every message that crossed, with its fields, as text
   whirl fuzz --smoke                           random registers, images and files, for bugs of whirl
@@ -61,105 +65,6 @@ worst counts: 4, then 2, 1, 3, 0. A flight of `whirl fly` that ended in order is
 Results: results/runs/latest/index.html, run.json, junit.xml, messages.whirl (all that crossed), and
 of it truth.csv, bus.csv, telemetry.tlog (serial.txt on a stand), bus_NODE.csv of boards with names;
 of --seeds results/seeds/PLAN.html and PLAN.csv)";
-
-void add_plan_options(CLI::App& command, RunOptions& options) {
-  command.add_option("plans", options.paths, "plan files or folders (default: test_plans)");
-  command.add_option("--tag", options.tag, "only plans with this tag");
-  command.add_option("--only", options.only, "only the plan of this name");
-}
-
-std::string seed_complaint(const std::string& text) {
-  const auto seed = read_seed(text);
-  return seed ? "" : seed.error().what;
-}
-
-std::string seeds_complaint(const std::string& text) {
-  const auto seeds = read_seeds(text);
-  return seeds ? "" : seeds.error().what;
-}
-
-// "vehicle.motor.inertia=3e-5": of a plan, its stand or its vehicle.
-std::string setting_complaint(const std::string& text) {
-  const Setting setting{text.substr(0, text.find('=')), ""};
-  bool known = text.find('=') != std::string::npos;
-  known = known && !(path_in(setting, "plan").empty() && path_in(setting, "stand").empty() &&
-                     path_in(setting, "vehicle").empty());
-  return known ? "" : "'" + text + "' is no plan.KEY=VALUE, stand.KEY=VALUE or vehicle.KEY=VALUE";
-}
-
-// `whirl run` and its options; list shares some of them.
-struct RunCommand {
-  explicit RunCommand(CLI::App& app) {
-    auto* run = app.add_subcommand("run", "run plans; exit code 0 only if all pass");
-    add_plan_options(*run, options);
-    auto* one = run->add_option("--seed", seed, "instead of the plans' own seeds");
-    one->check(seed_complaint);
-    run->add_option(
-           "--seeds", seeds,
-           "each plan on each of these (2..21, or 1,4,10..12), and their spread at the end")
-        ->check(seeds_complaint)
-        ->excludes(one);
-    run->add_option("--jobs,-j", options.jobs, "so many plans at once")->check(CLI::Range(1, 256));
-    run->add_flag("--gdb", options.gdb,
-                  "open a gdb port and hold the world's time while gdb holds");
-    run->add_option("--gdb-port", options.gdb_port, "instead of 1234")
-        ->check(CLI::Range(1024, 65535));
-    run->add_flag("--keep", options.keep, "keep what went into the board's process as well");
-    run->add_flag("--twice", options.twice, "run twice and expect the same digest");
-    run->add_flag("--json", options.json, "run.json on standard output");
-    run->add_option("--set", settings,
-                    "KEY=VALUE in place of what a file says: "
-                    "vehicle.motor.resistance=\"90 mohm\", stand.supply=\"15 V\", "
-                    "plan.timeout=\"9 s\"")
-        ->check(setting_complaint)
-        ->allow_extra_args(false);
-    run->add_option("--out", options.out, "where runs and the history go (default: results)");
-    auto* target = run->add_option("--target", options.target,
-                                   "bench/NAME: a physical board, as test_plans/benches/NAME.lua "
-                                   "describes it (default: the virtual board)");
-    run->add_option("--arm", options.arm, "the phrase of the bench's safety")->needs(target);
-    auto* copper = run->add_option("--copper", options.copper,
-                                   "judge buses and pins by this capture of the same run (.vcd of "
-                                   "whirl export, .sr of an analyser)");
-    copper->excludes(target);
-    run->add_option("--copper-rate", copper_rate,
-                    "how often a .vcd is looked at: \"50 MHz\" (four times the fastest clock)")
-        ->needs(copper);
-  }
-
-  // What was parsed as text. Nothing is said twice.
-  Result<Done> parse_texts() {
-    if (!seed.empty()) options.seed = read_seed(seed).value();
-    if (!seeds.empty()) options.seeds = read_seeds(seeds).value();
-    if (!copper_rate.empty()) {
-      const auto rate = parse_quantity_as(copper_rate, Dimension::frequency, "--copper-rate");
-      if (!rate) return rate.error();
-      if (!(rate.value() >= 1e3 && rate.value() <= 1e9)) {
-        return Error{ErrorKind::bad_input, "--copper-rate",
-                     copper_rate + " is outside 1 kHz..1 GHz", ""};
-      }
-      options.copper_rate_Hz = rate.value();
-    }
-    for (const std::string& text : settings) {
-      const Setting setting{text.substr(0, text.find('=')), text.substr(text.find('=') + 1)};
-      for (const Setting& other : options.settings) {
-        if (other.key == setting.key) return twice(setting.key, "--set " + setting.key);
-      }
-      const bool is_seed = setting.key == "plan.seed";
-      if (is_seed && options.seed) return twice(setting.key, "--seed");
-      if (is_seed && !options.seeds.empty()) return twice(setting.key, "--seeds");
-      options.settings.push_back(setting);
-    }
-    return Done{};
-  }
-  static Error twice(const std::string& key, const std::string& other) {
-    return {ErrorKind::bad_input, "", "--set " + key + ": is set by " + other + " already", ""};
-  }
-
-  RunOptions options;
-  std::string seed, seeds, copper_rate;
-  std::vector<std::string> settings;
-};
 
 // Its seed and --out are parsed as those of `whirl run`.
 CLI::App* add_fly(CLI::App& app, FlyOptions& options, RunCommand& run) {
@@ -245,7 +150,11 @@ CLI::App* add_history(CLI::App& app, HistoryOptions& history, RunOptions& option
   return past;
 }
 
-CLI::App* add_calibrate(CLI::App& app, CalibrateOptions& options) {
+struct Calibrates {
+  CLI::App *all, *bound;
+};
+
+Calibrates add_calibrate(CLI::App& app, CalibrateOptions& options) {
   auto* calibrates = app.add_subcommand("calibrate", "bench procedures that find constants");
   calibrates->require_subcommand(1);
   auto* esc = calibrates->add_subcommand(
@@ -254,7 +163,11 @@ CLI::App* add_calibrate(CLI::App& app, CalibrateOptions& options) {
       ->required();
   esc->add_option("--write", options.write, "the constants as a file that plans include");
   esc->add_option("--data", options.data, "fit this data.txt of an earlier run again");
-  return calibrates;
+  auto* bound = calibrates->add_subcommand(
+      "bound", "which inflow that ESC can tell from power at all, by its parts' stated errors");
+  bound->add_option("file", options.file, "what stands there (test_plans/calibrations/*.lua)")
+      ->required();
+  return {calibrates, bound};
 }
 
 CLI::App* add_fuzz(CLI::App& app, FuzzOptions& options) {
@@ -278,6 +191,7 @@ int run_chosen(int argc, char** argv, Composition composition) {
 
   FlyOptions flying;
   auto* fly = add_fly(app, flying, run);
+  run.add_limits(app);
 
   auto* list = app.add_subcommand("list", "list plans");
   add_plan_options(*list, options);
@@ -302,7 +216,7 @@ int run_chosen(int argc, char** argv, Composition composition) {
                        "a timing image on a real board");
 
   CalibrateOptions calibration;
-  auto* calibrates = add_calibrate(app, calibration);
+  const Calibrates calibrates = add_calibrate(app, calibration);
 
   const BenchWords benches(app);
   DecodeOptions decoding;
@@ -340,7 +254,8 @@ int run_chosen(int argc, char** argv, Composition composition) {
     if (!validated.empty()) timing.file = validated.front();
     return timing.wanted ? timing_command(timing, composition) : validate_command(composition);
   }
-  if (*calibrates) {
+  if (*calibrates.all) {
+    if (*calibrates.bound) return inflow_bound_command(calibration.file, composition);
     calibration.command = "whirl calibrate esc " + calibration.file +
                           (calibration.write.empty() ? "" : " --write " + calibration.write) +
                           (calibration.data.empty() ? "" : " --data " + calibration.data);

@@ -43,7 +43,7 @@ int run_command(const RunOptions& options, const Composition& composition) {
                  found.plans.size());
     return 2;
   }
-  Outcomes outcomes(composition.results, options.json);
+  Outcomes outcomes(composition.results, options.json, options.limits_margin);
   for (const Error& error : found.errors) outcomes.add_refused(error);
   if (options.jobs > 1 && found.plans.size() > 1) {
     run_in_processes(found.plans, options, composition.results, outcomes);

@@ -20,4 +20,35 @@ Result<Done> set_stage(BoardDescription& board, int motor, const StageParams& pa
                "a stand needs one: esc32v2 has it"};
 }
 
+namespace {
+
+void take(const StageParams& params, const char* name, double& into) {
+  if (const auto found = params.find(name); found != params.end()) into = found->second;
+}
+
+}  // namespace
+
+plant::MotorParams motor_of(const StageParams& params) {
+  plant::MotorParams m;
+  take(params, "torque_constant", m.torque_constant_NmpA);
+  take(params, "resistance", m.resistance_ohm);
+  take(params, "inductance", m.inductance_H);
+  take(params, "no_load_current", m.no_load_current_A);
+  take(params, "inertia", m.inertia_kgm2);
+  return m;
+}
+
+plant::CurrentShuntParams shunt_of(const StageParams& params) {
+  plant::CurrentShuntParams s;
+  take(params, "shunt.gain", s.gain_tolerance);
+  take(params, "shunt.warm_up", s.warm_up_A);
+  take(params, "shunt.wander", s.wander_A);
+  take(params, "shunt.offset", s.offset_low_A);
+  take(params, "shunt.gain_error", s.gain_error);
+  if (params.contains("shunt.noise")) take(params, "shunt.noise", s.noise_A), s.noise_per_A = 0.0;
+  if (params.contains("shunt.gain_error")) s.gain_tolerance = 0.0;
+  if (params.contains("shunt.offset")) s.offset_high_A = s.offset_low_A;
+  return s;
+}
+
 }  // namespace whirl::stand

@@ -8,6 +8,8 @@
 
 #include "base/result.hpp"
 #include "io_bridges/board_description/board_description.hpp"
+#include "plant/motor/motor_params.hpp"
+#include "plant/sensors/current_shunt.hpp"
 
 namespace whirl::stand {
 
@@ -15,5 +17,9 @@ using StageParams = std::map<std::string, double>;  // SI, by the power stage's 
 
 // Gives these parameters to the power stage of that motor. Refused where the board has no such stage.
 Result<Done> set_stage(BoardDescription& board, int motor, const StageParams& params);
+
+// The same as the plant's own parameters, for who computes with them on the host.
+plant::MotorParams motor_of(const StageParams& params);
+plant::CurrentShuntParams shunt_of(const StageParams& params);
 
 }  // namespace whirl::stand

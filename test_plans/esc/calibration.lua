@@ -28,7 +28,6 @@ plan "calibration_round_trip" {
     t:expect(flag(t:value("esc_flags").value, kUncalibrated) and 1 or 0, "a new ESC says that it is not calibrated"):equal(1)
     local factory = told(t)
     calibrate(t)
-    t:ask("set shared 2", "^ok$") -- the air of this stand comes from above
     t:ask("mode 5", "^ok$")
     local set = told(t)
     t:expect(factory.c0 == set.c0 and 1 or 0, "the factory's constants are still there"):equal(0)

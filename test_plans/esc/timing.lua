@@ -7,7 +7,7 @@ include "include/calibration.lua"
 -- In a downdraft that power tells.
 local function by_power(t)
   calibrate(t)
-  for _, line in ipairs { "set warm_up 0", "set shared 2", "stream 100" } do t:ask(line, "^ok$") end
+  for _, line in ipairs { "set warm_up 0", "stream 100" } do t:ask(line, "^ok$") end
   t:gust { down = "4 m/s" }
 end
 
