@@ -114,8 +114,8 @@ void note_doubts(const PropellerDescription& d, FittedBlade& fit) {
         said("static power is left over by %.0f %%: no section met thrust and power",
              100.0 * fit.power_off));
   }
-  for (const auto& [what, sigmas] : {std::pair("thrust", fit.thrust_surprise),
-                                     std::pair("power", fit.power_surprise)}) {
+  for (const auto& [what, sigmas] :
+       {std::pair("thrust", fit.thrust_surprise), std::pair("power", fit.power_surprise)}) {
     if (std::abs(sigmas) <= kSurprising) continue;
     fit.doubts.push_back(std::string("static ") + what +
                          said(" is %+.1f standard deviations off what blades of this shape take: "
@@ -123,9 +123,9 @@ void note_doubts(const PropellerDescription& d, FittedBlade& fit) {
                               sigmas));
   }
   if (fit.belief.strange_make) {
-    fit.doubts.emplace_back(d.make.empty()
-                                ? "its make is not named: its band is that of a make nobody measured"
-                                : "no propeller of its make was measured: its band is wider");
+    fit.doubts.emplace_back(
+        d.make.empty() ? "its make is not named: its band is that of a make nobody measured"
+                       : "no propeller of its make was measured: its band is wider");
   }
   if (fit.strangeness > kStrange) {
     fit.doubts.emplace_back("its shape is like that of no propeller measured so far");
