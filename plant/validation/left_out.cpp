@@ -204,6 +204,7 @@ std::optional<TrendOff> trend_off(const MeasuredBlade& m,
 void add_trends(const std::vector<TrendOff>& trends, Report& report) {
   const auto add = [&](const char* what, double TrendOff::*field, double limit) {
     std::vector<double> values;
+    values.reserve(trends.size());
     for (const TrendOff& t : trends) values.push_back(t.*field);
     const std::string name = std::string("trend over speed at rest, one row given, ") + what;
     report.figures.push_back({name + ", median", "%", quantile(values, 0.5), limit});
