@@ -62,9 +62,10 @@ harness/flight           base/ harness/flight/ harness/world/ io_bridges/message
 harness/standin          base/ harness/lockstep/ harness/pacing/ harness/standin/ harness/target/ harness/world/ io_bridges/messages/ io_bridges/serial/ io_bridges/socketcan/
 harness/stand            base/ harness/stand/ harness/world/ io_bridges/board_description/ io_bridges/messages/ io_bridges/protocols/ plant/
 harness/inflow_bound     base/ harness/inflow_bound/ plant/ results/
-harness/sweep            base/ harness/flight/controllers.hpp harness/flight/flight_params.hpp harness/sweep/ plant/ results/
+harness/sweep            base/ harness/flight/controllers.hpp harness/flight/flight_params.hpp harness/regression/ harness/sweep/ plant/ results/
 harness/timing           base/ harness/target/ harness/timing/
-harness/calibrate        base/ harness/calibrate/ harness/lockstep/ harness/target/ harness/world/ io_bridges/protocols/ results/ firmware/esc/core/
+harness/regression       base/ harness/regression/
+harness/calibrate        base/ harness/calibrate/ harness/lockstep/ harness/regression/ harness/target/ harness/world/ io_bridges/protocols/ results/ firmware/esc/core/
 harness/live             base/ harness/executive/companion.hpp harness/live/ harness/pacing/ harness/world/ io_bridges/messages/
 harness/cli              base/ harness/board/ harness/calibrate/ harness/catalogue/ harness/cli/ harness/executive/ harness/inflow_bound/ harness/job/ harness/live/ harness/pacing/ harness/plan/ harness/sweep/ harness/target/ harness/timing/ harness/world/ io_bridges/board_description/ io_bridges/copper/decoding.hpp io_bridges/openocd/ io_bridges/protocols/esc_codec.hpp io_bridges/qemu/board/image.hpp io_bridges/sigrok/capture.hpp io_bridges/rack/ plant/validation/ results/
 harness/fuzz             base/ harness/calibrate/ harness/catalogue/ harness/fuzz/ harness/plan/ io_bridges/ plant/ results/

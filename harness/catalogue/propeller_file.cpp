@@ -124,6 +124,7 @@ Named read_table(const lua::Table& t, const std::string& path) {
   d.place = path;
   std::ignore = t.choice("kind", {"propeller"});
   d.name = t.text("name");
+  d.make = t.text_or("make", "");
   d.blade_count = static_cast<int>(t.integer("blades", 1, 8));
   d.diameter_m = t.quantity("diameter", Dimension::length, lua::above(0.0));
   d.mass_kg = t.quantity("mass", Dimension::mass, lua::above(0.0));

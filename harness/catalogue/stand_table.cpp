@@ -10,15 +10,19 @@ namespace whirl::catalogue {
 namespace {
 
 // Only what the plan has written goes to the board: the rest is the board's own.
-auto passing(const lua::Table& t, stand::StageParams& stage) {
-  return [&](const char* key, const char* name, double value) {
-    if (t.has(key)) stage[name] = value;
+auto passing(const lua::Table& t, stand::StageParams& stage, bool all = false) {
+  return [&t, &stage, all](const char* key, const char* name, double value) {
+    if (all || t.has(key)) stage[name] = value;
   };
 }
 
 void read_stage_motor(const lua::Table& t, stand::StageParams& stage) {
   const plant::MotorParams m = read_motor(t, MissingKeys::as_in_plant);
-  const auto pass = passing(t, stage);
+  if (t.has("file") && m.pole_pairs != plant::MotorParams{}.pole_pairs) {
+    t.refuse("file", "its pole pairs cannot differ on a stand",
+             "only a vehicle's motor has its own");
+  }
+  const auto pass = passing(t, stage, t.has("file"));
   pass("kv_rpm_per_V", "torque_constant", m.torque_constant_NmpA);
   pass("resistance", "resistance", m.resistance_ohm);
   pass("resistance_fitted_at", "resistance", m.resistance_ohm);

@@ -123,16 +123,21 @@ CLI::App* add_parity(CLI::App& app, ParityOptions& options) {
 
 CLI::App* add_sweep(CLI::App& app, SweepOptions& options) {
   auto* sweeps = app.add_subcommand(
-      "sweep", "thrust, torque, power and current of a propeller or vehicle file");
-  sweeps->add_option("file", options.file, "a propeller or a vehicle (Lua)")->required();
+      "sweep", "thrust, torque, power and current of a propeller, motor, stand or vehicle file");
+  sweeps
+      ->add_option("file", options.file,
+                   "a propeller, a motor, a stand (a calibration's file) or a vehicle (Lua)")
+      ->required();
   sweeps->add_option("--speed", options.speed,
                      "of the sweeps over inflow and advance: \"4500 rpm\"");
   sweeps->add_option("--top-speed", options.top_speed,
                      "end of the static sweep (default 6000 rpm)");
   sweeps->add_option("--voltage", options.voltage,
-                     "of the bus (default: the full pack): \"16.4 V\"");
-  sweeps->add_option("--measured", options.measured,
-                     "measured points of a propeller to lay over: columns rpm J CT CP");
+                     "of the bus (default: the full pack; a motor alone: 11.1 V): \"16.4 V\"");
+  sweeps->add_option(
+      "--measured", options.measured,
+      "measured points to lay over: of a propeller columns rpm J CT CP, of a motor or "
+      "stand V rpm A, and Nm N duty prop");
   return sweeps;
 }
 
@@ -207,10 +212,10 @@ int run_chosen(int argc, char** argv, Composition composition) {
   validate->add_flag("--timing", timing.wanted,
                      "instead: what instructions cost on the virtual board");
   std::vector<std::string> validated;
-  validate->add_option(
-      "file", validated,
-      "a propeller and files of its measured points, judged; with --timing: lines of "
-      "a timing image on a real board");
+  validate->add_option("file", validated,
+                       "a propeller, motor or stand and files of its measured points, judged; with "
+                       "--timing: lines of "
+                       "a timing image on a real board");
 
   CalibrateOptions calibration;
   const Calibrates calibrates = add_calibrate(app, calibration, run.seed);
@@ -243,7 +248,7 @@ int run_chosen(int argc, char** argv, Composition composition) {
   if (*validate) {
     if (!timing.wanted && !validated.empty()) {
       const std::vector<std::string> points(validated.begin() + 1, validated.end());
-      return validate_propeller_command(validated.front(), points, composition);
+      return validate_file_command(validated.front(), points, composition);
     }
     if (validated.size() > 1) {
       return complain(Error{ErrorKind::bad_input, "--timing", "judges one file at a time", ""});

@@ -51,6 +51,7 @@ inline constexpr BladeMaterial kWood{0.7e9, 650.0};
 struct PropellerDescription {
   std::string place;  // "hk_10x4.5.lua", repeated in errors
   std::string name;
+  std::string make;  // "": not known
   int blade_count = 2;
   double diameter_m = 0.0;
   std::vector<PropellerStation> stations;

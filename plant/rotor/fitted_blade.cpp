@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 #include <optional>
+#include <utility>
 
 #include "base/check.hpp"
 #include "plant/rotor/blade_rings.hpp"
@@ -18,6 +19,7 @@ constexpr double kRefused_beyond_deg = 2.0;
 constexpr double kLeast_answer =
     0.01;  // of thrust, per degree of tip twist; healthy blades: 0.03 to 0.06
 constexpr double kStrange = 0.75;
+constexpr double kSurprising = 3.0;  // standard deviations
 
 std::string said(const char* format, double a, double b = 0.0) {
   char text[160];
@@ -47,6 +49,21 @@ void weigh(const std::vector<StaticPoint>& rows, FittedBlade& fit) {
   }
   if (thrust > 0.0) fit.thrust_off = thrust_off / thrust;
   if (power > 0.0) fit.power_off = power_off / power;
+}
+
+// How far the rows lie from what was believed before them, in its own standard deviations.
+void surprise(const std::vector<StaticPoint>& rows, FittedBlade& fit) {
+  const auto before = predict(fit.axial, fit.belief, at_rest(rows));
+  double powers = 0.0;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const Prediction& p = before[i];
+    fit.thrust_surprise += (rows[i].thrust_coefficient - p.mean.CT) / p.deviation.CT /
+                           static_cast<double>(rows.size());
+    if (rows[i].power_coefficient == 0.0) continue;
+    fit.power_surprise += (rows[i].power_coefficient - p.mean.CP) / p.deviation.CP;
+    powers += 1.0;
+  }
+  if (powers > 0.0) fit.power_surprise /= powers;
 }
 
 double answer_to_twist(const FittedBlade& fit, double omega_radps) {
@@ -97,6 +114,19 @@ void note_doubts(const PropellerDescription& d, FittedBlade& fit) {
         said("static power is left over by %.0f %%: no section met thrust and power",
              100.0 * fit.power_off));
   }
+  for (const auto& [what, sigmas] :
+       {std::pair("thrust", fit.thrust_surprise), std::pair("power", fit.power_surprise)}) {
+    if (std::abs(sigmas) <= kSurprising) continue;
+    fit.doubts.push_back(std::string("static ") + what +
+                         said(" is %+.1f standard deviations off what blades of this shape take: "
+                              "check its unit, the density and the diameter",
+                              sigmas));
+  }
+  if (fit.belief.strange_make) {
+    fit.doubts.emplace_back(
+        d.make.empty() ? "its make is not named: its band is that of a make nobody measured"
+                       : "no propeller of its make was measured: its band is wider");
+  }
   if (fit.strangeness > kStrange) {
     fit.doubts.emplace_back("its shape is like that of no propeller measured so far");
   }
@@ -115,8 +145,10 @@ Result<FittedBlade> fit_blade(PropellerDescription d) {
   fit.strangeness = d.known->strangeness(shape);
   const bool given = d.tip_twist_correction_rad != 0.0;
   fit.belief = d.known->prior_for(shape, d.drawn || given);
+  fit.belief.strange_make = !d.known->knows(d.make);
   if (given) fit.belief.mean[tip_twist_deg] = d.tip_twist_correction_rad * 180.0 / 3.14159265358979;
   if (!d.static_points.empty()) {
+    surprise(d.static_points, fit);
     fit.belief = fit_traits(fit.axial, {{at_rest(d.static_points), kStatic_trust}}, fit.belief);
     weigh(d.static_points, fit);
   }
