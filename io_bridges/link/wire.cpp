@@ -16,7 +16,7 @@ namespace whirl::io {
 namespace {
 
 constexpr std::uint64_t kWire_magic = 0x3130657269776877;  // "whwire01"
-constexpr std::uint32_t kRing = 256;                  // messages
+constexpr std::uint32_t kRing = 256;                       // messages
 constexpr int kFew_turns = 4 * SpinPolicy::kLeast;
 // A sleeper looks again so often: close() may come between its look and its sleep.
 constexpr timespec kNap{0, 50'000'000};
@@ -63,8 +63,8 @@ Result<BoardWire> BoardWire::create(int boards) {
 Result<BoardWire> BoardWire::attach(int fd) {
   struct stat status {};
   const bool there = fstat(fd, &status) == 0 && status.st_size == sizeof(Page);
-  void* memory = there ? mmap(nullptr, sizeof(Page), PROT_READ | PROT_WRITE, MAP_SHARED, fd, 0)
-                       : MAP_FAILED;
+  void* memory =
+      there ? mmap(nullptr, sizeof(Page), PROT_READ | PROT_WRITE, MAP_SHARED, fd, 0) : MAP_FAILED;
   if (memory == MAP_FAILED || static_cast<Page*>(memory)->magic != kWire_magic) {
     if (memory != MAP_FAILED) munmap(memory, sizeof(Page));
     return Error{ErrorKind::internal, "wire", "descriptor " + std::to_string(fd) + " is no wire",

@@ -105,7 +105,9 @@ TEST_P(Wires, ClosingWakesWhoWaitsForAMessageAndWhoWaitsForAnAnswer) {
     return 0;
   };
   EXPECT_EQ(with_follower(second.value(), closes,
-                          [&] { EXPECT_FALSE(second.value().ask({1, WireAct::fetch})); }),
+                          [&] {
+                            EXPECT_FALSE(second.value().ask({1, WireAct::fetch}));
+                          }),
             0);
   EXPECT_FALSE(second.value().post({2, WireAct::stop}));
 }
