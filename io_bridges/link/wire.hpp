@@ -17,7 +17,6 @@
 namespace whirl::io {
 
 enum class WireAct : std::uint8_t {
-  run_until,    // progress: nothing came before t. No answer
   to_boundary,  // nothing more comes before the next boundary. No answer
   start,        // no answer; also of transactions for others
   stop,         // likewise
@@ -30,7 +29,7 @@ enum class WireAct : std::uint8_t {
 
 struct WireMessage {
   std::int64_t t_ns = 0;
-  WireAct act = WireAct::run_until;
+  WireAct act = WireAct::start;
   std::uint8_t byte = 0, flag = 0;
 };
 

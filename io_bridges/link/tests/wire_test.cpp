@@ -59,7 +59,7 @@ TEST_P(Wires, EveryQuestionGetsItsAnswerInOrder) {
   const int exit_code = with_follower(wire(), follows, [this] {
     std::int64_t t_ns = 0;
     for (int k = 0; k < kQuestions; ++k) {
-      for (int i = 0; i < k % 4; ++i) ASSERT_TRUE(wire().post({++t_ns, WireAct::run_until}));
+      for (int i = 0; i < k % 4; ++i) ASSERT_TRUE(wire().post({++t_ns, WireAct::stop}));
       const auto byte = static_cast<std::uint8_t>(k);
       const auto answer = wire().ask({++t_ns, WireAct::write, byte});
       ASSERT_TRUE(answer);

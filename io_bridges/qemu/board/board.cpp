@@ -45,8 +45,8 @@ Board::Board(Setup setup, io::Channel channel, Emulator& emulator)
       wires_({events_, [this](const io::Finding& f) { report(f); },
               [this] { finish(io::BoardState::ended); }}),
       devices_({events_, *chip_, happened_, [this](const io::Finding& f) { report(f); },
-                setup_.run.seed, rack::device_types(), setup_.run.folder, setup_.run.node,
-                &wires_, setup_.run.wires}),
+                setup_.run.seed, rack::device_types(), setup_.run.folder, setup_.run.node, &wires_,
+                setup_.run.wires}),
       hangs_(events_, emulator, happened_),
       systick_(
           events_, chip_->clocks(), [this] { return emulator_.ahead_ns(); },
@@ -68,7 +68,8 @@ Board::Board(Setup setup, io::Channel channel, Emulator& emulator)
       tpiu_("TPIU", 0),
       etm_("ETM", 0),
       debug_mcu_("DBGMCU", setup_.part->idcode),
-      boundary_(events_, [this] { synchronise(); }, io::Rank::boundary),
+      boundary_(
+          events_, [this] { synchronise(); }, io::Rank::boundary),
       profile_(events_, [this] { check_profile(); }) {
   events_.set_clock([this] { return emulator_.now(); });
   events_.set_rearm([this](Nanoseconds deadline) { emulator_.arm(deadline); });

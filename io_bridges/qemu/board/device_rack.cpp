@@ -70,8 +70,9 @@ class DeviceRack::Wiring final : public rack::Rack {
   std::map<const io::Wire*, std::string> names_;  // of devices by their chip select
   std::vector<BoardPin> named_pins_;              // with neither resistor nor bus
   std::vector<std::string> analog_;               // pins that a device puts a voltage on
-  io::I2cBus* ear_ = nullptr;  // of the device that is being made, where another board takes its place
-  std::set<int> i2c_soldered_;                    // to the pins that the board names
+  io::I2cBus* ear_ =
+      nullptr;  // of the device that is being made, where another board takes its place
+  std::set<int> i2c_soldered_;  // to the pins that the board names
   std::map<int, std::unique_ptr<io::I2cWireFaults>> i2c_buses_;
   std::map<int, std::unique_ptr<io::CanWireFaults>> can_buses_;
   std::map<int, io::SpiBus*> spi_buses_;

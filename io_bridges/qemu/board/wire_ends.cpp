@@ -21,7 +21,10 @@ LeaderEnd::LeaderEnd(const WireSite& site, io::I2cBus& bus, std::unique_ptr<io::
       wire_(std::move(wire)),
       release_(site.events, [this] { hold(false); }),
       again_(
-          site.events, [this] { ask({site_.events.now(), WireAct::still_held}); },
+          site.events,
+          [this] {
+            ask({site_.events.now(), WireAct::still_held});
+          },
           io::Rank::wire),
       handle_(bus.scl().add_driver("the board at " + hex(address))) {
   bus_.add(*this);
@@ -100,10 +103,6 @@ void LeaderEnd::acked(bool ack, Nanoseconds now) {
   }
 }
 
-void LeaderEnd::progress(Nanoseconds now) {
-  if (!far_at_boundary_) post({now, WireAct::run_until});
-}
-
 void LeaderEnd::at_boundary(Nanoseconds now) {
   WHIRL_CHECK(!held_ || far_at_boundary_, now);
   if (!far_at_boundary_) post({now, WireAct::to_boundary});
@@ -117,15 +116,16 @@ void LeaderEnd::after_boundary(Nanoseconds now) {
 void LeaderEnd::run_ends(Nanoseconds now) {
   if (addressed_ == 0 || acknowledged_ != 0) return;
   site_.finding({now, bus_.name(),
-                 "no board answered at " + hex(address_) + ", asked " +
-                     std::to_string(addressed_) + " times: has it another address?"});
+                 "no board answered at " + hex(address_) + ", asked " + std::to_string(addressed_) +
+                     " times: has it another address?"});
 }
 
 FollowerEnd::FollowerEnd(const WireSite& site, io::I2cBus& bus, io::BoardWire wire)
     : site_(site),
       bus_(bus),
       wire_(std::move(wire)),
-      pause_(site.events, [this] { pause(); }, io::Rank::wire),
+      pause_(
+          site.events, [this] { pause(); }, io::Rank::wire),
       cap_(
           site.events,
           [this] {
@@ -175,8 +175,6 @@ void FollowerEnd::pause() {
 FollowerEnd::Next FollowerEnd::act(const WireMessage& message, Nanoseconds now) {
   const bool flag = message.flag != 0;
   switch (message.act) {
-    case WireAct::run_until:
-      return Next::go_on;
     case WireAct::to_boundary:
       return Next::boundary;
     case WireAct::start:
@@ -227,7 +225,7 @@ void FollowerEnd::end(Nanoseconds now) {
 }
 
 void FollowerEnd::count_late(const WireMessage& message, Nanoseconds now) {
-  if (message.t_ns >= now || message.act == WireAct::run_until) return;
+  if (message.t_ns >= now) return;
   ++late_;
   latest_ns_ = std::max(latest_ns_, now - message.t_ns);
 }
@@ -262,13 +260,12 @@ void FollowerEnd::after_boundary(Nanoseconds now, Nanoseconds next) {
 void FollowerEnd::run_ends(Nanoseconds now) {
   if (late_ == 0) return;
   site_.finding({now, bus_.name(),
-                 std::to_string(late_) +
-                     " conditions came late, the worst by " + std::to_string(latest_ns_) +
+                 std::to_string(late_) + " conditions came late, the worst by " +
+                     std::to_string(latest_ns_) +
                      " ns: the master gave up while this board held the clock"});
 }
 
-WireEnds::WireEnds(WireSite site)
-    : site_(std::move(site)), progress_(site_.events, [this] { progress(); }, io::Rank::wire) {}
+WireEnds::WireEnds(WireSite site) : site_(std::move(site)) {}
 
 void WireEnds::lead(io::I2cBus& bus, std::unique_ptr<io::I2cBus> ear, std::uint8_t address,
                     io::BoardWire wire) {
@@ -280,23 +277,14 @@ void WireEnds::follow(io::I2cBus& bus, io::BoardWire wire) {
   followers_.push_back(std::make_unique<FollowerEnd>(site_, bus, std::move(wire)));
 }
 
-// The followers use the other cores meanwhile.
-void WireEnds::progress() {
-  const Nanoseconds now = site_.events.now();
-  for (const auto& leader : leaders_) leader->progress(now);
-  if (now + kProgress_ns < next_boundary_ns_) progress_.at(now + kProgress_ns);
-}
-
 void WireEnds::at_boundary(Nanoseconds now) {
   for (const auto& leader : leaders_) leader->at_boundary(now);
   for (const auto& follower : followers_) follower->at_boundary(now);
 }
 
 void WireEnds::after_boundary(Nanoseconds now, Nanoseconds next) {
-  next_boundary_ns_ = next;
   for (const auto& leader : leaders_) leader->after_boundary(now);
   for (const auto& follower : followers_) follower->after_boundary(now, next);
-  if (!leaders_.empty() && now + kProgress_ns < next) progress_.at(now + kProgress_ns);
 }
 
 void WireEnds::run_ends(Nanoseconds now) {

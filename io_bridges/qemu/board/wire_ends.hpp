@@ -7,6 +7,8 @@
 //             when SCL rises, kHeld_ns after, or at its boundary: so none waits for ever
 //   Ahead     while it holds the clock a follower runs on, at most kHeld_ns beyond what the leader knows.
 //             A master that gives up meanwhile has its STOP seen by so much too late: counted, a finding
+//   Events    only where something passes the wire: an event that says no more than "nothing came" would let a board's
+//             execution pause there, and by cycles its time then differs
 //   Faults    of the leader's bus act between master and slave; so both see what they spoil
 //   Findings  late messages; a START by the follower; an address at which no far board ever answered
 //   Left out  a low SDA on one side as seen from the other: a stuck line is the side's where it is injected, and a
@@ -43,7 +45,6 @@ class LeaderEnd final : io::I2cTarget {
   LeaderEnd(const WireSite& site, io::I2cBus& bus, std::unique_ptr<io::I2cBus> ear,
             std::uint8_t address, io::BoardWire wire);
 
-  void progress(Nanoseconds now);
   void at_boundary(Nanoseconds now);
   void after_boundary(Nanoseconds now);
   void run_ends(Nanoseconds now);
@@ -105,10 +106,10 @@ class FollowerEnd {
   io::Event pause_, cap_;
   io::WireAnswer answer_;
   Nanoseconds next_boundary_ns_ = 0;
-  bool waiting_ = false;    // for SCL: a question is open
-  bool ahead_ = false;      // the answer takes the next byte with it
-  bool ours_ = false;       // this board was addressed since the START
-  bool acting_ = false;     // a START is the far master's
+  bool waiting_ = false;  // for SCL: a question is open
+  bool ahead_ = false;    // the answer takes the next byte with it
+  bool ours_ = false;     // this board was addressed since the START
+  bool acting_ = false;   // a START is the far master's
   bool start_told_ = false;
   std::int64_t late_ = 0;
   Nanoseconds latest_ns_ = 0;
@@ -129,12 +130,7 @@ class WireEnds {
   void run_ends(Nanoseconds now);
 
  private:
-  static constexpr Nanoseconds kProgress_ns = 250'000;
-  void progress();
-
   WireSite site_;
-  io::Event progress_;
-  Nanoseconds next_boundary_ns_ = 0;
   std::vector<std::unique_ptr<LeaderEnd>> leaders_;
   std::vector<std::unique_ptr<FollowerEnd>> followers_;
 };

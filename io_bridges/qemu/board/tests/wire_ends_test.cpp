@@ -26,7 +26,9 @@ class SlowSlave : public io::I2cTarget {
     bus.add(*this);
   }
   bool answers(std::uint8_t a) const override { return a == address; }
-  bool start(std::uint8_t, bool, Nanoseconds now) override { return hold(now), note('A', now), true; }
+  bool start(std::uint8_t, bool, Nanoseconds now) override {
+    return hold(now), note('A', now), true;
+  }
   bool write(std::uint8_t byte, Nanoseconds now) override {
     note('w', now);
     hold(now);
@@ -71,13 +73,14 @@ struct Side {
   io::I2cBus bus{"i2c"};
   std::vector<io::Finding> findings;
   bool closed = false;
-  WireEnds ends{{events, [this](const io::Finding& f) { findings.push_back(f); },
-                 [this] { closed = true; }}};
+  WireEnds ends{
+      {events, [this](const io::Finding& f) { findings.push_back(f); }, [this] { closed = true; }}};
   // As the board does between two boundaries.
   void step(Nanoseconds from, Nanoseconds to) {
     ends.after_boundary(from, to);
     bool there = false;
-    io::Event boundary(events, [&] { there = true, ends.at_boundary(to); }, io::Rank::boundary);
+    io::Event boundary(
+        events, [&] { there = true, ends.at_boundary(to); }, io::Rank::boundary);
     boundary.at(to);
     events.run_until(to);
     EXPECT_TRUE(there || closed);
