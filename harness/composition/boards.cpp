@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <set>
 
+#include "base/check.hpp"
 #include "harness/catalogue/stand_table.hpp"
 #include "harness/catalogue/surroundings_table.hpp"
 #include "harness/catalogue/vehicle_file.hpp"
@@ -94,6 +95,57 @@ Result<std::unique_ptr<World>> bench_world(const cli::Setup& setup,
   return std::unique_ptr<World>(std::move(world.value()));
 }
 
+const BoardDevice* power_stage(const BoardDescription& board) {
+  for (const BoardDevice& device : board.devices) {
+    if (device.type == "power_stage") return &device;
+  }
+  return nullptr;
+}
+
+// Boards in the place of motor controllers turn the vehicle's shafts: all of them, or none.
+Result<std::vector<flight::FarShaft>> far_shafts(const cli::Setup& setup,
+                                                 const flight::FlightParams& params) {
+  const auto wrong = [&](const std::string& what, const std::string& cure) {
+    return Error{ErrorKind::bad_input, setup.plan.place, what, cure};
+  };
+  std::vector<flight::FarShaft> shafts(params.vehicle.airframe.rotors.size());
+  std::size_t found = 0;
+  for (const cli::FarBoard& far : setup.far) {
+    if (far.motor == 0) continue;
+    const BoardDevice* stage = power_stage(*far.board);
+    if (stage == nullptr) {
+      return wrong(far.board->name + " turns no motor", "esc32v2 has a power stage");
+    }
+    shafts.at(static_cast<std::size_t>(far.motor) - 1) = {static_cast<std::uint8_t>(far.node),
+                                                          static_cast<std::uint16_t>(stage->motor)};
+    ++found;
+  }
+  if (found == 0) return std::vector<flight::FarShaft>{};
+  if (found != shafts.size()) {
+    return wrong(std::to_string(found) + " of the vehicle's " + std::to_string(shafts.size()) +
+                     " motors are turned by boards",
+                 "give all of them a board, or none");
+  }
+  if (params.place.start && params.place.start->motor_speed_radps != 0.0) {
+    return wrong("start: motors that boards turn begin at rest", "let it begin on the ground");
+  }
+  return shafts;
+}
+
+// The motor and the current sense behind a board that turns one of the vehicle's motors.
+stand::StageParams stage_of(const flight::FlightParams& params) {
+  const plant::MotorParams& motor = params.vehicle.motor;
+  const plant::CurrentShuntParams& shunt = params.esc.shunt;
+  return {{"torque_constant", motor.torque_constant_NmpA},
+          {"resistance", motor.resistance_ohm},
+          {"inductance", motor.inductance_H},
+          {"no_load_current", motor.no_load_current_A},
+          {"inertia", motor.inertia_kgm2},
+          {"shunt.gain", shunt.gain_tolerance},
+          {"shunt.warm_up", shunt.warm_up_A},
+          {"shunt.wander", shunt.wander_A}};
+}
+
 Result<std::unique_ptr<World>> make_world(const cli::Setup& setup) {
   if (setup.plan.stand) {
     const auto params = stand_of(setup);
@@ -107,6 +159,9 @@ Result<std::unique_ptr<World>> make_world(const cli::Setup& setup) {
   if (!around) return around.error();
   if (const auto joined = check_escs(setup, params.value()); !joined) return joined.error();
   params.value().ears = ears_of(setup.board);
+  auto far = far_shafts(setup, params.value());
+  if (!far) return far.error();
+  params.value().far_shafts = std::move(far.value());
   return std::unique_ptr<World>(std::make_unique<flight::FlightWorld>(params.value(), setup.seed));
 }
 
@@ -167,6 +222,11 @@ Result<std::unique_ptr<Target>> bench_target(const cli::Setup& setup,
       host_clock()));
 }
 
+// Each board of a run is another copy of the hardware.
+std::uint64_t seed_of(const cli::Setup& setup) {
+  return setup.seed + (static_cast<std::uint64_t>(setup.node) << 32);
+}
+
 Result<std::unique_ptr<Target>> make_target(const cli::Setup& setup,
                                             const bench::BridgeMaker& bridge,
                                             const bench::CanMaker& can) {
@@ -174,7 +234,9 @@ Result<std::unique_ptr<Target>> make_target(const cli::Setup& setup,
   VirtualBoardOptions options;
   options.board = {setup.board,
                    {.image = setup.image,
-                    .seed = setup.seed,
+                    .flashed = setup.flashed,
+                    .wires = setup.wires,
+                    .seed = seed_of(setup),
                     .gdb_port = setup.gdb_port,
                     .folder = setup.folder,
                     .node = setup.plan.nodes[setup.node].name}};
@@ -183,6 +245,14 @@ Result<std::unique_ptr<Target>> make_target(const cli::Setup& setup,
     if (!params) return params.error();
     const auto set =
         stand::set_stage(options.board.board, params.value().esc.motor, params.value().stage);
+    if (!set) return set.error();
+  }
+  if (setup.motor != 0) {
+    const auto params = catalogue::read_vehicle(setup.vehicle_file, setup.settings);
+    if (!params) return params.error();
+    const BoardDevice* stage = power_stage(setup.board);
+    WHIRL_CHECK(stage != nullptr, setup.board.name);  // the world was made with it
+    const auto set = stand::set_stage(options.board.board, stage->motor, stage_of(params.value()));
     if (!set) return set.error();
   }
   options.any_qemu_version = std::getenv("WHIRL_ANY_QEMU") != nullptr;

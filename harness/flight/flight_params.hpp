@@ -1,8 +1,10 @@
 // What a flight is made of. What is physics goes to the plant's params, what is belief or protocol to
 // the ESC's.
 #pragma once
+#include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "harness/flight/capture.hpp"
 #include "harness/flight/native_esc.hpp"
@@ -18,6 +20,12 @@ struct BoardEars {
   bool receiver = true;  // of radio control
 };
 
+// A motor controller that is a board of its own: the shaft that its power stage turns is the vehicle's.
+struct FarShaft {
+  std::uint8_t board = 0;   // of the run
+  std::uint16_t stage = 1;  // its power stage's number there
+};
+
 struct FlightParams {
   std::string name;
   plant::VehicleParams vehicle;
@@ -27,6 +35,7 @@ struct FlightParams {
   CaptureParams capture;
   Surroundings place;
   BoardEars ears;
+  std::vector<FarShaft> far_shafts;  // index: motor number - 1; empty: native controllers
 };
 
 }  // namespace whirl::flight
