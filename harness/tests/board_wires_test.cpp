@@ -60,7 +60,7 @@ TEST(BoardWires, OnlyATargetOnAnI2cBusHasAPlaceForABoard) {
 TEST(BoardWires, EachBoardGetsItsEndOfOneMemory) {
   Rig rig(3);
   rig.wire(0, "esc2", 2);
-  std::vector<Setup> setups;
+  std::vector<cli::Setup> setups;
   for (std::size_t i = 0; i < 3; ++i) {
     setups.push_back({rig.plan, i, rig.nodes[i].board, "", "", ""});
   }
