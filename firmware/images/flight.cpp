@@ -29,8 +29,11 @@
 #include "firmware/hal/time_base.hpp"
 #include "firmware/hal/uart_link.hpp"
 #include "firmware/hal/watchdog.hpp"
+#include "firmware/images/boot_text.hpp"
 #include "firmware/images/flight_can.hpp"
 #include "firmware/images/flight_escs.hpp"
+#include "firmware/images/gps_solution.hpp"
+#include "firmware/images/imu_checks.hpp"
 #include "firmware/link/telemetry.hpp"
 #include "firmware/log/flight_log.hpp"
 
@@ -129,27 +132,9 @@ void sensor_job_done(const hal::I2cJob& job, Status status) {
   if (job.address == magnetometer.kAddress) magnetometer.job_done(job, status);
 }
 
-// From the sensor's axes to the body's.
-static Vector3 mounted(const float (&of_sensor)[3], const config::Mounting& m) {
-  return {m.sign[0] * of_sensor[m.axis[0]], m.sign[1] * of_sensor[m.axis[1]],
-          m.sign[2] * of_sensor[m.axis[2]]};
-}
-
-// The same for longer than noise allows: the sensor signals, and does not measure.
-template <typename Raw>
-static bool is_frozen(const Raw& raw) {
-  constexpr std::uint32_t kFrozen_samples = 50;
-  static constinit Raw last;
-  static constinit std::uint32_t same = 0;
-  same = raw == last ? same + 1 : 0;
-  last = raw;
-  if (same == kFrozen_samples) ++faults.imu_frozen;
-  return same >= kFrozen_samples;
-}
-
 template <typename Raw>
 static bool is_usable(const Raw& raw) {
-  flight().set_imu_frozen(is_frozen(raw));
+  flight().set_imu_frozen(is_frozen(raw, faults));
   if (!raw.rate_saturated()) return true;
   ++faults.imu_saturated;
   flight().on_imu_missing();
@@ -223,44 +208,6 @@ __attribute__((noinline)) void sensor_task() {
   faults.baro_failures = barometer.failures();
   faults.mag_failures = magnetometer.failures();
   faults.sensor_reconfigured = barometer.restarts() + magnetometer.reconfigured();
-}
-
-static GpsSolution solution_of(const GpsFix& fix) {
-  const auto velocity_mps = [](std::int32_t cmps) { return 0.01f * static_cast<float>(cmps); };
-  const auto metres = [](std::uint32_t mm) { return 1e-3f * static_cast<float>(mm); };
-  GpsSolution out;
-  out.latitude_e7_deg = fix.latitude_e7_deg;
-  out.longitude_e7_deg = fix.longitude_e7_deg;
-  out.height_mm = fix.height_mm;
-  out.v_W_mps = {velocity_mps(fix.v_north_cmps), velocity_mps(fix.v_east_cmps),
-                 velocity_mps(fix.v_down_cmps)};
-  out.level_accuracy_m = metres(fix.level_accuracy_mm);
-  out.down_accuracy_m = metres(fix.down_accuracy_mm);
-  out.speed_accuracy_mps = 0.01f * static_cast<float>(fix.speed_accuracy_cmps);
-  out.fix_type = fix.fix_type;
-  out.satellites = fix.satellites;
-  out.within_limits = fix.usable();
-  out.age_s = config::kGpsLatency_s + 1e-6f * static_cast<float>(fix.age_us(hal::now_us()));
-  return out;
-}
-
-static GpsSolution solution_of(const CanFix& fix) {
-  constexpr std::uint8_t k3D = 3;
-  const auto& place_m2 = fix.place_m2;
-  const auto& speed_m2ps2 = fix.speed_m2ps2;
-  GpsSolution out;
-  out.latitude_e7_deg = fix.latitude_e7_deg;
-  out.longitude_e7_deg = fix.longitude_e7_deg;
-  out.height_mm = fix.height_mm;
-  out.v_W_mps = {fix.v_W_mps[0], fix.v_W_mps[1], fix.v_W_mps[2]};
-  out.level_accuracy_m = std::sqrt(place_m2[0] + place_m2[1]);
-  out.down_accuracy_m = std::sqrt(place_m2[2]);
-  out.speed_accuracy_mps = std::sqrt(speed_m2ps2[0] + speed_m2ps2[1]);
-  out.fix_type = fix.status == k3D ? 3 : 0;
-  out.satellites = fix.satellites;
-  out.within_limits = fix.status == k3D;
-  out.age_s = config::kGpsLatency_s + 1e-6f * static_cast<float>(hal::now_us() - fix.begun_us);
-  return out;
 }
 
 static void can_gps_task() {
@@ -406,27 +353,6 @@ void show_state() {
       show_state();
     }
   }
-}
-
-const char* boot_text() {
-  const hal::ResetCause cause = hal::take_reset_cause();
-  if (fw_fault_record.magic == FaultRecord::kMagic) {
-    fw_fault_record.magic = ~FaultRecord::kMagic;  // told once; the registers stay
-    return "boot after a fault, see fw_fault_record";
-  }
-  switch (cause) {
-    case hal::ResetCause::power:
-      return "boot: power";
-    case hal::ResetCause::pin:
-      return "boot: reset pin";
-    case hal::ResetCause::software:
-      return "boot: software reset";
-    case hal::ResetCause::watchdog:
-      return "boot: watchdog";
-    case hal::ResetCause::low_power:
-      return "boot: low-power reset";
-  }
-  return "boot";
 }
 
 void start_leds() {

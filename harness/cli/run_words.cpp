@@ -117,7 +117,7 @@ Result<Done> RunCommand::parse_texts() {
   auto read =
       read_within(margin_, Dimension::ratio, "--margin", "1 %", "1000 %", options.limits_margin);
   if (!read) return read;
-  read = read_within(copper_rate_, Dimension::frequency, "--copper-rate", "1 kHz", "1 GHz",
+  read = read_within(copper_rate_, Dimension::frequency, "--copper-rate", "1 kHz", "1000 MHz",
                      options.copper_rate_Hz);
   return read ? read_settings() : read;
 }

@@ -10,7 +10,6 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "base/json_text.hpp"
@@ -101,42 +100,6 @@ TEST_F(Real, ASignalEndsTheRunInOrder) {
     ASSERT_TRUE(run.is_object()) << signal;
     EXPECT_NE(run["reason"].get<std::string>().find("interrupted by signal"), std::string::npos);
     EXPECT_TRUE(fs::canonical(out + "/runs/latest").string().ends_with("-interrupted"));
-  }
-}
-
-std::vector<pid_t> children_of(pid_t pid) {
-  const std::string id = std::to_string(pid);
-  std::ifstream list("/proc/" + id + "/task/" + id + "/children");
-  return {std::istream_iterator<pid_t>(list), {}};
-}
-
-// Five boards that wait for each other; the leader, or one of those that follow it, is killed in flight.
-TEST_F(Real, ABoardThatIsKilledEndsARunOfFiveByItsNameWithinFiveSeconds) {
-  const std::pair<std::size_t, const char*> kBoards[] = {{0, "flight: virtual board"},
-                                                         {3, "esc3: virtual board"}};
-  for (const auto& [number, name] : kBoards) {
-    const std::string told = folder_.file("told");
-    const std::string line = std::string("exec ") + WHIRL_PROGRAM + " run " + WHIRL_ROOT +
-                             "/test_plans/chain/hover.lua >" + told + " 2>&1";
-    const pid_t pid = fork();
-    if (pid == 0) {
-      execl("/bin/sh", "sh", "-c", line.c_str(), nullptr);
-      _exit(127);
-    }
-    std::vector<pid_t> boards;
-    while ((boards = children_of(pid)).size() < 5) usleep(10'000);
-    usleep(300'000 * static_cast<useconds_t>(number + 1));
-    kill(boards[number], SIGKILL);
-    int status = 0, waited = 0;
-    while (waitpid(pid, &status, WNOHANG) == 0 && waited < 500) usleep(10'000), ++waited;
-    if (waited == 500) kill(pid, SIGKILL), waitpid(pid, &status, 0);
-    EXPECT_LT(waited, 500) << name;
-    EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 3) << status;
-    std::ifstream in(told);
-    const std::string text(std::istreambuf_iterator<char>(in), {});
-    EXPECT_NE(text.find(std::string(name) + ": QEMU was ended by signal Killed"), std::string::npos)
-        << text;
-    for (const pid_t board : boards) EXPECT_EQ(kill(board, 0), -1) << name << " left " << board;
   }
 }
 

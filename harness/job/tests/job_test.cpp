@@ -8,7 +8,7 @@ namespace {
 TEST(Job, CrossesAProcessBoundaryWhole) {
   const Job sent{
       "a b.lua", "hover \xC3\xA4", UINT64_MAX, {{"vehicle.motor.resistance", "1 ohm"}}, "out", true,
-      true, "calibrations/x"};
+      true,      "calibrations/x"};
   const auto got = read_job(job_text(sent));
   ASSERT_TRUE(got.ok()) << got.error().message();
   EXPECT_EQ(job_text(got.value()), job_text(sent));
