@@ -182,6 +182,17 @@ CLI::App* add_fuzz(CLI::App& app, FuzzOptions& options) {
   return fuzz;
 }
 
+int run_calibrate(const Calibrates& calibrates, CalibrateOptions calibration, const RunCommand& run,
+                  const Composition& composition) {
+  if (*calibrates.bound) return inflow_bound_command(calibration.file, composition);
+  calibration.seed = run.options.seed;
+  calibration.command = "whirl calibrate esc " + calibration.file +
+                        (run.seed.empty() ? "" : " --seed " + run.seed) +
+                        (calibration.write.empty() ? "" : " --write " + calibration.write) +
+                        (calibration.data.empty() ? "" : " --data " + calibration.data);
+  return calibrate_esc_command(calibration, composition);
+}
+
 int run_chosen(int argc, char** argv, Composition composition) {
   CLI::App app{"Whirlstand: a test stand for rotorcraft firmware", "whirl"};
   app.footer(kExamples);
@@ -256,15 +267,7 @@ int run_chosen(int argc, char** argv, Composition composition) {
     if (!validated.empty()) timing.file = validated.front();
     return timing.wanted ? timing_command(timing, composition) : validate_command(composition);
   }
-  if (*calibrates.all) {
-    if (*calibrates.bound) return inflow_bound_command(calibration.file, composition);
-    calibration.seed = options.seed;
-    calibration.command = "whirl calibrate esc " + calibration.file +
-                          (run.seed.empty() ? "" : " --seed " + run.seed) +
-                          (calibration.write.empty() ? "" : " --write " + calibration.write) +
-                          (calibration.data.empty() ? "" : " --data " + calibration.data);
-    return calibrate_esc_command(calibration, composition);
-  }
+  if (*calibrates.all) return run_calibrate(calibrates, calibration, run, composition);
   if (const auto code = benches.run(composition)) return *code;
   if (*decode) return decode_command(decoding, composition);
   if (*parity) return parity_command(pair);

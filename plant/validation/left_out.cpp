@@ -9,6 +9,7 @@
 #include <optional>
 #include <sstream>
 
+#include "base/check.hpp"
 #include "plant/rotor/blade_rings.hpp"
 #include "plant/rotor/fitted_blade.hpp"
 
@@ -144,6 +145,13 @@ std::shared_ptr<const KnownBlades> known_without(const std::vector<MeasuredBlade
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (!gone(all[i])) rest.push_back(known.blades()[i]);
   }
+  // A proof of propellers that are known is none, and only looks better.
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const bool known_still = std::any_of(
+        rest.begin(), rest.end(), [&](const KnownBlade& k) { return k.name == all[i].name; });
+    WHIRL_CHECK(known_still != gone(all[i]), all[i].name);
+  }
+  WHIRL_CHECK(rest.size() < all.size(), rest.size());
   return std::make_shared<const KnownBlades>(std::move(rest));
 }
 
