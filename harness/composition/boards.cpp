@@ -132,20 +132,6 @@ Result<std::vector<flight::FarShaft>> far_shafts(const cli::Setup& setup,
   return shafts;
 }
 
-// The motor and the current sense behind a board that turns one of the vehicle's motors.
-stand::StageParams stage_of(const flight::FlightParams& params) {
-  const plant::MotorParams& motor = params.vehicle.motor;
-  const plant::CurrentShuntParams& shunt = params.esc.shunt;
-  return {{"torque_constant", motor.torque_constant_NmpA},
-          {"resistance", motor.resistance_ohm},
-          {"inductance", motor.inductance_H},
-          {"no_load_current", motor.no_load_current_A},
-          {"inertia", motor.inertia_kgm2},
-          {"shunt.gain", shunt.gain_tolerance},
-          {"shunt.warm_up", shunt.warm_up_A},
-          {"shunt.wander", shunt.wander_A}};
-}
-
 Result<std::unique_ptr<World>> make_world(const cli::Setup& setup) {
   if (setup.plan.stand) {
     const auto params = stand_of(setup);
@@ -252,7 +238,9 @@ Result<std::unique_ptr<Target>> make_target(const cli::Setup& setup,
     if (!params) return params.error();
     const BoardDevice* stage = power_stage(setup.board);
     WHIRL_CHECK(stage != nullptr, setup.board.name);  // the world was made with it
-    const auto set = stand::set_stage(options.board.board, stage->motor, stage_of(params.value()));
+    const auto set =
+        stand::set_stage(options.board.board, stage->motor,
+                         stand::stage_of(params.value().vehicle.motor, params.value().esc.shunt));
     if (!set) return set.error();
   }
   options.any_qemu_version = std::getenv("WHIRL_ANY_QEMU") != nullptr;
