@@ -1,6 +1,6 @@
 #include "harness/cli/run_words.hpp"
 
-#include "base/units.hpp"
+#include "harness/cli/option_quantity.hpp"
 #include "harness/cli/seeds.hpp"
 
 namespace whirl::cli {
@@ -22,22 +22,6 @@ std::string setting_complaint(const std::string& text) {
 
 Error twice(const std::string& key, const std::string& other) {
   return {ErrorKind::bad_input, "", "--set " + key + ": is set by " + other + " already", ""};
-}
-
-// Of a quantity that must lie within bounds which the user sees.
-Result<Done> read_within(const std::string& text, Dimension dimension, const char* option,
-                         const char* low, const char* high, double& into) {
-  if (text.empty()) return Done{};
-  const auto value = parse_quantity_as(text, dimension, option);
-  if (!value) return value.error();
-  const double least = parse_quantity_as(low, dimension, "").value();
-  const double most = parse_quantity_as(high, dimension, "").value();
-  if (!(value.value() >= least && value.value() <= most)) {
-    return Error{ErrorKind::bad_input, option,
-                 text + " is outside " + std::string(low) + ".." + high, ""};
-  }
-  into = value.value();
-  return Done{};
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include "harness/catalogue/vehicle_file.hpp"
 #include "harness/cli/console.hpp"
 #include "harness/cli/find_plans.hpp"
+#include "harness/cli/option_quantity.hpp"
 #include "harness/cli/page_command.hpp"
 #include "harness/sweep/forward_sweep.hpp"
 #include "harness/sweep/motor_sweep.hpp"
@@ -24,37 +25,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Option {
-  const char* name;
-  const std::string& text;
-  Dimension dimension;
-  const char *low, *high;  // beyond them the models have nothing to say, and do not settle
-  double& into;
-};
-
-Result<Done> read_option(const Option& option) {
-  if (option.text.empty()) return Done{};
-  const auto value = parse_quantity_as(option.text, option.dimension, option.name);
-  if (!value) return value.error();
-  const double low = parse_quantity_as(option.low, option.dimension, "").value();
-  const double high = parse_quantity_as(option.high, option.dimension, "").value();
-  if (!(value.value() >= low && value.value() <= high)) {
-    return Error{ErrorKind::bad_input, option.name,
-                 "'" + option.text + "' is outside " + option.low + " to " + option.high, ""};
-  }
-  option.into = value.value();
-  return Done{};
-}
-
 Result<sweep::Options> read_options(const SweepOptions& given) {
   sweep::Options options;
-  for (const Option& option :
-       {Option{"--speed", given.speed, Dimension::angular_rate, "10 rpm", "100000 rpm",
-               options.speed_radps},
-        Option{"--top-speed", given.top_speed, Dimension::angular_rate, "10 rpm", "100000 rpm",
-               options.top_speed_radps},
-        Option{"--voltage", given.voltage, Dimension::voltage, "0.5 V", "1000 V", options.bus_V}}) {
-    if (const auto done = read_option(option); !done) return done.error();
+  const auto speed = [](const std::string& text, const char* option, double& into) {
+    return read_within(text, Dimension::angular_rate, option, "10 rpm", "100000 rpm", into);
+  };
+  // Beyond these the models have nothing to say, and do not settle.
+  for (const auto& done : {speed(given.speed, "--speed", options.speed_radps),
+                           speed(given.top_speed, "--top-speed", options.top_speed_radps),
+                           read_within(given.voltage, Dimension::voltage, "--voltage", "0.5 V",
+                                       "1000 V", options.bus_V)}) {
+    if (!done) return done.error();
   }
   return options;
 }
