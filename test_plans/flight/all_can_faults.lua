@@ -1,6 +1,7 @@
 -- Faults of sensors that are nodes of CAN (board px4fmu_v1_all_can), in mid-hover: by the rules and limits of the
 -- same faults of the board's own (faults.lua, faults_sensors.lua).
 include "include/hover.lua"
+include "include/sensor_fault.lua"
 include "include/all_can.lua"
 
 local function fault_plan(name, run)
@@ -51,15 +52,6 @@ for _, f in ipairs {
 } do
   fault_plan(f.name, function(t)
     imu_on_can(t, "3 s")
-    t:fault { kind = f.kind, device = f.device, axis = f.axis, value = f.value, duration = "2 s" }
-    local r = t:record({ "height", "offset", "attitude_error" }, "4 s")
-    t:expect(r:rms_error("height", "1.1 m"), "height RMS error"):at_most "5 cm"
-    t:expect(r:rms "offset", "sideways RMS error"):at_most "10 cm"
-    t:expect(r:max "attitude_error", "attitude that is flown by"):at_most "3 deg"
-    t:wait "8 s"
-    local after = t:record({ "baro_height_error", "baro_climb_error", "attitude_error_1" }, "2 s")
-    t:expect(after:rms "baro_height_error", "after 10 s: height by the barometer"):at_most "20 cm"
-    t:expect(after:rms "baro_climb_error", "after 10 s: climb by the barometer"):at_most "0.15 m/s"
-    t:expect(after:rms "attitude_error_1", "after 10 s: attitude of filter 1"):at_most "3 deg"
+    judged_sensor_fault(t, f)
   end)
 end
