@@ -1,7 +1,5 @@
 #include "firmware/images/flight_can.hpp"
 
-#include <tuple>
-
 namespace fw {
 namespace {
 
