@@ -8,7 +8,6 @@
 #include "base/near.hpp"
 #include "harness/catalogue/stand_table.hpp"
 #include "harness/plan/requests.hpp"
-#include "harness/stand/stage_params.hpp"
 #include "harness/stand/stand_world.hpp"
 #include "plant/motor/motor_params.hpp"
 
