@@ -55,10 +55,10 @@ TEST(CanRack, ACommandFromAfarReachesItsEscAndTheStatusComesBack) {
   Rig rig;
   const BoardDevice esc{.name = "esc2", .type = "esc_dronecan", .bus = "can2", .motor = 2};
   ASSERT_TRUE(rig.rack.build(board_with({esc}), device_types()).ok());
-  rig.rack.events().run_until(5 * kMs);
+  rig.rack.events().run_until(5 * kMs);  // before its first status
   io::Batch sensed;
-  sensed.add(io::Kind::esc_state, 1, 5 * kMs, io::EscState{.speed_rpm = 1111});
   sensed.add(io::Kind::esc_state, 2, 5 * kMs, io::EscState{.speed_rpm = 2222});
+  sensed.add(io::Kind::esc_state, 1, 5 * kMs, io::EscState{.speed_rpm = 1111});  // another's
   for (io::Reader r(sensed.bytes()); r.next();) rig.rack.on_message(r);
   dc::RawCommand command;
   command.commands.add(400);

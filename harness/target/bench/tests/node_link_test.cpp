@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
+#include <cstring>
 
 #include "io_bridges/protocols/dronecan/esc.hpp"
 #include "io_bridges/protocols/dronecan/transfer.hpp"
@@ -71,6 +71,7 @@ TEST(NodeLink, ASetPointOfTheWireArrivesAtItsTimeAndStatusesGoOut) {
     return a.kind == io::Kind::esc_setpoint;
   });
   ASSERT_NE(arrival, rig.arrivals.end());
+  EXPECT_EQ(rig.of_kind(io::Kind::esc_setpoint), 1u);  // once, not with each turn
   EXPECT_EQ(arrival->port, 1);
   io::EscSetpoint setpoint;
   ASSERT_EQ(arrival->payload.size(), sizeof setpoint);
@@ -81,6 +82,20 @@ TEST(NodeLink, ASetPointOfTheWireArrivesAtItsTimeAndStatusesGoOut) {
   EXPECT_LT(arrival->host_ns, 30 * kMs + 300'000);
   // esc.Status and its extension at 11.3, 61.3 and 111.3 ms: three frames and one.
   EXPECT_EQ(rig.wire.seen().size(), 1 + 3 * 4u);
+}
+
+TEST(NodeLink, OwnFramesThatComeBackAreNotAnothers) {
+  Rig rig;
+  ASSERT_TRUE(rig.link.open().ok());
+  rig.serve_until(130 * kMs);
+  EXPECT_GT(rig.of_kind(io::Kind::can_transfer), 0u);
+  for (const Arrival& a : rig.arrivals) {
+    if (a.kind != io::Kind::can_transfer) continue;
+    io::CanRecord record;
+    ASSERT_EQ(a.payload.size(), sizeof record);
+    std::memcpy(&record, a.payload.data(), sizeof record);
+    EXPECT_EQ(record.sender, 0);  // the ESC's number, never the microcontroller's
+  }
 }
 
 TEST(NodeLink, AHostThatIsLateHasItsNodesWait) {
