@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "base/near.hpp"
 #include "base/scratch_folder.hpp"
 #include "harness/catalogue/board_file.hpp"
 #include "harness/composition/boards.hpp"
@@ -121,7 +122,7 @@ TEST(BenchFlight, TheRealImageHoversOverItsWiresAsItDoesInLockstep) {
   for (const auto& [name, got] : flown.figures()) {
     std::printf("%s: bench %.4g, lockstep %.4g\n", name.c_str(), got, want.at(name));
     if (!name.starts_with("bus current")) continue;
-    EXPECT_NEAR(got / want.at(name), 1.0, 0.05) << name;
+    EXPECT_TRUE(near(got, want.at(name), stated(0.05 * want.at(name), "parity of 5 %"))) << name;
   }
 }
 

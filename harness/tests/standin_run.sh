@@ -45,8 +45,9 @@ import json, sys
 virtual, bench = ({e["name"]: e for e in json.load(open(f))["expectations"]} for f in sys.argv[1:])
 far = []
 for name, e in bench.items():
-    limits = [abs(e[k]) for k in ("limit", "low", "high") if isinstance(e.get(k), (int, float))]
-    size = max([abs(virtual[name]["measured"])] + limits)
+    limit = e.get("limit") or 0.0
+    limits = limit if isinstance(limit, list) else [limit]
+    size = max(abs(x) for x in [virtual[name]["measured"], *limits])
     off = abs(e["measured"] - virtual[name]["measured"]) / size if size > 0 else 0.0
     print("figure: %s: %.4g, in lockstep %.4g, apart by %.1f %%" %
           (name, e["measured"], virtual[name]["measured"], 100 * off))
