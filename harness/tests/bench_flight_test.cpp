@@ -7,7 +7,6 @@
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <thread>
 
 #include "base/near.hpp"
 #include "base/scratch_folder.hpp"
@@ -16,8 +15,7 @@
 #include "harness/pacing/host_clock.hpp"
 #include "harness/standin/bare_board.hpp"
 #include "harness/standin/no_world.hpp"
-#include "harness/standin/stand_in.hpp"
-#include "harness/target/virtual_board.hpp"
+#include "harness/tests/running_stand_in.hpp"
 #include "io_bridges/socketcan/tests/memory_can.hpp"
 
 namespace whirl {
@@ -31,35 +29,20 @@ struct Metal {
   Metal(const ScratchFolder& folder, std::unique_ptr<io::CanPort> can)
       : radio(folder.file("radio")) {
     const auto board = read_board(kRoot + "/test_plans/boards/px4fmu_v1_all_can.lua");
-    VirtualBoardOptions options;
-    options.board = {bare_board(board.value()),
-                     {.image = kRoot + "/build/firmware/flight.elf", .seed = 1}};
-    target.emplace(std::move(options));
     StandInOptions wires;
     wires.pace = kPace;
     wires.uart = 2;
     wires.can_bus = 2;
     wires.serial.emplace(std::move(io::PseudoTerminal::open(radio).value()));
     wires.can = std::move(can);
-    stand_in.emplace(world, *target, clock, std::move(wires));
-    thread = std::thread([this] {
-      const auto ran = stand_in->run();
-      EXPECT_TRUE(ran.ok()) << ran.error().message();
-    });
+    stand_in.emplace(world, bare_board(board.value()), kRoot + "/build/firmware/flight.elf",
+                     std::move(wires));
   }
-  ~Metal() { stop(); }
-  void stop() {
-    if (!thread.joinable()) return;
-    stand_in->end();
-    thread.join();
-  }
+  void stop() { stand_in->stop(); }
 
   std::string radio;
   NoWorld world;
-  pacing::MonotonicClock clock;
-  std::optional<VirtualBoard> target;
-  std::optional<StandIn> stand_in;
-  std::thread thread;
+  std::optional<RunningStandIn> stand_in;
 };
 
 std::string bench_file(const std::string& radio) {
@@ -106,7 +89,7 @@ TEST(BenchFlight, TheRealImageHoversOverItsWiresAsItDoesInLockstep) {
   metal.stop();
   const std::string reason = flown.file["reason"];
   // A host that was late has shown nothing of the firmware; that it was, is said.
-  if (flown.code != 0 && metal.stand_in->lateness().slipped_ns > 0) {
+  if (flown.code != 0 && (*metal.stand_in)->lateness().slipped_ns > 0) {
     std::printf("not judged, the stand-in was late: %s\n", reason.c_str());
     return;
   }
