@@ -27,7 +27,8 @@ struct Type {
 
 inline constexpr Type kGetNodeInfo{1, 0xEE468A8121C46A9E}, kGetSet{11, 0xA7B622F939D1A4D5},
     kNodeStatus{341, 0x0F0868D0C1A7C6F1}, kRawCommand{1030, 0x217F5C87D7EC951D},
-    kEscStatus{1034, 0xA9AF28AEA2FBB254}, kEscStatusExtended{1036, 0x02DC203C50960EDC};
+    kRpmCommand{1031, 0xCE0F9F621CF7E70B}, kEscStatus{1034, 0xA9AF28AEA2FBB254},
+    kEscStatusExtended{1036, 0x02DC203C50960EDC};
 // What sensors tell. The first two are of this house: 12 and 14 bytes.
 inline constexpr Type kImu14{20100, 0x4D9F6E5A4D54FA92}, kImu16{20101, 0x6C55CA4E1C208322},
     kMagneticField2{1002, 0xB6AC0C442430297E}, kStaticPressure{1028, 0xCDC7C43412BDC89A},

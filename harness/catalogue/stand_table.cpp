@@ -46,9 +46,23 @@ void read_stage_shunt(const lua::Table& t, stand::StageParams& stage) {
   pass("wander", "shunt.wander", s.wander_A);
 }
 
+std::string read_throttle(const lua::Table& t) {
+  return t.has("throttle") ? t.choice("throttle", {"i2c", "pwm", "can", "can_rpm"}) : "i2c";
+}
+
+void read_can(const lua::Table& t, stand::EscMasterParams& esc) {
+  const std::string throttle = read_throttle(t);
+  if (!throttle.starts_with("can")) return;
+  esc.can = static_cast<std::uint16_t>(t.integer_or("can", 1, 1, 2));
+  esc.rpm_command = throttle == "can_rpm";
+  if (esc.rpm_command && esc.mode != io::EscMode::rpm) {
+    t.refuse("throttle", "can_rpm asks for speeds, and the stand's mode takes none",
+             "mode = \"rpm\"");
+  }
+}
+
 double read_pulse_rate(const lua::Table& t) {
-  const bool pulses = t.has("throttle") && t.choice("throttle", {"i2c", "pwm", "can"}) == "pwm";
-  if (!pulses) return 0.0;
+  if (read_throttle(t) != "pwm") return 0.0;
   return t.quantity_or("pulse_rate", Dimension::frequency, 50.0, lua::between(50.0, 400.0));
 }
 
@@ -63,9 +77,7 @@ Result<stand::StandParams> read_stand(const lua::Table& t, const std::string& pr
   if (t.has("mode")) p.esc.mode = read_esc_mode(t, "mode").on_wire;
   p.esc.address = static_cast<std::uint8_t>(t.integer_or("address", p.esc.address, 0x08, 0x77));
   p.esc.pulse_rate_Hz = read_pulse_rate(t);
-  if (t.has("throttle") && t.choice("throttle", {"i2c", "pwm", "can"}) == "can") {
-    p.esc.can = static_cast<std::uint16_t>(t.integer_or("can", 1, 1, 2));
-  }
+  read_can(t, p.esc);
   p.esc.i2c = static_cast<std::uint16_t>(t.integer_or("i2c", p.esc.i2c, 1, 3));
   p.esc.serial = static_cast<std::uint16_t>(t.integer_or("serial", p.esc.serial, 1, 8));
   if (const auto good = t.finish(); !good) return good.error();

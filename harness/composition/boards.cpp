@@ -20,10 +20,12 @@
 #include "harness/target/bench/analyser_link.hpp"
 #include "harness/target/bench/bench_target.hpp"
 #include "harness/target/bench/bridge_link.hpp"
+#include "harness/target/bench/node_link.hpp"
 #include "harness/target/bench/serial_links.hpp"
 #include "harness/target/copper_target.hpp"
 #include "harness/target/virtual_board.hpp"
 #include "io_bridges/protocols/esc_codec.hpp"
+#include "io_bridges/rack/devices/table.hpp"
 
 namespace whirl {
 namespace {
@@ -145,6 +147,7 @@ Result<std::unique_ptr<World>> make_world(const cli::Setup& setup) {
   if (!around) return around.error();
   if (const auto joined = check_escs(setup, params.value()); !joined) return joined.error();
   params.value().ears = ears_of(setup.board);
+  if (setup.bench != nullptr) params.value().ears.receiver = false;  // nobody plays one
   auto far = far_shafts(setup, params.value());
   if (!far) return far.error();
   params.value().far_shafts = std::move(far.value());
@@ -162,20 +165,23 @@ bool enter_pressed() {
   return isatty(STDIN_FILENO) == 1 && poll(&terminal, 1, 0) == 1;
 }
 
-std::unique_ptr<bench::Link> can_link(const cli::Setup& setup, const bench::CanBusLink& link,
-                                      const bench::CanMaker& maker) {
-  bench::CanOptions options{.link = link, .heartbeat_ns = setup.bench->safety.heartbeat_ns};
-  if (!setup.folder.empty()) options.log = setup.folder + "/" + link.name + ".log";
-  return std::make_unique<bench::CanLink>(std::move(options), maker);
+std::string log_of(const cli::Setup& setup, const bench::CanBusLink& link) {
+  return setup.folder.empty() ? "" : setup.folder + "/" + link.name + ".log";
 }
 
-Result<std::unique_ptr<Target>> bench_target(const cli::Setup& setup,
-                                             const bench::BridgeMaker& bridge,
-                                             const bench::CanMaker& can) {
+// Each board of a run is another copy of the hardware.
+std::uint64_t seed_of(const cli::Setup& setup) {
+  return setup.seed + (static_cast<std::uint64_t>(setup.node) << 32);
+}
+
+using Links = std::vector<std::unique_ptr<bench::Link>>;
+
+// Of a thrust stand: what commands the ESC.
+Result<Done> add_masters(const cli::Setup& setup, const bench::BridgeMaker& bridge,
+                         const bench::CanMaker& can, Links& links) {
   const auto params = stand_of(setup);
   if (!params) return params.error();
   const bench::BenchDescription& bench = *setup.bench;
-  std::vector<std::unique_ptr<bench::Link>> links;
   for (const bench::BridgeLink& link : bench.bridges) {
     auto port = bridge(link);
     if (!port) return port.error();
@@ -188,7 +194,36 @@ Result<std::unique_ptr<Target>> bench_target(const cli::Setup& setup,
         std::move(port.value())));
   }
   for (const bench::CanBusLink& link : bench.cans) {
-    links.push_back(can_link(setup, link, can));
+    links.push_back(std::make_unique<bench::CanLink>(
+        bench::CanOptions{
+            .link = link, .heartbeat_ns = bench.safety.heartbeat_ns, .log = log_of(setup, link)},
+        can));
+  }
+  return Done{};
+}
+
+// Of a vehicle: its nodes, for the flight controller.
+void add_nodes(const cli::Setup& setup, const bench::CanMaker& can, Links& links) {
+  for (const bench::CanBusLink& link : setup.bench->cans) {
+    links.push_back(
+        std::make_unique<bench::NodeLink>(bench::NodeOptions{.link = link,
+                                                             .board = setup.board,
+                                                             .types = rack::device_types(),
+                                                             .seed = seed_of(setup),
+                                                             .log = log_of(setup, link)},
+                                          can));
+  }
+}
+
+Result<std::unique_ptr<Target>> bench_target(const cli::Setup& setup,
+                                             const bench::BridgeMaker& bridge,
+                                             const bench::CanMaker& can) {
+  const bench::BenchDescription& bench = *setup.bench;
+  Links links;
+  if (!setup.plan.stand) {
+    add_nodes(setup, can, links);
+  } else if (const auto added = add_masters(setup, bridge, can, links); !added) {
+    return added.error();
   }
   for (const bench::SerialLink& link : bench.serials) {
     links.push_back(std::make_unique<bench::BoardSerial>(link));
@@ -206,11 +241,6 @@ Result<std::unique_ptr<Target>> bench_target(const cli::Setup& setup,
   return std::unique_ptr<Target>(std::make_unique<bench::BenchTarget>(
       bench::BenchOptions{.bench = bench, .operator_stops = enter_pressed}, std::move(links),
       host_clock()));
-}
-
-// Each board of a run is another copy of the hardware.
-std::uint64_t seed_of(const cli::Setup& setup) {
-  return setup.seed + (static_cast<std::uint64_t>(setup.node) << 32);
 }
 
 Result<std::unique_ptr<Target>> make_target(const cli::Setup& setup,

@@ -129,7 +129,14 @@ TEST(Target, WhatNoBenchCanRunIsSaidBeforeAnythingTurns) {
   // In processes of their own two runs would know of no bench, and pass on the virtual board.
   refused({"--target", "bench/b", "--seeds", "1..2"}, "--seeds");
   refused({"--target", "bench/b", "--jobs", "2"}, "--jobs");
-  refused({"--target", "bench/b"}, "a bench is a thrust stand");  // the plan has a vehicle
+  refused({"--target", "bench/b"}, "'b' is not there");
+  // The plan has a vehicle: each of its board's devices is played by somebody.
+  const std::string bench =
+      R"(return { bench = "b", board = "fake", late = "1 ms", late_share = "1 %",
+    links = { { name = "bus", bus = "can2", interface = "can0" } },
+    safety = { phrase = "clear", longest = "9 s" } })";
+  root.write("test_plans/benches/b.lua", bench);
+  refused({"--target", "bench/b"}, "nothing plays ");
   refused({"--arm", "clear"}, "--target");
 }
 

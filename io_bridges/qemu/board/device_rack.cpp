@@ -6,9 +6,10 @@
 #include "io_bridges/devices/can_wire_faults.hpp"
 #include "io_bridges/devices/wire_faults.hpp"
 #include "io_bridges/qemu/board/board_pins.hpp"
-#include "io_bridges/qemu/board/can_log.hpp"
+#include "io_bridges/qemu/board/empty_can.hpp"
 #include "io_bridges/qemu/board/spi_log.hpp"
 #include "io_bridges/qemu/stm32/bxcan.hpp"
+#include "io_bridges/rack/can_log.hpp"
 #include "io_bridges/rack/check_board.hpp"
 
 namespace whirl::board {
@@ -253,7 +254,7 @@ io::CanBus* DeviceRack::Wiring::can(int number) {
   constexpr double kBabbling_bit_ns = 1000.0;
   can_buses_[number] =
       std::make_unique<io::CanWireFaults>(site_.events, faults_, bus, number, kBabbling_bit_ns);
-  log_can(bus, number, site_.happened);
+  rack::log_can(bus, number, site_.happened);
   return &bus;
 }
 

@@ -75,6 +75,19 @@ void expect_body_axes(const BoardDevice& device) {
   }
 }
 
+TEST(ImuOnCan, StampsTheInstantAtWhichItsPartWasReady) {
+  Listener<Imu14> b({.name = "imu", .type = "mpu6000_dronecan"});
+  b.rack.run_ms(200);
+  std::vector<int> ready;
+  for (io::Reader r(b.rack.posted.bytes()); r.next();) {
+    if (r.header().kind != io::Kind::data_ready) continue;
+    ready.push_back(static_cast<int>(r.header().t_ns / Imu14::kTime_step_ns) & 0xFFF);
+  }
+  ASSERT_GT(b.heard.size(), 100u);
+  ASSERT_GE(ready.size(), b.heard.size());
+  for (std::size_t i = 0; i < b.heard.size(); ++i) EXPECT_EQ(b.heard[i].time & 0xFFF, ready[i]);
+}
+
 TEST(ImuOnCan, TellsTheBodysAxesHoweverItsPartIsSoldered) {
   expect_body_axes<Imu14>({.name = "imu", .type = "mpu6000_dronecan"});
   BoardDevice turned{.name = "imu", .type = "mpu6000_dronecan"};
