@@ -36,6 +36,16 @@ std::vector<MeasuredPoint> at_rest(const std::vector<StaticPoint>& rows) {
   return points;
 }
 
+std::vector<MeasuredPoint> in_flight(const std::vector<FlightPoint>& rows) {
+  std::vector<MeasuredPoint> points;
+  points.reserve(rows.size());
+  for (const FlightPoint& row : rows) {
+    points.push_back(
+        {row.omega_radps, row.advance_ratio, row.thrust_coefficient, row.power_coefficient});
+  }
+  return points;
+}
+
 // What the rows leave over.
 void weigh(const std::vector<StaticPoint>& rows, FittedBlade& fit) {
   double thrust = 0.0, power = 0.0, thrust_off = 0.0, power_off = 0.0;
@@ -147,11 +157,12 @@ Result<FittedBlade> fit_blade(PropellerDescription d) {
   fit.belief = d.known->prior_for(shape, d.drawn || given);
   fit.belief.strange_make = !d.known->knows(d.make);
   if (given) fit.belief.mean[tip_twist_deg] = d.tip_twist_correction_rad * 180.0 / 3.14159265358979;
-  if (!d.static_points.empty()) {
-    surprise(d.static_points, fit);
-    fit.belief = fit_traits(fit.axial, {{at_rest(d.static_points), kStatic_trust}}, fit.belief);
-    weigh(d.static_points, fit);
-  }
+  surprise(d.static_points, fit);
+  std::vector<TrustedSet> sets;
+  if (!d.static_points.empty()) sets.push_back({at_rest(d.static_points), kStatic_trust});
+  if (!d.flight_points.empty()) sets.push_back({in_flight(d.flight_points), kFlight_trust});
+  if (!sets.empty()) fit.belief = fit_traits(fit.axial, sets, fit.belief);
+  weigh(d.static_points, fit);
   if (auto no = refusal(d, fit)) return *no;
   note_doubts(d, fit);
   d.traits = std::make_shared<const TraitBelief>(fit.belief);

@@ -1,6 +1,6 @@
 // A propeller file's blade: traits by what is known of blades like it and by its own static rows.
 //
-//   In       description.known, stations, static_points (CP where measured); no sections
+//   In       description.known, stations, static_points and flight_points (CP where measured); no sections
 //   Out      the blade to fly, how sure its traits are, what the static rows leave over, and what to doubt
 //   Refused  static thrust that is left over by more than 10 %, tip twist beyond -3 to 6 deg
 //   Warned   tip twist outside -1 to 4 deg; static power left over by more than 10 %; thrust that hardly
