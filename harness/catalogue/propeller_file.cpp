@@ -109,7 +109,8 @@ void read_static(const lua::Table& t, plant::PropellerDescription& d) {
 void read_flight(const lua::Table& t, plant::PropellerDescription& d) {
   if (!t.has("flight")) return;
   if (t.has("polars")) {
-    t.refuse("flight", "goes without polars", "nothing is fitted on it beside polars; leave it out");
+    t.refuse("flight", "goes without polars",
+             "nothing is fitted on it beside polars; leave it out");
   }
   for (const lua::Table& s : t.tables("flight")) {
     plant::FlightPoint p{radps_of(s.number("rpm", lua::above(0.0)))};

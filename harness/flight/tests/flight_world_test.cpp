@@ -83,8 +83,8 @@ TEST(FlightWorld, ItsDiscsTiltAwayFromTheWind) {
     flight.height_m = 1.1;
     flight.run(4.0);
     const bool back = std::string(axis) == "back";
-    const auto gust = back ? "{ north = '-4 m/s', duration = '1 s' }"
-                           : "{ east = '-4 m/s', duration = '1 s' }";
+    const auto gust =
+        back ? "{ north = '-4 m/s', duration = '1 s' }" : "{ east = '-4 m/s', duration = '1 s' }";
     ASSERT_TRUE(plan::disturb(flight.world, table(gust), flight.t_ns).ok());
     flight.run(0.2);
     double away = 0.0, across = 0.0;
