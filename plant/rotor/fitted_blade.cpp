@@ -61,6 +61,17 @@ void weigh(const std::vector<StaticPoint>& rows, FittedBlade& fit) {
   if (power > 0.0) fit.power_off = power_off / power;
 }
 
+double thrust_left_over(const std::vector<FlightPoint>& rows, const FittedBlade& fit) {
+  double thrust = 0.0, off = 0.0;
+  for (const FlightPoint& row : rows) {
+    const auto k =
+        axial_coefficients(fit.axial, fit.belief.mean, row.omega_radps, row.advance_ratio);
+    thrust += row.thrust_coefficient;
+    off += std::abs(k.CT - row.thrust_coefficient);
+  }
+  return thrust > 0.0 ? off / thrust : 0.0;
+}
+
 // How far the rows lie from what was believed before them, in its own standard deviations.
 void surprise(const std::vector<StaticPoint>& rows, FittedBlade& fit) {
   const auto before = predict(fit.axial, fit.belief, at_rest(rows));
@@ -124,6 +135,10 @@ void note_doubts(const PropellerDescription& d, FittedBlade& fit) {
         said("static power is left over by %.0f %%: no section met thrust and power",
              100.0 * fit.power_off));
   }
+  if (fit.flight_thrust_off > kMost_left) {
+    fit.doubts.push_back(said("thrust in flight is left over by %.0f %%: check J, rpm and the unit",
+                              100.0 * fit.flight_thrust_off));
+  }
   for (const auto& [what, sigmas] :
        {std::pair("thrust", fit.thrust_surprise), std::pair("power", fit.power_surprise)}) {
     if (std::abs(sigmas) <= kSurprising) continue;
@@ -163,6 +178,7 @@ Result<FittedBlade> fit_blade(PropellerDescription d) {
   if (!d.flight_points.empty()) sets.push_back({in_flight(d.flight_points), kFlight_trust});
   if (!sets.empty()) fit.belief = fit_traits(fit.axial, sets, fit.belief);
   weigh(d.static_points, fit);
+  fit.flight_thrust_off = thrust_left_over(d.flight_points, fit);
   if (auto no = refusal(d, fit)) return *no;
   note_doubts(d, fit);
   d.traits = std::make_shared<const TraitBelief>(fit.belief);
