@@ -22,7 +22,7 @@ struct FittedBlade {
   double thrust_off = 0.0;  // static: sum of |error| over sum of measured
   double power_off = 0.0;
   double flight_thrust_off = 0.0;  // likewise, of the rows in flight
-  double thrust_surprise = 0.0;  // of the rows to what was believed before: standard deviations
+  double thrust_surprise = 0.0;    // of the rows to what was believed before: standard deviations
   double power_surprise = 0.0;
   double strangeness = 0.0;  // 0: like a measured one, 1: like none
   std::vector<std::string> doubts;
