@@ -36,6 +36,16 @@ std::vector<MeasuredPoint> at_rest(const std::vector<StaticPoint>& rows) {
   return points;
 }
 
+std::vector<MeasuredPoint> in_flight(const std::vector<FlightPoint>& rows) {
+  std::vector<MeasuredPoint> points;
+  points.reserve(rows.size());
+  for (const FlightPoint& row : rows) {
+    points.push_back(
+        {row.omega_radps, row.advance_ratio, row.thrust_coefficient, row.power_coefficient});
+  }
+  return points;
+}
+
 // What the rows leave over.
 void weigh(const std::vector<StaticPoint>& rows, FittedBlade& fit) {
   double thrust = 0.0, power = 0.0, thrust_off = 0.0, power_off = 0.0;
@@ -49,6 +59,17 @@ void weigh(const std::vector<StaticPoint>& rows, FittedBlade& fit) {
   }
   if (thrust > 0.0) fit.thrust_off = thrust_off / thrust;
   if (power > 0.0) fit.power_off = power_off / power;
+}
+
+double thrust_left_over(const std::vector<FlightPoint>& rows, const FittedBlade& fit) {
+  double thrust = 0.0, off = 0.0;
+  for (const FlightPoint& row : rows) {
+    const auto k =
+        axial_coefficients(fit.axial, fit.belief.mean, row.omega_radps, row.advance_ratio);
+    thrust += row.thrust_coefficient;
+    off += std::abs(k.CT - row.thrust_coefficient);
+  }
+  return thrust > 0.0 ? off / thrust : 0.0;
 }
 
 // How far the rows lie from what was believed before them, in its own standard deviations.
@@ -114,6 +135,10 @@ void note_doubts(const PropellerDescription& d, FittedBlade& fit) {
         said("static power is left over by %.0f %%: no section met thrust and power",
              100.0 * fit.power_off));
   }
+  if (fit.flight_thrust_off > kMost_left) {
+    fit.doubts.push_back(said("thrust in flight is left over by %.0f %%: check J, rpm and the unit",
+                              100.0 * fit.flight_thrust_off));
+  }
   for (const auto& [what, sigmas] :
        {std::pair("thrust", fit.thrust_surprise), std::pair("power", fit.power_surprise)}) {
     if (std::abs(sigmas) <= kSurprising) continue;
@@ -147,11 +172,13 @@ Result<FittedBlade> fit_blade(PropellerDescription d) {
   fit.belief = d.known->prior_for(shape, d.drawn || given);
   fit.belief.strange_make = !d.known->knows(d.make);
   if (given) fit.belief.mean[tip_twist_deg] = d.tip_twist_correction_rad * 180.0 / 3.14159265358979;
-  if (!d.static_points.empty()) {
-    surprise(d.static_points, fit);
-    fit.belief = fit_traits(fit.axial, {{at_rest(d.static_points), kStatic_trust}}, fit.belief);
-    weigh(d.static_points, fit);
-  }
+  surprise(d.static_points, fit);
+  std::vector<TrustedSet> sets;
+  if (!d.static_points.empty()) sets.push_back({at_rest(d.static_points), kStatic_trust});
+  if (!d.flight_points.empty()) sets.push_back({in_flight(d.flight_points), kFlight_trust});
+  if (!sets.empty()) fit.belief = fit_traits(fit.axial, sets, fit.belief);
+  weigh(d.static_points, fit);
+  fit.flight_thrust_off = thrust_left_over(d.flight_points, fit);
   if (auto no = refusal(d, fit)) return *no;
   note_doubts(d, fit);
   d.traits = std::make_shared<const TraitBelief>(fit.belief);

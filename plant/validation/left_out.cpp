@@ -65,13 +65,25 @@ std::vector<StaticPoint> static_rows(const std::vector<MeasuredPoint>& points) {
 
 // By the same door as a propeller file.
 Score foretold(const MeasuredBlade& m, std::shared_ptr<const KnownBlades> known,
-               const std::vector<MeasuredPoint>& rows, const std::vector<MeasuredPoint>& judged) {
+               const std::vector<MeasuredPoint>& rows, const std::vector<MeasuredPoint>& judged,
+               const std::vector<FlightPoint>& flown = {}) {
   PropellerDescription d = m.description;
   d.known = std::move(known);
   d.static_points = static_rows(rows);
+  d.flight_points = flown;
   const auto fit = fit_blade(d);
   if (!fit) return {.refused = true};
   return score(fit.value().axial, fit.value().belief, judged);
+}
+
+// The row nearest to seven tenths of the largest J at which it still pulls.
+FlightPoint one_row(const std::vector<MeasuredPoint>& flying) {
+  double most = 0.0;
+  for (const MeasuredPoint& p : flying) most = std::max(most, p.advance_ratio);
+  const auto off = [&](const MeasuredPoint& p) { return std::abs(p.advance_ratio - 0.7 * most); };
+  const auto p = *std::min_element(flying.begin(), flying.end(),
+                                   [&](const auto& a, const auto& b) { return off(a) < off(b); });
+  return {p.omega_radps, p.advance_ratio, p.CT, p.CP};
 }
 
 double quantile(std::vector<double> values, double share) {
@@ -276,13 +288,14 @@ KnownBlades know(const std::vector<MeasuredBlade>& blades) {
 
 Report validate_left_out(const std::vector<MeasuredBlade>& all, const KnownBlades& known) {
   Report report{"Propellers never seen", "UIUC Propeller Database [UiucProp]", {}, {}, {}};
-  std::vector<Score> one, make, still;
+  std::vector<Score> one, make, still, flown;
   std::vector<TrendOff> trends;
   std::map<std::string, std::shared_ptr<const KnownBlades>> without_make;
   for (const MeasuredBlade& m : all) {
     const auto others =
         known_without(all, known, [&](const MeasuredBlade& o) { return o.name == m.name; });
     one.push_back(foretold(m, others, m.still, m.flying));
+    flown.push_back(foretold(m, others, m.still, m.flying, {one_row(m.flying)}));
     still.push_back(foretold(m, others, every_second(m.still, 0), every_second(m.still, 1)));
     if (const auto t = trend_off(m, others)) trends.push_back(*t);
     auto& strangers = without_make[m.make];
@@ -298,6 +311,8 @@ Report validate_left_out(const std::vector<MeasuredBlade>& all, const KnownBlade
   add_summary("make left out", make,
               {kUnjudged, kUnjudged, kUnjudged, kUnjudged, 12.0, kUnjudged, kUnjudged, kUnjudged},
               report);
+  add_summary("left out, one row in flight given", flown,
+              {6.0, 8.0, 12.0, 14.0, kUnjudged, 12.0, 15.0, 3.0}, report);
   add_trends(trends, report);
   report.figures.push_back({"static CT, every second speed left out, median", "%",
                             quantile(column(still, &Score::CT, false), 0.5), 3.0});

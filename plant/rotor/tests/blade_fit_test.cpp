@@ -116,6 +116,26 @@ TEST(BladeFit, StaticRowsNarrowTheBand) {
   EXPECT_FALSE(blind.doubts.empty());
 }
 
+TEST(BladeFit, ARowInFlightNarrowsTheBandAndIsDoubtedWhereNoBladeGivesIt) {
+  PropellerDescription d = slow_flyer();
+  d.static_points = rows_of(d, usual());
+  const auto width = [](const FittedBlade& f) {
+    return predict(f.axial, f.belief, {{500.0, 0.45, 0.0, 0.0}}).front().deviation.CT;
+  };
+  const auto alone = fit_blade(d).value();
+  const auto k = axial_coefficients(alone.axial, usual(), 500.0, 0.4);
+  d.flight_points = {{500.0, 0.4, k.CT, k.CP}};
+  const auto flown = fit_blade(d).value();
+  EXPECT_LT(width(flown), 0.8 * width(alone));
+  EXPECT_TRUE(flown.doubts.empty()) << flown.doubts.front();
+  d.flight_points.front().thrust_coefficient *= 2.0;  // a J of half the diameter's
+  const auto wrong = fit_blade(d);
+  ASSERT_TRUE(wrong.ok()) << wrong.error().message();
+  ASSERT_FALSE(wrong.value().doubts.empty());
+  EXPECT_NE(wrong.value().doubts.front().find("in flight"), std::string::npos)
+      << wrong.value().doubts.front();
+}
+
 TEST(BladeFit, AMakeThatNobodyMeasuredHasAWiderBandAndSaysSo) {
   PropellerDescription d = slow_flyer();
   d.static_points = rows_of(d, usual());
