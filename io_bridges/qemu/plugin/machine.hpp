@@ -60,7 +60,13 @@ class Machine final : public board::Emulator {
 
   // For the instruments.
   CoreClock& clock() { return *clock_; }
-  void throw_code_away() { api_.tb_flush(cpu_); }
+  void throw_code_away() {
+    throws_code_away_ = true;
+    api_.tb_flush(cpu_);
+  }
+  // So QEMU has, for us or because its buffer was full. That is a finding: time is not proven to stay
+  // exact then (a second of flight is the same, a hover of 35 s with a buffer of 1 MiB is not).
+  void code_thrown_away();
   // Only the blocks with that instruction. Also from within one: it runs to its end.
   void forget_code_at(std::uint32_t address) {
     api_.tb_invalidate_phys_addr(api_.address_space_memory, address, kPrivileged);
@@ -151,8 +157,9 @@ class Machine final : public board::Emulator {
   static constexpr io::Nanoseconds kNothing_wanted = -1;
   io::Nanoseconds wanted_ns_ = kNothing_wanted;  // by what is accessed
   int accesses_ = 0;                             // under way: one, or within it by DMA another
-  bool moves_by_dma_ = false;                    // what is accessed through QEMU's address spaces
-  Timer jump_;                                   // under gdb: moves the clock of a core that sleeps
+  bool throws_code_away_ = false, full_buffer_told_ = false;
+  bool moves_by_dma_ = false;  // what is accessed through QEMU's address spaces
+  Timer jump_;                 // under gdb: moves the clock of a core that sleeps
   std::unique_ptr<CoreClock> clock_;
   ExitRequest exit_request_;
   ClassCasts class_casts_;

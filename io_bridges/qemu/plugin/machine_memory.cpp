@@ -116,6 +116,16 @@ std::uint8_t* Machine::sram_at(std::uint32_t address, std::size_t size) const {
   return offset < block.size && size <= block.size - offset ? sram_ + offset : nullptr;
 }
 
+void Machine::code_thrown_away() {
+  clock_->code_thrown_away();
+  const bool ours = std::exchange(throws_code_away_, false);
+  if (ours || full_buffer_told_ || board().run().gdb_port != 0) return;
+  full_buffer_told_ = true;
+  board().report({clock_->core_now(), "core",
+                  "QEMU's buffer for translated code was full: from here on times are not "
+                  "proven to be exact, and another run may differ"});
+}
+
 void Machine::code_translated(std::uint32_t from, std::uint32_t to) {
   const board::MemoryBlock& block = board_.part().sram;
   for (std::uint32_t at = from & ~(kCode_page - 1); at < to; at += kCode_page) {
