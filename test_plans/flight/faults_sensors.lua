@@ -6,7 +6,8 @@ include "include/sensor_fault.lua"
 local faults = {
   { name = "the barometer answers nothing", kind = "i2c_nack", device = "baro" },
   { name = "the barometer's data stay", kind = "sensor_frozen", device = "baro" },
-  { name = "the barometer reads 50 Pa more", kind = "sensor_offset", device = "baro", axis = "pressure", value = "50 Pa" },
+  { name = "the barometer reads 50 Pa more", kind = "sensor_offset", device = "baro", axis = "pressure", value = "50 Pa",
+    baro = "4.8 m" }, -- 4.2 m of it
   { name = "the barometer reads 2000 Pa more", kind = "sensor_offset", device = "baro", axis = "pressure", value = "2000 Pa",
     duration = "500 ms" }, -- after a second it would be believed
   { name = "the barometer's conversions take 5 ms more", kind = "sensor_late", device = "baro", value = "5 ms" },
