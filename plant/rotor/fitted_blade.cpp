@@ -46,30 +46,22 @@ std::vector<MeasuredPoint> in_flight(const std::vector<FlightPoint>& rows) {
   return points;
 }
 
-// What the rows leave over.
-void weigh(const std::vector<StaticPoint>& rows, FittedBlade& fit) {
-  double thrust = 0.0, power = 0.0, thrust_off = 0.0, power_off = 0.0;
-  for (const StaticPoint& row : rows) {
-    const auto k = axial_coefficients(fit.axial, fit.belief.mean, row.omega_radps, 0.0);
-    thrust += row.thrust_coefficient;
-    thrust_off += std::abs(k.CT - row.thrust_coefficient);
-    if (row.power_coefficient == 0.0) continue;
-    power += row.power_coefficient;
-    power_off += std::abs(k.CP - row.power_coefficient);
-  }
-  if (thrust > 0.0) fit.thrust_off = thrust_off / thrust;
-  if (power > 0.0) fit.power_off = power_off / power;
-}
+struct LeftOver {
+  double CT = 0.0, CP = 0.0;
+};
 
-double thrust_left_over(const std::vector<FlightPoint>& rows, const FittedBlade& fit) {
-  double thrust = 0.0, off = 0.0;
-  for (const FlightPoint& row : rows) {
-    const auto k =
-        axial_coefficients(fit.axial, fit.belief.mean, row.omega_radps, row.advance_ratio);
-    thrust += row.thrust_coefficient;
-    off += std::abs(k.CT - row.thrust_coefficient);
+// Sum of |error| over sum of measured; 0 where nothing was.
+LeftOver left_over(const FittedBlade& fit, const std::vector<MeasuredPoint>& points) {
+  double thrust = 0.0, power = 0.0, thrust_off = 0.0, power_off = 0.0;
+  for (const MeasuredPoint& p : points) {
+    const auto k = axial_coefficients(fit.axial, fit.belief.mean, p.omega_radps, p.advance_ratio);
+    thrust += p.CT;
+    thrust_off += std::abs(k.CT - p.CT);
+    if (p.CP == 0.0) continue;
+    power += p.CP;
+    power_off += std::abs(k.CP - p.CP);
   }
-  return thrust > 0.0 ? off / thrust : 0.0;
+  return {thrust > 0.0 ? thrust_off / thrust : 0.0, power > 0.0 ? power_off / power : 0.0};
 }
 
 // How far the rows lie from what was believed before them, in its own standard deviations.
@@ -177,8 +169,10 @@ Result<FittedBlade> fit_blade(PropellerDescription d) {
   if (!d.static_points.empty()) sets.push_back({at_rest(d.static_points), kStatic_trust});
   if (!d.flight_points.empty()) sets.push_back({in_flight(d.flight_points), kFlight_trust});
   if (!sets.empty()) fit.belief = fit_traits(fit.axial, sets, fit.belief);
-  weigh(d.static_points, fit);
-  fit.flight_thrust_off = thrust_left_over(d.flight_points, fit);
+  const LeftOver still = left_over(fit, at_rest(d.static_points));
+  fit.thrust_off = still.CT;
+  fit.power_off = still.CP;
+  fit.flight_thrust_off = left_over(fit, in_flight(d.flight_points)).CT;
   if (auto no = refusal(d, fit)) return *no;
   note_doubts(d, fit);
   d.traits = std::make_shared<const TraitBelief>(fit.belief);
