@@ -4,13 +4,9 @@
 
 #include "base/check.hpp"
 #include "io_bridges/rack/can_log.hpp"
+#include "io_bridges/rack/tell_finding.hpp"
 
 namespace whirl::rack {
-namespace {
-
-constexpr int kIdles_after_bus_off = 128;
-
-}  // namespace
 
 CanRack::Afar::Afar(io::CanBus& bus, double rate_Hz, FrameSink heard)
     : bus_(bus), station_(bus.join(*this, "mcu")), heard_(std::move(heard)) {
@@ -25,7 +21,7 @@ void CanRack::Afar::give(const io::CanFrame& frame) {
 
 void CanRack::Afar::bus_off(Nanoseconds /*now*/) {
   waiting_.clear();
-  bus_.connect(station_, kIdles_after_bus_off);
+  bus_.connect(station_, io::CanBus::kIdles_after_bus_off);
 }
 
 CanRack::CanRack(int bus, double rate_Hz, std::uint64_t seed, FrameSink heard)
@@ -69,13 +65,8 @@ void CanRack::give(const io::CanFrame& frame) {
   afar_.give(frame);
 }
 
-// As a board's process tells them: place, a zero, text.
 io::FindingSink CanRack::finding() {
-  return [this](const io::Finding& f) {
-    const std::string text = f.where + '\0' + f.what;
-    happened_.add(io::Kind::finding, 0, f.t_ns, text.data(),
-                  static_cast<std::uint32_t>(text.size()));
-  };
+  return [this](const io::Finding& f) { tell_finding(f, happened_); };
 }
 
 }  // namespace whirl::rack

@@ -15,6 +15,7 @@
 #include "io_bridges/qemu/board/post_mortem.hpp"
 #include "io_bridges/qemu/stm32/adc.hpp"
 #include "io_bridges/rack/devices/table.hpp"
+#include "io_bridges/rack/tell_finding.hpp"
 
 namespace whirl::board {
 namespace {
@@ -359,9 +360,7 @@ void Board::core_stopped(StoppedCore why, Nanoseconds now, const Registers& regi
 }
 
 void Board::report(const io::Finding& finding) {
-  const std::string text = finding.where + '\0' + finding.what;
-  happened_.add(io::Kind::finding, 0, finding.t_ns, text.data(),
-                static_cast<std::uint32_t>(text.size()));
+  rack::tell_finding(finding, happened_);
 }
 
 void Board::set(int irq, bool level) {
