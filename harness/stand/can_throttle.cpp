@@ -28,25 +28,19 @@ CanThrottle::CanThrottle(std::uint16_t motor, std::uint16_t bus, bool by_speed)
     : motor_(motor), bus_(bus), by_speed_(by_speed), assembler_(known, kNode) {}
 
 std::vector<io::CanFrame> CanThrottle::command() {
-  if (!by_speed_) return command_of<RawCommand>(static_cast<std::int16_t>(kRawSteps * v_));
+  if (!by_speed_) {
+    return command_of(&RawCommand::commands, static_cast<std::int16_t>(kRawSteps * v_));
+  }
   const double speed_rpm = v_ == 0 ? 0.0 : io::value_of_setpoint(io::EscMode::rpm, v_);
-  return command_of<RpmCommand>(static_cast<std::int32_t>(std::lround(speed_rpm)));
+  return command_of(&RpmCommand::speeds_rpm, static_cast<std::int32_t>(std::lround(speed_rpm)));
 }
 
 // `own` at the motor's place, 0 at all others.
-template <typename Command, typename Count>
-std::vector<io::CanFrame> CanThrottle::command_of(Count own) {
+template <typename Command, typename List, typename Count>
+std::vector<io::CanFrame> CanThrottle::command_of(List Command::*counts, Count own) {
   Command message;
-  auto& counts = [&]() -> auto& {
-    if constexpr (requires { message.commands; }) {
-      return message.commands;
-    } else {
-      return message.speeds_rpm;
-    }
-  }
-  ();
   for (std::uint16_t motor = 1; motor <= std::max<std::uint16_t>(motor_, 4); ++motor) {
-    counts.add(motor == motor_ ? own : Count{0});
+    (message.*counts).add(motor == motor_ ? own : Count{0});
   }
   const Payload payload = encode(message);
   const Header header{Kind::message, Command::kType.id, kPriority, kNode, 0, transfer_id_};

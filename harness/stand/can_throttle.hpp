@@ -37,8 +37,8 @@ class CanThrottle {
 
  private:
   std::vector<io::CanFrame> command();
-  template <typename Command, typename Count>
-  std::vector<io::CanFrame> command_of(Count own);
+  template <typename Command, typename List, typename Count>
+  std::vector<io::CanFrame> command_of(List Command::*counts, Count own);
   void on_status(const io::dronecan::Transfer& transfer);
 
   std::uint16_t motor_, bus_;
