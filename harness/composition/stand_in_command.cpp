@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <thread>
@@ -98,6 +99,15 @@ std::uint16_t number_of(const BoardDescription& board, const std::string& type_e
   return 1;
 }
 
+// Of its line there, as the board's file has it.
+long baud_of_line(const Parts& parts) {
+  for (const BoardDevice& device : bare_board(parts.board).devices) {
+    if (device.type != "serial" || bus_number(device.bus) != parts.uart) continue;
+    if (const auto baud = device.value("baud")) return std::lround(std::get<double>(*baud));
+  }
+  return 921'600;  // as the ESCs' boards have it
+}
+
 Result<Done> read_stand(const cli::StandInRequest& request, const std::string& root, Parts& parts) {
   const auto table = lua::read_text("return " + request.stand, "--stand");
   if (!table) return table.error();
@@ -174,7 +184,7 @@ std::string bench_file(const cli::StandInRequest& request, const Parts& parts) {
             "\", bridge = \"mcp2221a\", serial = \"" + request.serial + "\" },\n";
   }
   text += "    { name = \"terminal\", bus = \"usart" + std::to_string(parts.uart) +
-          "\", path = \"" + folder + "/serial\", baud = \"" + (parts.flies ? "57600" : "921600") +
+          "\", path = \"" + folder + "/serial\", baud = \"" + std::to_string(baud_of_line(parts)) +
           " baud\" },\n  },\n";
   if (parts.flies) {
     return text +
