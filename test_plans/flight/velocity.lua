@@ -25,7 +25,7 @@ plan "velocity" {
   end,
 }
 
--- Wind pushes with 0.033 /m of the thrust for each metre per second, 0.65 m/s2 here: without what is learned of it
+-- Wind pushes with 0.033 of the thrust for each metre per second, 0.65 m/s2 here: without what is learned of it
 -- (thesis, eq 6.48) the velocity would be off by 0.23 m/s.
 plan "velocity in wind" {
   image = "flight", board = "px4fmu_v1", vehicle = "hp_quad",
