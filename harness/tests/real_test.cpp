@@ -20,8 +20,7 @@ using whirl::stated;
 using whirl::real::expect_told;
 using whirl::real::kSecond;
 using whirl::real::Outcome;
-
-class Real : public whirl::real::Real {};
+using whirl::real::Real;
 
 // Started, sent this signal when the folder of its run is there, and waited for.
 int code_after(int signal, const std::string& arguments, const std::string& runs) {

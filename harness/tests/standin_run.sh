@@ -6,7 +6,8 @@
 #   hover  a flight controller on vcan1: the bench is its vehicle
 # LOCKSTEP: the folder of the virtual board's run of the same plan. What the plan is about (thrust and its rise, supply
 # current; the motors' currents of a hover) is within 5 % of that one's; all else is told. When it stands is another
-# question on a bench, which has the ESC's word for its speed. A host that is late makes a run inconclusive; that it was so must then be said.
+# question on a bench, which has the ESC's word for its speed.
+# A host that is late makes a run inconclusive; that it was so must then be said.
 set -euo pipefail
 whirl=$1 kind=$2 pace=$3 lockstep=${4:-}
 folder=$(mktemp -d)

@@ -145,7 +145,6 @@ TEST(TclClient, NobodyThereIsSaid) {
   EXPECT_EQ(client.error().kind, ErrorKind::host);
 }
 
-// Wilson's interval as published: 81 of 263 is 0.308, 0.2553 to 0.3662 [Newcombe, Statistics in Medicine 17 (1998), table I].
 TEST(TclClient, AServerThatEndsInsteadOfAnsweringIsSaid) {
   FakeOpenocd server({});
   const auto client = TclClient::connect(server.port(), 1000);
@@ -156,6 +155,7 @@ TEST(TclClient, AServerThatEndsInsteadOfAnsweringIsSaid) {
   EXPECT_NE(answer.error().what.find("has ended"), std::string::npos) << answer.error().what;
 }
 
+// Wilson's interval as published: 81 of 263 is 0.308, 0.2553 to 0.3662 [Newcombe, Statistics in Medicine 17 (1998), table I].
 TEST(BusyShare, HasWilsonsInterval) {
   std::vector<std::uint32_t> pcs(263, 0x08000100);
   std::fill(pcs.begin(), pcs.begin() + 81, 0x08000200u);
