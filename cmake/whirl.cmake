@@ -6,8 +6,8 @@
 #                                               host: needs the images, QEMU or a fast build, so no sanitizers;
 #                                               guest: needs the guest's kernel, fails outside (./whirl test --guest);
 #                                               COST: the longest ones start first
-#   whirl_guest_script(name SCRIPT file [USES target ...] [TIMEOUT s])   a script of label guest; it is given the
-#                                               paths of the programs that it uses
+#   whirl_guest_script(name SCRIPT file [USES target ...] [ARGUMENTS ...] [TIMEOUT s])   a script of label guest;
+#                                               it is given the paths of the programs that it uses, then the arguments
 include_guard()
 include(cmake/mutate.cmake)
 
@@ -124,7 +124,7 @@ function(whirl_test name)
 endfunction()
 
 function(whirl_guest_script name)
-  cmake_parse_arguments(ARG "" "TIMEOUT;SCRIPT" "USES" ${ARGN})
+  cmake_parse_arguments(ARG "" "TIMEOUT;SCRIPT" "USES;ARGUMENTS" ${ARGN})
   if(NOT ARG_TIMEOUT)
     set(ARG_TIMEOUT 300)
   endif()
@@ -134,6 +134,6 @@ function(whirl_guest_script name)
     add_dependencies(whirl_guest_tests ${target})
   endforeach()
   add_test(NAME ${name} COMMAND ${PROJECT_SOURCE_DIR}/cmake/guest/inside.sh
-                                ${CMAKE_CURRENT_SOURCE_DIR}/${ARG_SCRIPT} ${programs})
+                                ${CMAKE_CURRENT_SOURCE_DIR}/${ARG_SCRIPT} ${programs} ${ARG_ARGUMENTS})
   set_tests_properties(${name} PROPERTIES TIMEOUT ${ARG_TIMEOUT} LABELS guest)
 endfunction()

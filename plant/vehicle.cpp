@@ -110,7 +110,7 @@ Vector3d Vehicle::Parts::spin_B() const {
   double sum = 0.0;  // counter-clockwise seen from above is about -z
   for (std::size_t i = 0; i < count(); ++i) {
     const double share =  // of the inertia that all have
-        params.motors.empty() ? 1.0 : params.motors[i].inertia_kgm2 / params.motor.inertia_kgm2;
+        params.motor_of(i).inertia_kgm2 / params.motor.inertia_kgm2;
     sum -= params.airframe.rotors[i].spin * powertrain->speed_radps(i) * share;
   }
   return {0.0, 0.0, params.motor.inertia_kgm2 * sum};

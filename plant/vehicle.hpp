@@ -39,9 +39,9 @@ RotorSet blade_element_rotors(std::shared_ptr<const Blade> blade, const Airframe
 
 struct VehicleParams {
   AirframeParams airframe;
-  MotorParams motor;  // of each rotor
-  std::vector<MotorParams>
-      motors;  // or of one after the other, where they differ; empty: they do not
+  MotorParams motor;                // of each rotor
+  std::vector<MotorParams> motors;  // or of one after the other; empty: they do not differ
+  const MotorParams& motor_of(std::size_t i) const { return motors.empty() ? motor : motors.at(i); }
   BatteryParams battery;
   double avionics_current_A = 0.25;
   AirParams air;

@@ -64,7 +64,8 @@ enum class Parameter : std::uint8_t {
   cal_motor_4x_uTpA,
   cal_motor_4y_uTpA,
   cal_motor_4z_uTpA,
-  esc_bus,  // 0: the ESCs hang on I2C3, 1: on CAN2 (drivers/esc_can.hpp)
+  esc_bus,     // 0: the ESCs hang on I2C3, 1: on CAN2 (drivers/esc_can.hpp)
+  sensor_bus,  // 0: the sensors are the board's, 1: nodes on CAN2 (drivers/can_sensors.hpp)
 };
 
 enum class Numbers : std::uint8_t { real, whole };
@@ -145,6 +146,7 @@ inline constexpr ParameterRow kParameterTable[] = {
     {Parameter::cal_motor_4y_uTpA, "CAL_MAG_M4Y", 0, -10, 10, Numbers::real, WhileArmed::refused},
     {Parameter::cal_motor_4z_uTpA, "CAL_MAG_M4Z", 0, -10, 10, Numbers::real, WhileArmed::refused},
     {Parameter::esc_bus, "ESC_BUS", 0, 0, 1, Numbers::whole, WhileArmed::refused},
+    {Parameter::sensor_bus, "SENS_BUS", 0, 0, 1, Numbers::whole, WhileArmed::refused},
 };
 inline constexpr std::size_t kParameterCount = std::size(kParameterTable);
 

@@ -5,7 +5,7 @@
 //   Status      esc.Status (current, speed), then StatusExtended, whose flags are those of the I2C
 //               protocol; they come by themselves. Of whom they are says their index
 //   Late        what has not gone out when the next set-point does is given up, and counted
-//   Contract    as EscBus; tick() before the take_...() of a task reads what has come in
+//   Contract    as EscBus; on_frame() with each frame that came, before the take_...() of a task
 #pragma once
 #include <tuple>
 #include <utility>
@@ -41,17 +41,16 @@ class EscCan {
   // They come unasked.
   Status request_status(unsigned /*motor*/) { return Status::ok; }
 
-  void tick() {
-    hal::CanFrame frame;
-    for (std::size_t i = 0; i < kMostPerTick && can_.read(frame); ++i) {
-      if (dronecan::is_message(frame.id, dronecan::kEscStatus)) {
-        on_status(frame);
-      } else if (dronecan::is_message(frame.id, dronecan::kEscStatusExtended)) {
-        on_flags(frame);
-      } else {
-        node_.on_frame(frame);
-      }
+  // False: no message of an ESC.
+  bool on_frame(const hal::CanFrame& frame) {
+    if (dronecan::is_message(frame.id, dronecan::kEscStatus)) {
+      on_status(frame);
+    } else if (dronecan::is_message(frame.id, dronecan::kEscStatusExtended)) {
+      on_flags(frame);
+    } else {
+      return false;
     }
+    return true;
   }
 
   bool take_answered(unsigned motor) { return std::exchange(answered_[motor], false); }
@@ -70,7 +69,6 @@ class EscCan {
 
  private:
   static constexpr std::uint32_t kUrgent = 5;
-  static constexpr std::size_t kMostPerTick = 24;  // a task has its budget
   struct Sender {
     std::uint8_t source = 0;
     dronecan::Reassembly<14> transfer;

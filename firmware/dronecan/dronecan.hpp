@@ -27,7 +27,13 @@ struct Type {
 
 inline constexpr Type kGetNodeInfo{1, 0xEE468A8121C46A9E}, kGetSet{11, 0xA7B622F939D1A4D5},
     kNodeStatus{341, 0x0F0868D0C1A7C6F1}, kRawCommand{1030, 0x217F5C87D7EC951D},
-    kEscStatus{1034, 0xA9AF28AEA2FBB254}, kEscStatusExtended{1036, 0x02DC203C50960EDC};
+    kRpmCommand{1031, 0xCE0F9F621CF7E70B}, kEscStatus{1034, 0xA9AF28AEA2FBB254},
+    kEscStatusExtended{1036, 0x02DC203C50960EDC};
+// What sensors tell. The first two are of this house: 12 and 14 bytes.
+inline constexpr Type kImu14{20100, 0x4D9F6E5A4D54FA92}, kImu16{20101, 0x6C55CA4E1C208322},
+    kMagneticField2{1002, 0xB6AC0C442430297E}, kStaticPressure{1028, 0xCDC7C43412BDC89A},
+    kStaticTemperature{1029, 0x49272A6477D96271}, kFix2{1063, 0xCA41E7000F37435F},
+    kBatteryInfo{1092, 0x249C26548A711966};
 
 constexpr std::uint32_t message_id(std::uint32_t priority, std::uint32_t type,
                                    std::uint32_t source) {
@@ -102,6 +108,10 @@ class BitsIn {
   constexpr std::int32_t get_signed(unsigned width) {
     const unsigned unused = 32 - width;
     return static_cast<std::int32_t>(get(width) << unused) >> unused;
+  }
+  constexpr BitsIn& skip(unsigned width) {
+    at_ += width;
+    return *this;
   }
   constexpr std::size_t left() const {
     return 8 * bytes_.size() - std::min(at_, 8 * bytes_.size());

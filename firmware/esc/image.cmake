@@ -23,3 +23,14 @@ set_target_properties(esc PROPERTIES LINK_DEPENDS ${ESC_SCRIPT}
                       RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR})
 add_custom_command(TARGET esc POST_BUILD VERBATIM
   COMMAND sh ${PROJECT_SOURCE_DIR}/firmware/gates/check_image.sh $<TARGET_FILE:esc> 56 10)
+
+# What makes one controller of a vehicle differ from the next: its page of settings, flashed beside the image.
+foreach(number RANGE 1 4)
+  add_executable(esc_motor_${number} esc/image/motor_number.cpp)
+  target_link_libraries(esc_motor_${number} PRIVATE fw_language)
+  target_compile_definitions(esc_motor_${number} PRIVATE ESC_MOTOR_NUMBER=${number})
+  target_compile_options(esc_motor_${number} PRIVATE ${ESC_CPU})
+  target_link_options(esc_motor_${number} PRIVATE ${ESC_CPU} -nostdlib -Wl,--section-start=.settings=0x0801FC00
+    -Wl,--nmagic -Wl,--entry=0 -Wl,--build-id=none -Wl,--fatal-warnings)
+  set_target_properties(esc_motor_${number} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR})
+endforeach()

@@ -37,10 +37,12 @@ class BxCan {
   bool bus_off() const { return (Can::read(hw::bxcan::ESR) & hw::bxcan::BOFF) != 0; }
   bool error_passive() const { return (Can::read(hw::bxcan::ESR) & hw::bxcan::EPVF) != 0; }
   const CanCounters& counters() const { return counters_; }
+  // Pre: one waits.
+  const CanFrame& newest() const { return ring_[(first_ + count_ - 1) % ring_.size()]; }
 
   // From the interrupts.
   void on_transmit();
-  void on_receive();
+  bool on_receive();  // true: a frame came, newest()
   void on_status();
 
  private:
@@ -186,14 +188,14 @@ void BxCan<Port>::on_transmit() {
 
 // One frame: where more wait, the line stays up and the core comes back.
 template <typename Port>
-void BxCan<Port>::on_receive() {
+bool BxCan<Port>::on_receive() {
   using namespace hw::bxcan;
   const std::uint32_t status = Can::read(RF0R);
   if ((status & FOVR0) != 0) {
     ++counters_.lost;
     Can::write(RF0R, FOVR0);
   }
-  if ((status & FMP0_Msk) == 0) return;
+  if ((status & FMP0_Msk) == 0) return false;
   CanFrame frame;
   frame.id = Can::read(RI0R) >> 3;
   frame.length = static_cast<std::uint8_t>(std::min<std::uint32_t>(Can::read(RI0R + 4) & 15u, 8u));
@@ -204,10 +206,11 @@ void BxCan<Port>::on_receive() {
   }
   if (count_ == ring_.size()) {
     ++counters_.lost;
-    return;
+    return false;
   }
   ring_[(first_ + count_++) % ring_.size()] = frame;
   ++counters_.received;
+  return true;
 }
 
 template <typename Port>

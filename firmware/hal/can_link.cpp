@@ -34,7 +34,7 @@ extern "C" void can2_tx_handler() {
   fw::hal::can2.on_transmit();
 }
 extern "C" void can2_rx0_handler() {
-  fw::hal::can2.on_receive();
+  if (fw::hal::can2.on_receive()) fw::can_frame_came(fw::hal::can2.newest());
 }
 extern "C" void can2_sce_handler() {
   fw::hal::can2.on_status();

@@ -22,3 +22,7 @@ extern BxCan<HeaderCan> can2;
 std::array<std::uint8_t, 16> unique_id();  // of this part: 12 bytes, then zeros
 
 }  // namespace fw::hal
+
+namespace fw {
+void can_frame_came(const hal::CanFrame& frame);  // supplied by the application; from the interrupt
+}  // namespace fw

@@ -175,6 +175,5 @@ extern "C" void dma2_stream0_handler() {
 
 extern "C" void exti3_handler() {
   fw::hw::EXTI::PR::write(fw::hw::bit(fw::hal::kImuReadyLine));
-  fw::hal::restart_tick_guard();
   fw::imu_data_ready();
 }

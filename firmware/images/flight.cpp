@@ -1,6 +1,7 @@
 // The flight image: boots, brings up its buses and runs its tasks, one tick per IMU sample.
 //
-//   Tick    the end of the IMU's burst, 1 kHz; a hardware timer when the IMU stays away
+//   Tick    the end of the IMU's burst, 1 kHz, or the last frame of its message where the sensors are nodes
+//           on CAN (SENS_BUS); a hardware timer when the IMU stays away
 //   Tasks   run to completion, one after the other, in the order of schedule.hpp; between ticks the
 //           core sleeps. Interrupts only move bytes
 //   Watch   the watchdog is fed when each task has run since the last time
@@ -28,7 +29,11 @@
 #include "firmware/hal/time_base.hpp"
 #include "firmware/hal/uart_link.hpp"
 #include "firmware/hal/watchdog.hpp"
+#include "firmware/images/boot_text.hpp"
+#include "firmware/images/flight_can.hpp"
 #include "firmware/images/flight_escs.hpp"
+#include "firmware/images/gps_solution.hpp"
+#include "firmware/images/imu_checks.hpp"
 #include "firmware/link/telemetry.hpp"
 #include "firmware/log/flight_log.hpp"
 
@@ -54,6 +59,7 @@ constinit LogVolume<Card> volume(card, log_ring,
                                  {.file_bytes = 16u << 20, .least_bytes = 1u << 20});
 volatile std::uint32_t ticks_due = 0;
 volatile bool sample_ready = false;
+volatile bool sensors_on_can = false;
 volatile std::uint32_t data_ready_us = 0;
 constinit TickTimes times;  // the worst since they were logged
 
@@ -87,6 +93,8 @@ FlightLog<LogVolume<Card>>& flight_log() {
 }  // namespace
 
 void imu_data_ready() {
+  if (sensors_on_can) return;
+  hal::restart_tick_guard();
   const std::uint32_t now_us = hal::now_us();
   data_ready_us = now_us;
   if (!imu.data_ready(now_us)) ticks_due = ticks_due + 1;
@@ -98,8 +106,20 @@ void imu_transfer_done() {
   ticks_due = ticks_due + 1;
 }
 
+// A node that sends twice as often shall not make time run twice as fast.
+void can_frame_came(const hal::CanFrame& frame) {
+  constexpr std::uint32_t kLeast_us = 500;
+  if (!sensors_on_can || !can_sensors().is_imu_end(frame)) return;
+  const std::uint32_t now_us = hal::now_us();
+  if (now_us - data_ready_us < kLeast_us) return;
+  hal::restart_tick_guard();
+  data_ready_us = now_us;
+  ticks_due = ticks_due + 1;
+}
+
+// On CAN the samples' own stamps tell which are lost.
 void fallback_tick() {
-  if (imu.running()) ++faults.imu_samples_lost;
+  if (!sensors_on_can && imu.running()) ++faults.imu_samples_lost;
   ticks_due = ticks_due + 1;
 }
 
@@ -112,28 +132,38 @@ void sensor_job_done(const hal::I2cJob& job, Status status) {
   if (job.address == magnetometer.kAddress) magnetometer.job_done(job, status);
 }
 
-// From the sensor's axes to the body's.
-static Vector3 mounted(const float (&of_sensor)[3], const config::Mounting& m) {
-  return {m.sign[0] * of_sensor[m.axis[0]], m.sign[1] * of_sensor[m.axis[1]],
-          m.sign[2] * of_sensor[m.axis[2]]};
+template <typename Raw>
+static bool is_usable(const Raw& raw) {
+  flight().set_imu_frozen(is_frozen(raw, faults));
+  if (!raw.rate_saturated()) return true;
+  ++faults.imu_saturated;
+  flight().on_imu_missing();
+  return false;
+}
+
+static void can_imu_task() {
+  const CanSensors& sensors = can_sensors();
+  faults.imu_samples_lost = sensors.imu_lost() + sensors.imu_bad();
+  const std::optional<CanImuSample> sample = can_sensors().take_imu();
+  if (!sample) return flight().on_imu_missing();
+  if (!is_usable(*sample)) return;
+  constexpr float kMps2_per_step = 16.0f * config::kGravity_mps2 / 32768.0f;
+  constexpr float kRadps_per_step = 2000.0f / 32768.0f * 0.017453292520f;
+  const auto vector = [](const std::array<std::int16_t, 3>& steps, float of_one) {
+    return Vector3(of_one * steps[0], of_one * steps[1], of_one * steps[2]);
+  };
+  flight().on_imu({vector(sample->acceleration, kMps2_per_step),
+                   vector(sample->rate, kRadps_per_step), sensors.temperature_degC()});
 }
 
 __attribute__((noinline)) void imu_task() {
-  constexpr std::uint32_t kFrozen_samples = 50;
-  static constinit ImuBurst last;
-  static constinit std::uint32_t same = 0;
+  sensors_on_can = flight().parameters().is_on(Parameter::sensor_bus) && start_can(flight());
+  if (sensors_on_can) return can_imu_task();
   std::ignore = imu.setup_tick();
   if (!sample_ready) return flight().on_imu_missing();
   sample_ready = false;
   const ImuBurst burst = imu.burst();
-  same = burst == last ? same + 1 : 0;
-  last = burst;
-  if (same == kFrozen_samples) ++faults.imu_frozen;
-  flight().set_imu_frozen(same >= kFrozen_samples);
-  if (burst.rate_saturated()) {
-    ++faults.imu_saturated;
-    return flight().on_imu_missing();
-  }
+  if (!is_usable(burst)) return;
   const ImuReading r = burst.decode();
   flight().on_imu({mounted(r.acceleration_mps2, config::kImuMounting),
                    mounted(r.rate_radps, config::kImuMounting), r.temperature_degC});
@@ -154,8 +184,20 @@ __attribute__((noinline)) void attitude_task() {
   flight().attitude_step();
 }
 
+static void can_sensor_task() {
+  CanSensors& sensors = can_sensors();
+  if (const auto pressure_Pa = sensors.take_pressure_Pa()) flight().on_pressure(*pressure_Pa);
+  if (const auto field_uT = sensors.take_field_uT()) {
+    flight().on_field({(*field_uT)[0], (*field_uT)[1], (*field_uT)[2]});
+  }
+  if (const auto voltage_V = sensors.voltage_V(hal::now_us())) flight().on_battery(*voltage_V);
+  faults.baro_failures = sensors.air_bad();
+  faults.mag_failures = sensors.field_bad();
+}
+
 // What came since the last time goes to the filters, then the sensors are asked anew.
 __attribute__((noinline)) void sensor_task() {
+  if (sensors_on_can) return can_sensor_task();
   BaroSample pressure;
   MagSample field;
   barometer.step();
@@ -168,26 +210,13 @@ __attribute__((noinline)) void sensor_task() {
   faults.sensor_reconfigured = barometer.restarts() + magnetometer.reconfigured();
 }
 
-static GpsSolution solution_of(const GpsFix& fix) {
-  const auto velocity_mps = [](std::int32_t cmps) { return 0.01f * static_cast<float>(cmps); };
-  const auto metres = [](std::uint32_t mm) { return 1e-3f * static_cast<float>(mm); };
-  GpsSolution out;
-  out.latitude_e7_deg = fix.latitude_e7_deg;
-  out.longitude_e7_deg = fix.longitude_e7_deg;
-  out.height_mm = fix.height_mm;
-  out.v_W_mps = {velocity_mps(fix.v_north_cmps), velocity_mps(fix.v_east_cmps),
-                 velocity_mps(fix.v_down_cmps)};
-  out.level_accuracy_m = metres(fix.level_accuracy_mm);
-  out.down_accuracy_m = metres(fix.down_accuracy_mm);
-  out.speed_accuracy_mps = 0.01f * static_cast<float>(fix.speed_accuracy_cmps);
-  out.fix_type = fix.fix_type;
-  out.satellites = fix.satellites;
-  out.within_limits = fix.usable();
-  out.age_s = config::kGpsLatency_s + 1e-6f * static_cast<float>(fix.age_us(hal::now_us()));
-  return out;
+static void can_gps_task() {
+  if (const auto fix = can_sensors().take_fix()) flight().on_gps(solution_of(*fix));
+  faults.gps_bad_frames = can_sensors().fix_bad();
 }
 
 __attribute__((noinline)) void gps_task() {
+  if (sensors_on_can) return can_gps_task();
   std::array<std::uint8_t, 64> bytes;
   const std::uint32_t now_us = hal::now_us();
   const std::size_t n = hal::gps_uart.read(bytes);
@@ -213,7 +242,7 @@ static std::uint32_t uptime_ms() {
 }
 
 __attribute__((noinline)) void esc_task(std::uint32_t tick) {
-  if (serve_escs(flight(), faults, tick, uptime_ms() / 1000u)) {
+  if (serve_escs(flight(), faults, tick)) {
     TickTimes::keep_worst(times.setpoint_us, hal::now_us() - data_ready_us);
   }
 }
@@ -254,6 +283,7 @@ namespace {
 // Runs what is due in this tick. The attitude task comes before the set-points that use it.
 std::uint8_t run_tick(std::uint32_t tick, std::uint32_t now_us) {
   std::uint8_t ran = kImu;
+  can_tick(flight(), tick, now_us, uptime_ms() / 1000u);
   imu_task();
   if (schedule::attitude(tick)) {
     attitude_task();
@@ -323,27 +353,6 @@ void show_state() {
       show_state();
     }
   }
-}
-
-const char* boot_text() {
-  const hal::ResetCause cause = hal::take_reset_cause();
-  if (fw_fault_record.magic == FaultRecord::kMagic) {
-    fw_fault_record.magic = ~FaultRecord::kMagic;  // told once; the registers stay
-    return "boot after a fault, see fw_fault_record";
-  }
-  switch (cause) {
-    case hal::ResetCause::power:
-      return "boot: power";
-    case hal::ResetCause::pin:
-      return "boot: reset pin";
-    case hal::ResetCause::software:
-      return "boot: software reset";
-    case hal::ResetCause::watchdog:
-      return "boot: watchdog";
-    case hal::ResetCause::low_power:
-      return "boot: low-power reset";
-  }
-  return "boot";
 }
 
 void start_leds() {

@@ -9,6 +9,6 @@ namespace fw {
 
 // Hands on what the ESCs told since the last time, then does what is due in this tick. True: set-points
 // went out.
-bool serve_escs(Flight& flight, Faults& faults, std::uint32_t tick, std::uint32_t uptime_s);
+bool serve_escs(Flight& flight, Faults& faults, std::uint32_t tick);
 
 }  // namespace fw

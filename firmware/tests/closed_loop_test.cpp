@@ -1,6 +1,8 @@
 // The whole flight logic around a rigid body of other hands (vehicle_model.hpp).
 #include <gtest/gtest.h>
 
+#include <vector>
+
 #include "base/near.hpp"
 #include "firmware/config/vehicle.hpp"
 #include "firmware/tests/vehicle_model.hpp"
@@ -229,12 +231,30 @@ TEST(Flight, CutsTheMotorsWhenTheImuFreezes) {
 TEST(Flight, CutsTheMotorsWhenTippedOver) {
   Hovering hover({});
   hover.vehicle.esc_on_[1] = false;
+  std::vector<double> tilt_rad;
   for (int i = 0; i < 3000 && hover.flight.state() != FlightState::disarmed; ++i) {
     hover.vehicle.step(hover.flight);
     hover.flight.on_esc_answered(1);  // it answers, but its motor has stopped
+    tilt_rad.push_back(hover.vehicle.tilt_rad());
   }
   EXPECT_EQ(hover.flight.state(), FlightState::disarmed);
   EXPECT_EQ(hover.flight.last_reason(), Reason::tipped_over);
+  // 60 degrees lie 100 ms back: steps of 5 ms of which the first counts, 2 ms of the IMU, and the filter.
+  ASSERT_GT(tilt_rad.size(), 120u);
+  EXPECT_LT(*(tilt_rad.end() - 120), M_PI / 3.0);
+  EXPECT_GT(*(tilt_rad.end() - 90), M_PI / 3.0);
+}
+
+TEST(Flight, DoesNotArmBeforeItsFiltersHaveConverged) {
+  Flight flight;
+  VehicleModel vehicle({});
+  vehicle.run(flight, 3.0);
+  ASSERT_EQ(flight.ready_to_arm(), Reason::none) << text_of(flight.ready_to_arm());
+  flight.parameters().set(Parameter::est_start_scale, 0.6f);
+  vehicle.run(flight, 0.5);
+  EXPECT_EQ(flight.arm(), Reason::estimate_not_converged);
+  vehicle.run(flight, 20.0);
+  EXPECT_EQ(flight.arm(), Reason::none) << text_of(flight.ready_to_arm());
 }
 
 TEST(Reference, ReachesAHeightWithinItsSpeedAndWithoutOvershoot) {

@@ -104,7 +104,12 @@ struct Rig {
     for (const auto& frame : host::frames_of(header, Message::kType.signature, payload.bytes())) {
       if (n++ != drop) can.coming.push_back(to_firmware(frame));
     }
-    escs.tick();
+    deliver();
+  }
+  void deliver() {
+    for (hal::CanFrame frame; can.read(frame);) {
+      if (!escs.on_frame(frame)) node.on_frame(frame);
+    }
   }
   // What the host makes of all that was sent.
   template <typename Message>
@@ -223,7 +228,7 @@ TEST(EscCan, AFrameThatComesTwiceIsPassedOver) {
        host::frames_of(header, host::EscStatus::kType.signature, payload.bytes())) {
     for (int i = 0; i < 2; ++i) rig.can.coming.push_back(to_firmware(frame));
   }
-  rig.escs.tick();
+  rig.deliver();
   EXPECT_TRUE(rig.escs.take_answered(3));
 }
 

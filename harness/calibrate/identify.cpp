@@ -6,6 +6,9 @@
 namespace whirl::calibrate {
 namespace {
 
+using regression::Column;
+using regression::Problem;
+
 template <typename T>
 std::vector<double> ones(const std::vector<T>& points) {
   return std::vector<double>(points.size(), 1.0);

@@ -8,9 +8,12 @@
 //   Source   [Bangura 2017, 3.3.2 current sense, 3.4 motor and static maps]
 #pragma once
 #include "harness/calibrate/data.hpp"
-#include "harness/calibrate/regression.hpp"
+#include "harness/regression/regression.hpp"
 
 namespace whirl::calibrate {
+
+using regression::Coefficient;
+using regression::Fit;
 
 // meter = gain (told - offset); the offset is that at rest, where the image finds its own zero.
 struct SenseFit {

@@ -7,6 +7,8 @@
 namespace whirl::calibrate {
 namespace {
 
+using regression::Problem;
+
 constexpr double kShortest_duty = 0.02;
 constexpr std::size_t kWindow = 25;  // samples over which the momentum's change is taken
 

@@ -6,6 +6,8 @@
 namespace whirl::calibrate {
 namespace {
 
+using regression::Problem;
+
 Error refuse(const std::string& what, const std::string& cure) {
   return {ErrorKind::bad_input, "fit of the rotor", what, cure};
 }

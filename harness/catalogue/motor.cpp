@@ -5,6 +5,7 @@
 
 #include "base/rpm.hpp"
 #include "harness/catalogue/amount.hpp"
+#include "harness/catalogue/motor_file.hpp"
 
 namespace whirl::catalogue {
 namespace {
@@ -27,6 +28,12 @@ double commutation_ohm(const lua::Table& t, const plant::MotorParams& m) {
 
 plant::MotorParams read_motor(const lua::Table& t, MissingKeys missing) {
   plant::MotorParams m;
+  if (t.has("file") && t.kind("file") == lua::Kind::text) {
+    const auto file = read_motor_file(t.sibling(t.text("file")));
+    if (file) m = file.value().params;
+    if (!file) t.refuse("file", file.error().message());
+    missing = MissingKeys::as_in_plant;
+  }
   const auto read = [&](const char* key, Dimension dimension, double& value, lua::Range range) {
     if (t.has(key)) {
       value = read_amount(t, key, dimension, value, range);

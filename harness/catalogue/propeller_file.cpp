@@ -105,6 +105,22 @@ void read_static(const lua::Table& t, plant::PropellerDescription& d) {
   }
 }
 
+// A row or more from a tunnel: one brings most of what rest does not tell (plant/validation/left_out.hpp).
+void read_flight(const lua::Table& t, plant::PropellerDescription& d) {
+  if (!t.has("flight")) return;
+  if (t.has("polars")) {
+    t.refuse("flight", "goes without polars",
+             "nothing is fitted on it beside polars; leave it out");
+  }
+  for (const lua::Table& s : t.tables("flight")) {
+    plant::FlightPoint p{radps_of(s.number("rpm", lua::above(0.0)))};
+    p.advance_ratio = s.number("J", lua::between(0.05, 2.0));
+    p.thrust_coefficient = s.number("CT", lua::above(0.0));
+    if (s.has("CP")) p.power_coefficient = s.number("CP", lua::above(0.0));
+    d.flight_points.push_back(p);
+  }
+}
+
 // What a fitted blade has in its traits already.
 void refuse_without_polars(const lua::Table& t) {
   for (const char* key : {"material", "induced_factor", "stall_delay"}) {
@@ -124,12 +140,14 @@ Named read_table(const lua::Table& t, const std::string& path) {
   d.place = path;
   std::ignore = t.choice("kind", {"propeller"});
   d.name = t.text("name");
+  d.make = t.text_or("make", "");
   d.blade_count = static_cast<int>(t.integer("blades", 1, 8));
   d.diameter_m = t.quantity("diameter", Dimension::length, lua::above(0.0));
   d.mass_kg = t.quantity("mass", Dimension::mass, lua::above(0.0));
   check_mass(t, d);
   read_stations(t, d);
   read_static(t, d);
+  read_flight(t, d);
   d.thickness_over_chord =
       t.number_or("thickness", d.thickness_over_chord, lua::between(0.02, 0.3));
   if (t.has("angles")) d.drawn = t.choice("angles", {"drawn", "read"}) == "drawn";

@@ -12,15 +12,19 @@ namespace whirl::catalogue {
 namespace {
 
 // Only what the plan has written goes to the board: the rest is the board's own.
-auto passing(const lua::Table& t, stand::StageParams& stage) {
-  return [&](const char* key, const char* name, double value) {
-    if (t.has(key)) stage[name] = value;
+auto passing(const lua::Table& t, stand::StageParams& stage, bool all = false) {
+  return [&t, &stage, all](const char* key, const char* name, double value) {
+    if (all || t.has(key)) stage[name] = value;
   };
 }
 
 void read_stage_motor(const lua::Table& t, stand::StageParams& stage) {
   const plant::MotorParams m = read_motor(t, MissingKeys::as_in_plant);
-  const auto pass = passing(t, stage);
+  if (t.has("file") && m.pole_pairs != plant::MotorParams{}.pole_pairs) {
+    t.refuse("file", "its pole pairs cannot differ on a stand",
+             "only a vehicle's motor has its own");
+  }
+  const auto pass = passing(t, stage, t.has("file"));
   pass("kv_rpm_per_V", "torque_constant", m.torque_constant_NmpA);
   pass("resistance", "resistance", m.resistance_ohm);
   pass("resistance_fitted_at", "resistance", m.resistance_ohm);
@@ -44,9 +48,23 @@ void read_stage_shunt(const lua::Table& t, stand::StageParams& stage) {
   pass("wander", "shunt.wander", s.wander_A);
 }
 
+std::string read_throttle(const lua::Table& t) {
+  return t.has("throttle") ? t.choice("throttle", {"i2c", "pwm", "can", "can_rpm"}) : "i2c";
+}
+
+void read_can(const lua::Table& t, stand::EscMasterParams& esc) {
+  const std::string throttle = read_throttle(t);
+  if (!throttle.starts_with("can")) return;
+  esc.can = static_cast<std::uint16_t>(t.integer_or("can", 1, 1, 2));
+  esc.rpm_command = throttle == "can_rpm";
+  if (esc.rpm_command && esc.mode != io::EscMode::rpm) {
+    t.refuse("throttle", "can_rpm asks for speeds, and the stand's mode takes none",
+             "mode = \"rpm\"");
+  }
+}
+
 double read_pulse_rate(const lua::Table& t) {
-  const bool pulses = t.has("throttle") && t.choice("throttle", {"i2c", "pwm", "can"}) == "pwm";
-  if (!pulses) return 0.0;
+  if (read_throttle(t) != "pwm") return 0.0;
   return t.quantity_or("pulse_rate", Dimension::frequency, 50.0, lua::between(50.0, 400.0));
 }
 
@@ -62,9 +80,7 @@ Result<stand::StandParams> read_stand(const lua::Table& t, const std::string& pr
   if (t.has("mode")) p.esc.mode = read_esc_mode(t, "mode").on_wire;
   p.esc.address = static_cast<std::uint8_t>(t.integer_or("address", p.esc.address, 0x08, 0x77));
   p.esc.pulse_rate_Hz = read_pulse_rate(t);
-  if (t.has("throttle") && t.choice("throttle", {"i2c", "pwm", "can"}) == "can") {
-    p.esc.can = static_cast<std::uint16_t>(t.integer_or("can", 1, 1, 2));
-  }
+  read_can(t, p.esc);
   p.esc.i2c = static_cast<std::uint16_t>(t.integer_or("i2c", p.esc.i2c, 1, 3));
   p.esc.serial = static_cast<std::uint16_t>(t.integer_or("serial", p.esc.serial, 1, 8));
   if (const auto good = t.finish(); !good) return good.error();

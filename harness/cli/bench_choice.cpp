@@ -53,6 +53,47 @@ Result<Done> check_links(const plan::Plan& plan, const BoardDescription& board,
   return Done{};
 }
 
+bool serial_joins(const BoardDevice& device, const bench::BenchDescription& bench) {
+  return std::any_of(bench.serials.begin(), bench.serials.end(), [&](const auto& link) {
+    const std::string number = std::to_string(link.uart);
+    return device.bus == "usart" + number || device.bus == "uart" + number;
+  });
+}
+
+// Of a flight controller's board: what hangs on a bus that the bench joins is played by it; memories are the board's
+// own; on a receiver that nobody plays nothing is sent.
+Result<Done> check_played(const BoardDevice& device, const BoardDescription& board,
+                          const bench::BenchDescription& bench) {
+  for (const char* own : {"sd_card", "eeprom_24xx", "cppm", "sbus"}) {
+    if (device.type == own) return Done{};
+  }
+  const bool played =
+      std::any_of(bench.cans.begin(), bench.cans.end(),
+                  [&](const auto& l) { return device.bus == "can" + std::to_string(l.bus); }) ||
+      (device.type == "mavlink_link" && serial_joins(device, bench));
+  if (played) return Done{};
+  const bool on_can = device.bus.starts_with("can");
+  return refused(bench.file,
+                 "nothing plays " + device.name + ", a " + device.type + " on " + device.bus +
+                     " of " + board.name,
+                 on_can ? "links = { { bus = \"" + device.bus + "\", interface = \"can0\" } }"
+                 : device.type == "mavlink_link"
+                     ? "links = { { bus = \"" + device.bus + "\", path = \"/dev/ttyUSB0\" } }"
+                     : "a board whose sensors and ESCs are nodes of CAN: px4fmu_v1_all_can");
+}
+
+Result<Done> check_flight_links(const BoardDescription& board,
+                                const bench::BenchDescription& bench) {
+  for (const BoardDevice& device : board.devices) {
+    if (const auto played = check_played(device, board, bench); !played) return played;
+  }
+  if (!bench.safety.limits.empty()) {
+    return refused(bench.file, "limits: of a flight controller's bench nothing is measured",
+                   "leave them out: its vehicle is this host's, and nothing turns");
+  }
+  return Done{};
+}
+
 }  // namespace
 
 Result<bench::BenchDescription> bench_named(const std::string& name, const char* command,
@@ -86,10 +127,7 @@ Result<Done> check_bench_options(const RunOptions& options) {
 Result<bench::BenchDescription> bench_for(const plan::Plan& plan, const std::vector<Node>& nodes,
                                           const RunOptions& options, const std::string& root) {
   if (const auto good = check_bench_options(options); !good) return good.error();
-  if (!plan.stand || nodes.size() != 1) {
-    return refused(plan.place, "a bench is a thrust stand with one board",
-                   "a vehicle's sensors are played by the pod, which no bench has yet");
-  }
+  if (nodes.size() != 1) return refused(plan.place, "a bench has one board");
   const std::string wanted = options.target.substr(kPrefix.size());
   const auto file =
       find_file(wanted, {plan.file, "--target"}, {root + "/test_plans/benches"}, ".lua");
@@ -101,12 +139,15 @@ Result<bench::BenchDescription> bench_for(const plan::Plan& plan, const std::vec
     return refused(plan.place, "the plan is for " + board.name + ", and on bench " +
                                    bench.value().name + " there is " + bench.value().board);
   }
-  if (const auto joined = check_links(plan, board, bench.value(), root); !joined)
-    return joined.error();
+  const auto joined = plan.stand ? check_links(plan, board, bench.value(), root)
+                                 : check_flight_links(board, bench.value());
+  if (!joined) return joined.error();
   if (options.arm != bench.value().safety.phrase) {
     return refused(bench.value().file,
-                   options.arm.empty() ? "a rotor will turn: nobody has said that all is clear"
-                                       : "'" + options.arm + "' is not the bench's phrase",
+                   options.arm.empty()
+                       ? std::string(plan.stand ? "a rotor will turn" : "a vehicle will be armed") +
+                             ": nobody has said that all is clear"
+                       : "'" + options.arm + "' is not the bench's phrase",
                    "look, then add --arm \"" + bench.value().safety.phrase + "\"");
   }
   return bench;

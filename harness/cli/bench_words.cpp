@@ -40,7 +40,8 @@ void BenchWords::add_stand_in(CLI::App& app) {
   stand_in_ = app.add_subcommand(
       "standin", "a virtual board as if it were metal: its lines on this host, in real time");
   stand_in_->add_option("board", standing_.board, "of test_plans/boards, or a file (esc32v2)");
-  stand_in_->add_option("--image", standing_.image, "of build/firmware, or an ELF (esc)");
+  stand_in_->add_option("--image", standing_.image,
+                        "of build/firmware, or an ELF (esc; of a board that flies: flight)");
   stand_in_->add_option("--stand", standing_.stand, "the stand's table, as a plan writes it");
   stand_in_->add_option("--pace", standing_.pace, "of the host's time (1)")
       ->check(CLI::Range(0.001, 10.0));

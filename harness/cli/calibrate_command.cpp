@@ -89,10 +89,14 @@ Result<Calibration> again(const std::string& data_path, const calibrate::Setup& 
 }  // namespace
 
 int calibrate_esc_command(const CalibrateOptions& options, const Composition& composition) {
-  const auto file = catalogue::read_calibration(options.file);
+  auto file = catalogue::read_calibration(options.file);
   if (!file) return complain(file.error());
   const std::string name = fs::path(options.file).stem();
-  const fs::path folder = fs::path(composition.results) / "calibrations" / name;
+  fs::path folder = fs::path(composition.results) / "calibrations" / name;
+  if (options.seed) {
+    file.value().setup.seed = *options.seed;
+    folder /= "seed_" + std::to_string(*options.seed);
+  }
   std::error_code status;
   fs::create_directories(folder, status);
   const std::string data = (folder / "data.txt").string();

@@ -7,6 +7,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "base/result.hpp"
 #include "harness/catalogue/board_file.hpp"
@@ -18,6 +19,12 @@
 #include "harness/world/world.hpp"
 
 namespace whirl::cli {
+
+struct FarBoard {  // in the place of a device of this one
+  std::size_t node;
+  int motor;  // of that device; 0: none
+  const BoardDescription* board;
+};
 
 struct Setup {  // of a run; of one board of it, where a target is made
   const plan::Plan& plan;
@@ -33,6 +40,10 @@ struct Setup {  // of a run; of one board of it, where a target is made
   const bench::BenchDescription* bench = nullptr;  // null: the virtual board
   std::string copper = {};                         // a capture; empty: the board tells of its buses
   double copper_rate_Hz = 0.0;
+  std::vector<std::string> flashed = {};  // paths of ELF files beside the image
+  std::vector<WireEnd> wires = {};        // to other boards
+  std::vector<FarBoard> far = {};         // that this one leads
+  int motor = 0;  // of the vehicle: which one this board turns, in a device's place; 0: none
 };
 
 struct Composition {

@@ -24,6 +24,7 @@ RunOptions options_of(const Job& job) {
   options.settings = job.settings;
   options.keep = job.keep;
   options.twice = job.twice;
+  options.calibrations = job.calibrations;
   options.out = job.results;
   return options;
 }

@@ -52,7 +52,8 @@ void keep_to(int core) {
 }
 
 Job job_of(const PlanChoice& plan, const RunOptions& options, const std::string& results) {
-  return {plan.file, plan.name, plan.seed, options.settings, results, options.keep, options.twice};
+  return {plan.file, plan.name,    plan.seed,     options.settings,
+          results,   options.keep, options.twice, options.calibrations};
 }
 
 // In the child: nothing but the other program.

@@ -21,6 +21,8 @@ struct RunOptions {
   bool twice = false;
   bool json = false;
   std::string out;  // where results go; empty: results/ of the house
+  std::string
+      calibrations;  // a folder of `whirl calibrate esc --seed`: each seed's own; empty: the plans'
   std::string tag;
   std::string only;    // the plan of this name
   std::string target;  // "bench/NAME"; empty: the virtual board

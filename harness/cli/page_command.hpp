@@ -8,19 +8,19 @@
 namespace whirl::cli {
 
 struct SweepOptions {
-  std::string file;   // a vehicle or a propeller
+  std::string file;   // a propeller, motor, stand or vehicle
   std::string speed;  // "4500 rpm"; empty: three quarters of the top
   std::string top_speed = "6000 rpm";
   std::string voltage;                // of the bus; empty: the full pack
-  std::vector<std::string> measured;  // of a propeller: files to lay over
+  std::vector<std::string> measured;  // of all but a vehicle: files to lay over
 };
 int sweep_command(const SweepOptions& options, const Composition& composition);
 
-// A propeller against files of its own measured points: exit code 1 if its flight is off by more than nine in
-// ten left-out propellers are (CT 12 %, CP 14 %).
-int validate_propeller_command(const std::string& propeller,
-                               const std::vector<std::string>& measured,
-                               const Composition& composition);
+// A propeller, motor or stand against files of its own measured points: exit code 1 if its flight is off by more than
+// nine in ten left-out propellers are (CT 12 %, CP 14 %); if a motor's speed or constants are
+// (motor_sweep.hpp), or a stand's speed, current, thrust or torque (stand_sweep.hpp).
+int validate_file_command(const std::string& file, const std::vector<std::string>& measured,
+                          const Composition& composition);
 
 // Exit code 1 if a figure is beyond its limit.
 int validate_command(const Composition& composition);

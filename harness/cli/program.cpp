@@ -123,16 +123,21 @@ CLI::App* add_parity(CLI::App& app, ParityOptions& options) {
 
 CLI::App* add_sweep(CLI::App& app, SweepOptions& options) {
   auto* sweeps = app.add_subcommand(
-      "sweep", "thrust, torque, power and current of a propeller or vehicle file");
-  sweeps->add_option("file", options.file, "a propeller or a vehicle (Lua)")->required();
+      "sweep", "thrust, torque, power and current of a propeller, motor, stand or vehicle file");
+  sweeps
+      ->add_option("file", options.file,
+                   "a propeller, a motor, a stand (a calibration's file) or a vehicle (Lua)")
+      ->required();
   sweeps->add_option("--speed", options.speed,
                      "of the sweeps over inflow and advance: \"4500 rpm\"");
   sweeps->add_option("--top-speed", options.top_speed,
                      "end of the static sweep (default 6000 rpm)");
   sweeps->add_option("--voltage", options.voltage,
-                     "of the bus (default: the full pack): \"16.4 V\"");
-  sweeps->add_option("--measured", options.measured,
-                     "measured points of a propeller to lay over: columns rpm J CT CP");
+                     "of the bus (default: the full pack; a motor alone: 11.1 V): \"16.4 V\"");
+  sweeps->add_option(
+      "--measured", options.measured,
+      "measured points to lay over: of a propeller columns rpm J CT CP, of a motor or "
+      "stand V rpm A, and Nm N duty prop");
   return sweeps;
 }
 
@@ -149,7 +154,7 @@ struct Calibrates {
   CLI::App *all, *bound;
 };
 
-Calibrates add_calibrate(CLI::App& app, CalibrateOptions& options) {
+Calibrates add_calibrate(CLI::App& app, CalibrateOptions& options, std::string& seed) {
   auto* calibrates = app.add_subcommand("calibrate", "bench procedures that find constants");
   calibrates->require_subcommand(1);
   auto* esc = calibrates->add_subcommand(
@@ -158,6 +163,8 @@ Calibrates add_calibrate(CLI::App& app, CalibrateOptions& options) {
       ->required();
   esc->add_option("--write", options.write, "the constants as a file that plans include");
   esc->add_option("--data", options.data, "fit this data.txt of an earlier run again");
+  esc->add_option("--seed", seed, "of another copy of the hardware, into a folder of its own")
+      ->check(seed_complaint);
   auto* bound = calibrates->add_subcommand(
       "bound", "which inflow that ESC can tell from power at all, by its parts' stated errors");
   bound->add_option("file", options.file, "what stands there (test_plans/calibrations/*.lua)")
@@ -173,6 +180,17 @@ CLI::App* add_fuzz(CLI::App& app, FuzzOptions& options) {
   fuzz->add_option("--seeds", options.seeds, "so many of each");
   fuzz->add_option("--first", options.first, "the first seed (default 0)");
   return fuzz;
+}
+
+int run_calibrate(const Calibrates& calibrates, CalibrateOptions calibration, const RunCommand& run,
+                  const Composition& composition) {
+  if (*calibrates.bound) return inflow_bound_command(calibration.file, composition);
+  calibration.seed = run.options.seed;
+  calibration.command = "whirl calibrate esc " + calibration.file +
+                        (run.seed.empty() ? "" : " --seed " + run.seed) +
+                        (calibration.write.empty() ? "" : " --write " + calibration.write) +
+                        (calibration.data.empty() ? "" : " --data " + calibration.data);
+  return calibrate_esc_command(calibration, composition);
 }
 
 int run_chosen(int argc, char** argv, Composition composition) {
@@ -205,13 +223,13 @@ int run_chosen(int argc, char** argv, Composition composition) {
   validate->add_flag("--timing", timing.wanted,
                      "instead: what instructions cost on the virtual board");
   std::vector<std::string> validated;
-  validate->add_option(
-      "file", validated,
-      "a propeller and files of its measured points, judged; with --timing: lines of "
-      "a timing image on a real board");
+  validate->add_option("file", validated,
+                       "a propeller, motor or stand and files of its measured points, judged; with "
+                       "--timing: lines of "
+                       "a timing image on a real board");
 
   CalibrateOptions calibration;
-  const Calibrates calibrates = add_calibrate(app, calibration);
+  const Calibrates calibrates = add_calibrate(app, calibration, run.seed);
 
   const BenchWords benches(app);
   DecodeOptions decoding;
@@ -241,7 +259,7 @@ int run_chosen(int argc, char** argv, Composition composition) {
   if (*validate) {
     if (!timing.wanted && !validated.empty()) {
       const std::vector<std::string> points(validated.begin() + 1, validated.end());
-      return validate_propeller_command(validated.front(), points, composition);
+      return validate_file_command(validated.front(), points, composition);
     }
     if (validated.size() > 1) {
       return complain(Error{ErrorKind::bad_input, "--timing", "judges one file at a time", ""});
@@ -249,13 +267,7 @@ int run_chosen(int argc, char** argv, Composition composition) {
     if (!validated.empty()) timing.file = validated.front();
     return timing.wanted ? timing_command(timing, composition) : validate_command(composition);
   }
-  if (*calibrates.all) {
-    if (*calibrates.bound) return inflow_bound_command(calibration.file, composition);
-    calibration.command = "whirl calibrate esc " + calibration.file +
-                          (calibration.write.empty() ? "" : " --write " + calibration.write) +
-                          (calibration.data.empty() ? "" : " --data " + calibration.data);
-    return calibrate_esc_command(calibration, composition);
-  }
+  if (*calibrates.all) return run_calibrate(calibrates, calibration, run, composition);
   if (const auto code = benches.run(composition)) return *code;
   if (*decode) return decode_command(decoding, composition);
   if (*parity) return parity_command(pair);

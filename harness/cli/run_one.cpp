@@ -11,6 +11,7 @@
 #include "base/mishap.hpp"
 #include "base/output_file.hpp"
 #include "base/places.hpp"
+#include "harness/cli/board_wires.hpp"
 #include "harness/cli/find_file.hpp"
 #include "harness/cli/versions.hpp"
 #include "harness/plan/needs.hpp"
@@ -53,7 +54,8 @@ struct Prepared {
 
   BoardStart start_of(std::size_t node) const {
     const Setup& s = setups[node];
-    return {nodes[node].board, {.image = s.image, .seed = s.seed, .gdb_port = s.gdb_port}};
+    return {nodes[node].board,
+            {.image = s.image, .flashed = s.flashed, .seed = s.seed, .gdb_port = s.gdb_port}};
   }
 };
 
@@ -100,6 +102,7 @@ Result<Done> check_wires(const plan::Plan& plan, const std::vector<Node>& nodes)
 // One board's target stands for itself.
 Result<std::unique_ptr<Target>> make_target(const plan::Plan& plan,
                                             const std::vector<Setup>& setups,
+                                            std::vector<BoardWireLink> links,
                                             const Composition& composition) {
   std::vector<NodeSet::Entry> entries;
   for (const Setup& setup : setups) {
@@ -112,7 +115,8 @@ Result<std::unique_ptr<Target>> make_target(const plan::Plan& plan,
   for (const plan::PlanWire& wire : plan.wires) {
     wires.push_back({{wire.a.node, wire.a.uart}, {wire.b.node, wire.b.uart}});
   }
-  return std::unique_ptr<Target>(std::make_unique<NodeSet>(std::move(entries), std::move(wires)));
+  return std::unique_ptr<Target>(
+      std::make_unique<NodeSet>(std::move(entries), std::move(wires), std::move(links)));
 }
 
 // Who names the file under this key: the plan, or the command line in its place.
@@ -162,8 +166,14 @@ Result<Prepared> prepare(const plan::Plan& plan, const PlanChoice& choice,
                           choice.seed.value_or(plan.seed), port, settings, folder});
     all.setups.back().copper = options.copper;
     all.setups.back().copper_rate_Hz = options.copper_rate_Hz;
+    for (const std::string& cells : plan.nodes[i].flash) {
+      const auto file = find_file(cells, who("plan.flash"), image_folders(root), ".elf");
+      if (!file) return file.error();
+      all.setups.back().flashed.push_back(file.value());
+    }
   }
   if (const auto joined = check_wires(plan, all.nodes); !joined) return joined.error();
+  if (const auto led = check_board_wires(plan, all.nodes); !led) return led.error();
   if (!options.copper.empty() && plan.nodes.size() > 1) {
     return Error{ErrorKind::bad_input, plan.place,
                  "--copper is of one board, and this plan has several", ""};
@@ -174,10 +184,12 @@ Result<Prepared> prepare(const plan::Plan& plan, const PlanChoice& choice,
     all.bench = std::make_unique<bench::BenchDescription>(std::move(bench.value()));
     for (Setup& setup : all.setups) setup.bench = all.bench.get();
   }
+  auto links = join_boards(plan, all.nodes, all.setups);
+  if (!links) return links.error();
   auto world = composition.world(all.setups.front());
   if (!world) return world.error();
   all.world = std::move(world.value());
-  auto target = make_target(plan, all.setups, composition);
+  auto target = make_target(plan, all.setups, std::move(links.value()), composition);
   if (!target) return target.error();
   all.target = std::move(target.value());
   if (const auto met = plan::check_offers(plan, all.target->offers()); !met) return met.error();
@@ -191,6 +203,9 @@ void add_versions(const Prepared& prepared, const plan::Plan& plan, const std::s
     const Node& node = prepared.nodes[setup.node];
     add_files(record.report.versions,
               {{node.qualified("image"), setup.image}, {node.qualified("board"), node.board.file}});
+    for (const std::string& cells : setup.flashed) {
+      add_files(record.report.versions, {{node.qualified("flashed"), cells}});
+    }
     record.board_texts.emplace_back(node.name, board_text(prepared.start_of(setup.node)));
   }
   for (const Setting& setting : prepared.setups.front().settings) {
@@ -201,12 +216,28 @@ void add_versions(const Prepared& prepared, const plan::Plan& plan, const std::s
   add_host(record.report.versions, root);
 }
 
+// What each seed's own ESC was told by `whirl calibrate esc --seed`, in place of the constants that plans share.
+Result<plan::PlanFile::Instead> own_calibration(const RunOptions& options, std::uint64_t seed) {
+  namespace fs = std::filesystem;
+  if (options.calibrations.empty()) return plan::PlanFile::Instead{};
+  const fs::path folder = (fs::path(options.calibrations) / "").parent_path();
+  const std::string path = folder / ("seed_" + std::to_string(seed)) / "constants.lua";
+  const std::string name = folder.filename();
+  if (fs::is_regular_file(path)) return plan::PlanFile::Instead{name + "_calibration.lua", path};
+  return Error{ErrorKind::bad_input, path,
+               "is not there: the ESC of seed " + std::to_string(seed) + " was not calibrated",
+               "whirl calibrate esc test_plans/calibrations/" + name + ".lua --seed " +
+                   std::to_string(seed)};
+}
+
 // `folder`: where its messages are written; null: nowhere.
 Result<RunRecord> run_record(const PlanChoice& choice, const RunOptions& options,
                              const Composition& composition, const ProgressSink& progress,
                              const RunFolder* folder, const Company* company = nullptr) {
   // Loaded anew: no run sees what another left in its Lua.
-  auto file = plan::PlanFile::load(choice.file, {}, options.settings);
+  const auto own = own_calibration(options, choice.seed.value_or(1));
+  if (!own) return own.error();
+  auto file = plan::PlanFile::load(choice.file, {}, options.settings, own.value());
   if (!file) return file.error();
   const plan::Plan* plan = nullptr;
   for (const plan::Plan& p : file.value()->plans()) {
@@ -232,6 +263,9 @@ Result<RunRecord> run_record(const PlanChoice& choice, const RunOptions& options
               progress);
   record.messages = std::move(messages);
   add_versions(parts, *plan, composition.root, record);
+  if (!own.value().path.empty()) {
+    add_files(record.report.versions, {{own.value().file_name, own.value().path}});
+  }
   if (company != nullptr && folder != nullptr) {
     const auto left =
         company->leave(folder->path(), record.report, *plan, file.value()->sandbox().files_below());

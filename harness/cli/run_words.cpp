@@ -1,6 +1,6 @@
 #include "harness/cli/run_words.hpp"
 
-#include "base/units.hpp"
+#include "harness/cli/option_quantity.hpp"
 #include "harness/cli/seeds.hpp"
 
 namespace whirl::cli {
@@ -22,22 +22,6 @@ std::string setting_complaint(const std::string& text) {
 
 Error twice(const std::string& key, const std::string& other) {
   return {ErrorKind::bad_input, "", "--set " + key + ": is set by " + other + " already", ""};
-}
-
-// Of a quantity that must lie within bounds which the user sees.
-Result<Done> read_within(const std::string& text, Dimension dimension, const char* option,
-                         const char* low, const char* high, double& into) {
-  if (text.empty()) return Done{};
-  const auto value = parse_quantity_as(text, dimension, option);
-  if (!value) return value.error();
-  const double least = parse_quantity_as(low, dimension, "").value();
-  const double most = parse_quantity_as(high, dimension, "").value();
-  if (!(value.value() >= least && value.value() <= most)) {
-    return Error{ErrorKind::bad_input, option,
-                 text + " is outside " + std::string(low) + ".." + high, ""};
-  }
-  into = value.value();
-  return Done{};
 }
 
 }  // namespace
@@ -76,6 +60,10 @@ RunCommand::RunCommand(CLI::App& app) {
       ->check(setting_complaint)
       ->allow_extra_args(false);
   run->add_option("--out", options.out, "where runs and the history go (default: results)");
+  run->add_option(
+      "--calibrations", options.calibrations,
+      "results/calibrations/NAME: what `whirl calibrate esc --seed` found of each seed's ESC, in "
+      "place of NAME_calibration.lua");
   auto* target = run->add_option("--target", options.target,
                                  "bench/NAME: a physical board, as test_plans/benches/NAME.lua "
                                  "describes it (default: the virtual board)");
@@ -98,17 +86,22 @@ void RunCommand::add_limits(CLI::App& app) {
   limits_->add_option("--margin", margin_, "beyond the worst of them (default 30 %)");
   limits_->add_option("--jobs,-j", options.jobs, "so many plans at once")
       ->check(CLI::Range(1, 256));
+  limits_->add_option("--calibrations", options.calibrations, "as of whirl run");
   limits_->add_option("--out", options.out, "where the runs go (default: results)");
 }
 
 Result<Done> RunCommand::parse_texts() {
   if (!seed.empty()) options.seed = read_seed(seed).value();
   if (!seeds_.empty()) options.seeds = read_seeds(seeds_).value();
+  if (!options.calibrations.empty() && !options.seed && options.seeds.empty()) {
+    return Error{ErrorKind::bad_input, "--calibrations", "are of seeds: say which",
+                 "--seed or --seeds"};
+  }
   if (*limits_) options.limits_margin = 0.3;
   auto read =
       read_within(margin_, Dimension::ratio, "--margin", "1 %", "1000 %", options.limits_margin);
   if (!read) return read;
-  read = read_within(copper_rate_, Dimension::frequency, "--copper-rate", "1 kHz", "1 GHz",
+  read = read_within(copper_rate_, Dimension::frequency, "--copper-rate", "1 kHz", "1000 MHz",
                      options.copper_rate_Hz);
   return read ? read_settings() : read;
 }

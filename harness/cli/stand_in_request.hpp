@@ -5,7 +5,8 @@
 namespace whirl::cli {
 
 struct StandInRequest {
-  std::string board = "esc32v2", image = "esc";  // names or paths, as in a plan
+  std::string board = "esc32v2";  // a name or path, as in a plan
+  std::string image;              // likewise; empty: the board's usual one
   std::string stand = R"({ prop = "hk_10x4.5", battery = "4s_2200" })";  // the plan's table
   double pace = 1.0;
   std::string folder = "standin";   // of the links to its lines, and of a bench file for it

@@ -1,3 +1,4 @@
+#include <cstdarg>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -5,12 +6,17 @@
 #include "base/output_file.hpp"
 #include "base/text.hpp"
 #include "harness/catalogue/kind.hpp"
+#include "harness/catalogue/motor_file.hpp"
 #include "harness/catalogue/propeller_file.hpp"
+#include "harness/catalogue/stand_drive.hpp"
 #include "harness/catalogue/vehicle_file.hpp"
 #include "harness/cli/console.hpp"
 #include "harness/cli/find_plans.hpp"
+#include "harness/cli/option_quantity.hpp"
 #include "harness/cli/page_command.hpp"
 #include "harness/sweep/forward_sweep.hpp"
+#include "harness/sweep/motor_sweep.hpp"
+#include "harness/sweep/stand_sweep.hpp"
 #include "harness/sweep/sweep.hpp"
 #include "results/folder.hpp"
 
@@ -19,37 +25,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Option {
-  const char* name;
-  const std::string& text;
-  Dimension dimension;
-  const char *low, *high;  // beyond them the models have nothing to say, and do not settle
-  double& into;
-};
-
-Result<Done> read_option(const Option& option) {
-  if (option.text.empty()) return Done{};
-  const auto value = parse_quantity_as(option.text, option.dimension, option.name);
-  if (!value) return value.error();
-  const double low = parse_quantity_as(option.low, option.dimension, "").value();
-  const double high = parse_quantity_as(option.high, option.dimension, "").value();
-  if (!(value.value() >= low && value.value() <= high)) {
-    return Error{ErrorKind::bad_input, option.name,
-                 "'" + option.text + "' is outside " + option.low + " to " + option.high, ""};
-  }
-  option.into = value.value();
-  return Done{};
-}
-
 Result<sweep::Options> read_options(const SweepOptions& given) {
   sweep::Options options;
-  for (const Option& option :
-       {Option{"--speed", given.speed, Dimension::angular_rate, "10 rpm", "100000 rpm",
-               options.speed_radps},
-        Option{"--top-speed", given.top_speed, Dimension::angular_rate, "10 rpm", "100000 rpm",
-               options.top_speed_radps},
-        Option{"--voltage", given.voltage, Dimension::voltage, "0.5 V", "1000 V", options.bus_V}}) {
-    if (const auto done = read_option(option); !done) return done.error();
+  const auto speed = [](const std::string& text, const char* option, double& into) {
+    return read_within(text, Dimension::angular_rate, option, "10 rpm", "100000 rpm", into);
+  };
+  // Beyond these the models have nothing to say, and do not settle.
+  for (const auto& done : {speed(given.speed, "--speed", options.speed_radps),
+                           speed(given.top_speed, "--top-speed", options.top_speed_radps),
+                           read_within(given.voltage, Dimension::voltage, "--voltage", "0.5 V",
+                                       "1000 V", options.bus_V)}) {
+    if (!done) return done.error();
   }
   return options;
 }
@@ -57,48 +43,126 @@ Result<sweep::Options> read_options(const SweepOptions& given) {
 struct Swept {
   std::string name;
   std::vector<results::Chart> charts;
-  std::vector<std::string> lines;  // what was chosen and what is doubted
-  sweep::ForwardSweep forward;     // of a propeller; its charts are in `charts`
+  std::vector<std::string> lines;  // what was chosen or found, and what is doubted
+  const char *title, *head;        // of those lines, on the page
+  std::string verdict;             // empty: there was nothing to judge by
+  bool good = true;
 };
+
+template <typename File>
+Result<std::vector<File>> read_all(const std::vector<std::string>& paths,
+                                   Result<File> (*read)(const std::string&)) {
+  std::vector<File> files;
+  for (const std::string& path : paths) {
+    auto file = read(path);
+    if (!file) return file.error();
+    files.push_back(std::move(file.value()));
+  }
+  return files;
+}
+
+std::string said(const char* format, ...) __attribute__((format(printf, 1, 2)));
+std::string said(const char* format, ...) {
+  char text[300];
+  va_list list;
+  va_start(list, format);
+  std::vsnprintf(text, sizeof text, format, list);
+  va_end(list);
+  return text;
+}
+
+// Nine in ten left-out propellers are within this.
+void judge(const sweep::ForwardJudged& flight, Swept& swept) {
+  if (flight.points == 0) return;
+  constexpr double kMost_CT = 12.0, kMost_CP = 14.0;
+  swept.good = flight.CT_percent <= kMost_CT && flight.CP_percent <= kMost_CP;
+  swept.verdict = said(
+      "in flight CT %.1f %% (at most %g), CP %.1f %% (at most %g), %d points; inside the "
+      "90 %% band: %.0f %% and %.0f %%",
+      flight.CT_percent, kMost_CT, flight.CP_percent, kMost_CP, flight.points,
+      flight.CT_inside_percent, flight.CP_inside_percent);
+}
 
 Result<Swept> sweep_propeller(const std::string& path, const std::vector<std::string>& files,
                               const sweep::Options& options) {
   const auto read = catalogue::read_propeller_file(path);
   if (!read) return read.error();
-  std::vector<sweep::MeasuredFile> measured;
-  for (const std::string& file : files) {
-    auto points = sweep::read_measured(file);
-    if (!points) return points.error();
-    measured.push_back(std::move(points.value()));
-  }
+  const auto measured = read_all(files, sweep::read_measured);
+  if (!measured) return measured.error();
   const auto& blade = read.value().blade;
-  Swept swept{plant::name(*blade), {}, {}, {}};
+  Swept swept{plant::name(*blade),    {}, {}, "Fitted on its static rows, and how sure",
+              "trait, 90 % interval", {}};
   if (read.value().fit) swept.lines = sweep::fit_lines(*read.value().fit);
-  swept.forward = sweep::forward_sweep(
-      blade, read.value().fit, measured,
+  auto forward = sweep::forward_sweep(
+      blade, read.value().fit, measured.value(),
       options.speed_radps > 0.0 ? options.speed_radps : options.top_speed_radps);
-  swept.charts = std::move(swept.forward.charts);
+  judge(forward.flight, swept);
+  swept.charts = std::move(forward.charts);
   for (auto& chart : sweep::propeller_sweep(blade, options))
     swept.charts.push_back(std::move(chart));
   return swept;
 }
 
+Result<Swept> sweep_motor(const std::string& path, const std::vector<std::string>& files,
+                          const sweep::Options& options) {
+  const auto motor = catalogue::read_motor_file(path);
+  if (!motor) return motor.error();
+  const auto measured = read_all(files, sweep::read_drive_rows);
+  if (!measured) return measured.error();
+  constexpr double kThree_cells_V = 11.1;
+  auto result = sweep::motor_sweep(
+      motor.value().params, options.bus_V > 0.0 ? options.bus_V : kThree_cells_V, measured.value());
+  if (!result) return result.error();
+  sweep::MotorSweep& found = result.value();
+  Swept swept{motor.value().name,        std::move(found.charts),
+              std::move(found.lines),    "By the measured rows, and how sure",
+              "constant, 95 % interval", {}};
+  if (files.empty()) return swept;
+  swept.good = found.speed_percent <= sweep::kMost_speed_percent && found.wrong.empty();
+  swept.verdict = said("speed by voltage and current %.2f %% off (at most %g)", found.speed_percent,
+                       sweep::kMost_speed_percent);
+  for (const std::string& wrong : found.wrong) swept.verdict += "; the rows contradict " + wrong;
+  return swept;
+}
+
+Result<Swept> sweep_stand(const std::string& path, const std::vector<std::string>& files,
+                          const sweep::Options& options, const Composition& composition) {
+  const auto stand = catalogue::read_stand_drive(path, composition.root + "/test_plans/propellers");
+  if (!stand) return stand.error();
+  const auto measured = read_all(files, sweep::read_drive_rows);
+  if (!measured) return measured.error();
+  auto result = sweep::stand_sweep(stand.value(), options, measured.value());
+  if (!result) return result.error();
+  Swept swept{stand.value().name, std::move(result.value().charts), {}, "", "", {}};
+  for (const sweep::Allowed& allowed : sweep::kStand_allowed) {
+    const auto off = result.value().off_percent.find(allowed.what);
+    if (off == result.value().off_percent.end()) continue;
+    swept.good = swept.good && off->second <= allowed.percent;
+    swept.verdict += said("%s%s %.1f %% off (at most %g)", swept.verdict.empty() ? "" : ", ",
+                          allowed.what, off->second, allowed.percent);
+  }
+  return swept;
+}
+
 Result<Swept> sweep_file(const std::string& path, const std::vector<std::string>& measured,
-                         const sweep::Options& options) {
+                         const sweep::Options& options, const Composition& composition) {
   const auto kind = catalogue::read_kind(path);
   if (!kind) return kind.error();
   if (kind.value() == "propeller") return sweep_propeller(path, measured, options);
+  if (kind.value() == "motor") return sweep_motor(path, measured, options);
+  if (kind.value() == "calibration") return sweep_stand(path, measured, options, composition);
+  if (kind.value() != "vehicle") {
+    return Error{ErrorKind::bad_input, path, "is no propeller, motor, stand or vehicle",
+                 R"(kind = "propeller", "motor", "calibration" (a stand) or "vehicle")"};
+  }
   if (!measured.empty()) {
-    return Error{ErrorKind::bad_input, "--measured", path + " is no propeller",
-                 "lay measured points over a propeller file"};
+    return Error{ErrorKind::bad_input, "--measured", path + " is a vehicle",
+                 "lay measured points over its propeller, its motor or a stand"};
   }
-  if (kind.value() == "vehicle") {
-    const auto vehicle = catalogue::read_vehicle(path);
-    if (!vehicle) return vehicle.error();
-    return Swept{vehicle.value().name, sweep::vehicle_sweep(vehicle.value(), options), {}, {}};
-  }
-  return Error{ErrorKind::bad_input, path, "is neither a vehicle nor a propeller",
-               "kind = \"vehicle\" or \"propeller\""};
+  const auto vehicle = catalogue::read_vehicle(path);
+  if (!vehicle) return vehicle.error();
+  return Swept{
+      vehicle.value().name, sweep::vehicle_sweep(vehicle.value(), options), {}, "", "", {}};
 }
 
 // Ten rows of each curve are enough for a terminal; the page and the CSV have all.
@@ -157,8 +221,8 @@ Result<Done> put_out(const Swept& swept, const std::string& file, const Composit
   std::vector<results::ChartTable> tables;
   if (!swept.lines.empty()) {
     auto& table = tables.emplace_back();
-    table.title = "Fitted on its static rows, and how sure";
-    table.heads = {{"trait, 90 % interval", false}};
+    table.title = swept.title;
+    table.heads = {{swept.head, false}};
     for (const std::string& line : swept.lines) table.rows.push_back({line});
   }
   for (const auto& written :
@@ -180,37 +244,31 @@ Result<Done> put_out(const Swept& swept, const std::string& file, const Composit
 int sweep_command(const SweepOptions& given, const Composition& composition) {
   const auto options = read_options(given);
   if (!options) return complain(options.error());
-  const auto swept = sweep_file(given.file, given.measured, options.value());
+  const auto swept = sweep_file(given.file, given.measured, options.value(), composition);
   if (!swept) return complain(swept.error());
   const auto done = put_out(swept.value(), given.file, composition);
   return done ? 0 : complain(done.error());
 }
 
-int validate_propeller_command(const std::string& propeller,
-                               const std::vector<std::string>& measured,
-                               const Composition& composition) {
+int validate_file_command(const std::string& file, const std::vector<std::string>& measured,
+                          const Composition& composition) {
   if (measured.empty()) {
-    return complain(Error{ErrorKind::bad_input, propeller, "no measured points to judge it by",
-                          "name files with columns rpm J CT CP after it"});
+    return complain(Error{ErrorKind::bad_input, file, "no measured points to judge it by",
+                          "name files after it: of a propeller columns rpm J CT CP, of a motor or "
+                          "stand V rpm A"});
   }
-  const auto swept = sweep_propeller(propeller, measured, {});
+  const auto swept = sweep_file(file, measured, {}, composition);
   if (!swept) return complain(swept.error());
-  if (const auto done = put_out(swept.value(), propeller, composition); !done) {
+  if (const auto done = put_out(swept.value(), file, composition); !done) {
     return complain(done.error());
   }
-  const sweep::ForwardJudged& flight = swept.value().forward.flight;
-  if (flight.points == 0) {
-    return complain(Error{ErrorKind::bad_input, propeller, "no measured point with J above 0.1",
+  if (swept.value().verdict.empty()) {
+    return complain(Error{ErrorKind::bad_input, file, "no measured point with J above 0.1",
                           "a verdict needs points in flight"});
   }
-  constexpr double kMost_CT = 12.0, kMost_CP = 14.0;
-  const bool good = flight.CT_percent <= kMost_CT && flight.CP_percent <= kMost_CP;
-  std::printf(
-      "%s: in flight CT %.1f %% (at most %g), CP %.1f %% (at most %g), %d points; inside the "
-      "90 %% band: %.0f %% and %.0f %%\n",
-      good ? "predicted" : "NOT predicted", flight.CT_percent, kMost_CT, flight.CP_percent,
-      kMost_CP, flight.points, flight.CT_inside_percent, flight.CP_inside_percent);
-  return good ? 0 : 1;
+  std::printf("%s: %s\n", swept.value().good ? "predicted" : "NOT predicted",
+              swept.value().verdict.c_str());
+  return swept.value().good ? 0 : 1;
 }
 
 }  // namespace whirl::cli

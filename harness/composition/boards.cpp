@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <set>
 
+#include "base/check.hpp"
 #include "harness/catalogue/stand_table.hpp"
 #include "harness/catalogue/surroundings_table.hpp"
 #include "harness/catalogue/vehicle_file.hpp"
@@ -21,10 +22,12 @@
 #include "harness/target/bench/analyser_link.hpp"
 #include "harness/target/bench/bench_target.hpp"
 #include "harness/target/bench/bridge_link.hpp"
+#include "harness/target/bench/node_link.hpp"
 #include "harness/target/bench/serial_links.hpp"
 #include "harness/target/copper_target.hpp"
 #include "harness/target/virtual_board.hpp"
 #include "io_bridges/protocols/esc_codec.hpp"
+#include "io_bridges/rack/devices/table.hpp"
 
 namespace whirl {
 namespace {
@@ -106,6 +109,43 @@ Result<std::unique_ptr<World>> bench_world(const cli::Setup& setup,
   return std::unique_ptr<World>(std::move(world.value()));
 }
 
+const BoardDevice* power_stage(const BoardDescription& board) {
+  for (const BoardDevice& device : board.devices) {
+    if (device.type == "power_stage") return &device;
+  }
+  return nullptr;
+}
+
+// Boards in the place of motor controllers turn the vehicle's shafts: all of them, or none.
+Result<std::vector<flight::FarShaft>> far_shafts(const cli::Setup& setup,
+                                                 const flight::FlightParams& params) {
+  const auto wrong = [&](const std::string& what, const std::string& cure) {
+    return Error{ErrorKind::bad_input, setup.plan.place, what, cure};
+  };
+  std::vector<flight::FarShaft> shafts(params.vehicle.airframe.rotors.size());
+  std::size_t found = 0;
+  for (const cli::FarBoard& far : setup.far) {
+    if (far.motor == 0) continue;
+    const BoardDevice* stage = power_stage(*far.board);
+    if (stage == nullptr) {
+      return wrong(far.board->name + " turns no motor", "esc32v2 has a power stage");
+    }
+    shafts.at(static_cast<std::size_t>(far.motor) - 1) = {static_cast<std::uint8_t>(far.node),
+                                                          static_cast<std::uint16_t>(stage->motor)};
+    ++found;
+  }
+  if (found == 0) return std::vector<flight::FarShaft>{};
+  if (found != shafts.size()) {
+    return wrong(std::to_string(found) + " of the vehicle's " + std::to_string(shafts.size()) +
+                     " motors are turned by boards",
+                 "give all of them a board, or none");
+  }
+  if (params.place.start && params.place.start->motor_speed_radps != 0.0) {
+    return wrong("start: motors that boards turn begin at rest", "let it begin on the ground");
+  }
+  return shafts;
+}
+
 Result<std::unique_ptr<World>> make_world(const cli::Setup& setup) {
   if (setup.plan.stand) {
     const auto params = stand_of(setup);
@@ -119,6 +159,10 @@ Result<std::unique_ptr<World>> make_world(const cli::Setup& setup) {
   if (!around) return around.error();
   if (const auto joined = check_escs(setup, params.value()); !joined) return joined.error();
   params.value().ears = ears_of(setup.board);
+  if (setup.bench != nullptr) params.value().ears.receiver = false;  // nobody plays one
+  auto far = far_shafts(setup, params.value());
+  if (!far) return far.error();
+  params.value().far_shafts = std::move(far.value());
   return std::unique_ptr<World>(std::make_unique<flight::FlightWorld>(params.value(), setup.seed));
 }
 
@@ -133,20 +177,23 @@ bool enter_pressed() {
   return isatty(STDIN_FILENO) == 1 && poll(&terminal, 1, 0) == 1;
 }
 
-std::unique_ptr<bench::Link> can_link(const cli::Setup& setup, const bench::CanBusLink& link,
-                                      const bench::CanMaker& maker) {
-  bench::CanOptions options{.link = link, .heartbeat_ns = setup.bench->safety.heartbeat_ns};
-  if (!setup.folder.empty()) options.log = setup.folder + "/" + link.name + ".log";
-  return std::make_unique<bench::CanLink>(std::move(options), maker);
+std::string log_of(const cli::Setup& setup, const bench::CanBusLink& link) {
+  return setup.folder.empty() ? "" : setup.folder + "/" + link.name + ".log";
 }
 
-Result<std::unique_ptr<Target>> bench_target(const cli::Setup& setup,
-                                             const bench::BridgeMaker& bridge,
-                                             const bench::CanMaker& can) {
+// Each board of a run is another copy of the hardware.
+std::uint64_t seed_of(const cli::Setup& setup) {
+  return setup.seed + (static_cast<std::uint64_t>(setup.node) << 32);
+}
+
+using Links = std::vector<std::unique_ptr<bench::Link>>;
+
+// Of a thrust stand: what commands the ESC.
+Result<Done> add_masters(const cli::Setup& setup, const bench::BridgeMaker& bridge,
+                         const bench::CanMaker& can, Links& links) {
   const auto params = stand_of(setup);
   if (!params) return params.error();
   const bench::BenchDescription& bench = *setup.bench;
-  std::vector<std::unique_ptr<bench::Link>> links;
   for (const bench::BridgeLink& link : bench.bridges) {
     auto port = bridge(link);
     if (!port) return port.error();
@@ -159,7 +206,36 @@ Result<std::unique_ptr<Target>> bench_target(const cli::Setup& setup,
         std::move(port.value())));
   }
   for (const bench::CanBusLink& link : bench.cans) {
-    links.push_back(can_link(setup, link, can));
+    links.push_back(std::make_unique<bench::CanLink>(
+        bench::CanOptions{
+            .link = link, .heartbeat_ns = bench.safety.heartbeat_ns, .log = log_of(setup, link)},
+        can));
+  }
+  return Done{};
+}
+
+// Of a vehicle: its nodes, for the flight controller.
+void add_nodes(const cli::Setup& setup, const bench::CanMaker& can, Links& links) {
+  for (const bench::CanBusLink& link : setup.bench->cans) {
+    links.push_back(
+        std::make_unique<bench::NodeLink>(bench::NodeOptions{.link = link,
+                                                             .board = setup.board,
+                                                             .types = rack::device_types(),
+                                                             .seed = seed_of(setup),
+                                                             .log = log_of(setup, link)},
+                                          can));
+  }
+}
+
+Result<std::unique_ptr<Target>> bench_target(const cli::Setup& setup,
+                                             const bench::BridgeMaker& bridge,
+                                             const bench::CanMaker& can) {
+  const bench::BenchDescription& bench = *setup.bench;
+  Links links;
+  if (!setup.plan.stand) {
+    add_nodes(setup, can, links);
+  } else if (const auto added = add_masters(setup, bridge, can, links); !added) {
+    return added.error();
   }
   for (const bench::SerialLink& link : bench.serials) {
     links.push_back(std::make_unique<bench::BoardSerial>(link));
@@ -179,6 +255,27 @@ Result<std::unique_ptr<Target>> bench_target(const cli::Setup& setup,
       host_clock()));
 }
 
+// What this run's copy of the hardware changes on the board: a stand's stage and instruments, a vehicle's IMU
+// and clock, or the stage that turns one of the vehicle's shafts.
+Result<Done> set_copy(const cli::Setup& setup, BoardDescription& board) {
+  if (setup.plan.stand && setup.node == 0 && !brings_its_world(setup.board)) {
+    const auto params = stand_of(setup);
+    if (!params) return params.error();
+    return stand::set_parts(board, params.value());
+  }
+  const bool flies = setup.node == 0 && !setup.vehicle_file.empty();
+  if (!flies && setup.motor == 0) return Done{};
+  const auto params = vehicle_of(setup);
+  if (!params) return params.error();
+  if (flies) flight::set_parts(board, params.value());
+  if (setup.motor == 0) return Done{};
+  const BoardDevice* stage = power_stage(setup.board);
+  WHIRL_CHECK(stage != nullptr, setup.board.name);  // the world was made with it
+  const plant::MotorParams& motor =
+      params.value().vehicle.motor_of(static_cast<std::size_t>(setup.motor) - 1);
+  return stand::set_stage(board, stage->motor, stand::stage_of(motor, params.value().esc.shunt));
+}
+
 Result<std::unique_ptr<Target>> make_target(const cli::Setup& setup,
                                             const bench::BridgeMaker& bridge,
                                             const bench::CanMaker& can) {
@@ -186,21 +283,13 @@ Result<std::unique_ptr<Target>> make_target(const cli::Setup& setup,
   VirtualBoardOptions options;
   options.board = {setup.board,
                    {.image = setup.image,
-                    .seed = setup.seed,
+                    .flashed = setup.flashed,
+                    .wires = setup.wires,
+                    .seed = seed_of(setup),
                     .gdb_port = setup.gdb_port,
                     .folder = setup.folder,
                     .node = setup.plan.nodes[setup.node].name}};
-  if (setup.plan.stand && setup.node == 0 && !brings_its_world(setup.board)) {
-    const auto params = stand_of(setup);
-    if (!params) return params.error();
-    const auto set = stand::set_parts(options.board.board, params.value());
-    if (!set) return set.error();
-  }
-  if (!setup.vehicle_file.empty() && setup.node == 0) {
-    const auto params = vehicle_of(setup);
-    if (!params) return params.error();
-    flight::set_parts(options.board.board, params.value());
-  }
+  if (const auto set = set_copy(setup, options.board.board); !set) return set.error();
   options.any_qemu_version = std::getenv("WHIRL_ANY_QEMU") != nullptr;
   auto board = std::make_unique<VirtualBoard>(std::move(options));
   if (setup.copper.empty()) return std::unique_ptr<Target>(std::move(board));

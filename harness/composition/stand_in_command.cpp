@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <thread>
@@ -15,6 +16,8 @@
 #include "harness/cli/find_file.hpp"
 #include "harness/pacing/host_clock.hpp"
 #include "harness/stand/stand_world.hpp"
+#include "harness/standin/bare_board.hpp"
+#include "harness/standin/no_world.hpp"
 #include "harness/standin/stand_in.hpp"
 #include "harness/target/bench/can_link.hpp"
 #include "harness/target/virtual_board.hpp"
@@ -74,16 +77,69 @@ class PlayedBridge {
 };
 
 struct Parts {
-  BoardDescription board;
+  BoardDescription board;  // as the bench knows it
   std::string image;
-  stand::StandParams stand;
-  bool bridge = false;  // its I2C is played
-  int can_bus = 1;
+  bool flies = false;        // a flight controller: the bench plays its world
+  stand::StandParams stand;  // of an ESC
+  bool bridge = false;       // its I2C is played
+  std::uint16_t can_bus = 1, uart = 1;
 };
 
 bool has_type(const BoardDescription& board, const std::string& type) {
   return std::any_of(board.devices.begin(), board.devices.end(),
                      [&](const BoardDevice& device) { return device.type == type; });
+}
+
+// A bus or a line of the first device of that kind; 1 where there is none.
+std::uint16_t number_of(const BoardDescription& board, const std::string& type_end) {
+  for (const BoardDevice& device : board.devices) {
+    if (!device.type.ends_with(type_end)) continue;
+    return static_cast<std::uint16_t>(bus_number(device.bus).value_or(1));
+  }
+  return 1;
+}
+
+// Of its line there, as the board's file has it.
+long baud_of_line(const Parts& parts) {
+  for (const BoardDevice& device : bare_board(parts.board).devices) {
+    if (device.type != "serial" || bus_number(device.bus) != parts.uart) continue;
+    if (const auto baud = device.value("baud")) return std::lround(std::get<double>(*baud));
+  }
+  return 921'600;  // as the ESCs' boards have it
+}
+
+Result<Done> read_stand(const cli::StandInRequest& request, const std::string& root, Parts& parts) {
+  const auto table = lua::read_text("return " + request.stand, "--stand");
+  if (!table) return table.error();
+  auto stand = catalogue::read_stand(table.value(), root + "/test_plans/propellers");
+  if (!stand) return stand.error();
+  parts.stand = stand.value();
+  parts.stand.commands = false;
+  parts.bridge = request.bridge && has_type(parts.board, "i2c_master");
+  parts.can_bus = number_of(parts.board, "can_port");
+  parts.uart = parts.stand.esc.serial;
+  return Done{};
+}
+
+// What commands it must be there.
+Result<Done> check_wires(const cli::StandInRequest& request, const Parts& parts,
+                         const std::string& file) {
+  const auto refused = [&](const std::string& what, const std::string& cure) {
+    return Error{ErrorKind::bad_input, file, what, cure};
+  };
+  if (parts.flies) {
+    if (!request.can.empty()) return Done{};
+    return refused("is a flight controller's: its sensors and ESCs are played over CAN",
+                   "--can INTERFACE");
+  }
+  if (!has_type(parts.board, "i2c_master") && request.can.empty()) {
+    return refused("has no i2c_master: nothing commands it",
+                   "esc32v2; of a board with a can_port: --can INTERFACE");
+  }
+  if (!request.can.empty() && !has_type(parts.board, "can_port")) {
+    return refused("has no can_port: nothing joins its CAN to " + request.can, "without --can");
+  }
+  return Done{};
 }
 
 Result<Parts> read_parts(const cli::StandInRequest& request, const std::string& root) {
@@ -92,33 +148,28 @@ Result<Parts> read_parts(const cli::StandInRequest& request, const std::string& 
   if (!board) return board.error();
   auto described = read_board(board.value());
   if (!described) return described.error();
-  const auto image = cli::find_file(request.image, asker, image_folders(root), ".elf");
+  Parts parts;
+  parts.board = std::move(described.value());
+  parts.flies = has_type(parts.board, "mavlink_link") && has_type(parts.board, "esc_dronecan");
+  const std::string usual = parts.flies ? "flight" : "esc";
+  const auto image = cli::find_file(request.image.empty() ? usual : request.image, asker,
+                                    image_folders(root), ".elf");
   if (!image) return image.error();
-  const auto table = lua::read_text("return " + request.stand, "--stand");
-  if (!table) return table.error();
-  auto stand = catalogue::read_stand(table.value(), root + "/test_plans/propellers");
-  if (!stand) return stand.error();
-  if (!has_type(described.value(), "i2c_master") && request.can.empty()) {
-    return Error{ErrorKind::bad_input, board.value(), "has no i2c_master: nothing commands it",
-                 "esc32v2; of a board with a can_port: --can INTERFACE"};
+  parts.image = image.value();
+  if (parts.flies) {
+    parts.can_bus = number_of(parts.board, "_dronecan");
+    parts.uart = number_of(parts.board, "mavlink_link");
+  } else if (const auto read = read_stand(request, root, parts); !read) {
+    return read.error();
   }
-  if (!request.can.empty() && !has_type(described.value(), "can_port")) {
-    return Error{ErrorKind::bad_input, board.value(),
-                 "has no can_port: nothing joins its CAN to " + request.can, "without --can"};
-  }
-  stand.value().commands = false;
-  Parts parts{described.value(), image.value(), stand.value()};
-  parts.bridge = request.bridge && has_type(parts.board, "i2c_master");
-  for (const BoardDevice& device : parts.board.devices) {
-    if (device.type == "can_port") parts.can_bus = bus_number(device.bus).value_or(1);
+  if (const auto joined = check_wires(request, parts, board.value()); !joined) {
+    return joined.error();
   }
   return parts;
 }
 
 std::string bench_file(const cli::StandInRequest& request, const Parts& parts) {
   const std::string folder = std::filesystem::absolute(request.folder);
-  const std::string i2c = "i2c" + std::to_string(parts.stand.esc.i2c);
-  const std::string usart = "usart" + std::to_string(parts.stand.esc.serial);
   std::string text =
       "-- A stand-in at its own wires, as `whirl standin` left it: no metal turns.\n";
   text += "return {\n  bench = \"stand_in\", board = \"" + parts.board.name +
@@ -129,11 +180,17 @@ std::string bench_file(const cli::StandInRequest& request, const Parts& parts) {
             "\", interface = \"" + request.can + "\" },\n";
   }
   if (parts.bridge) {
-    text += "    { name = \"throttle\", bus = \"" + i2c + "\", bridge = \"mcp2221a\", serial = \"" +
-            request.serial + "\" },\n";
+    text += "    { name = \"throttle\", bus = \"i2c" + std::to_string(parts.stand.esc.i2c) +
+            "\", bridge = \"mcp2221a\", serial = \"" + request.serial + "\" },\n";
   }
-  text += "    { name = \"terminal\", bus = \"" + usart + "\", path = \"" + folder +
-          "/serial\", baud = \"921600 baud\" },\n  },\n";
+  text += "    { name = \"terminal\", bus = \"usart" + std::to_string(parts.uart) +
+          "\", path = \"" + folder + "/serial\", baud = \"" + std::to_string(baud_of_line(parts)) +
+          " baud\" },\n  },\n";
+  if (parts.flies) {
+    return text +
+           "  safety = { phrase = \"nothing turns\", longest = \"120 s\", heartbeat = \"1 s\" "
+           "},\n}\n";
+  }
   text +=
       "  instruments = { { name = \"cell\", path = \"" + folder + "/instruments\", readings = {\n";
   text +=
@@ -151,21 +208,23 @@ Result<StandInOptions> open_wires(const cli::StandInRequest& request, const Part
   std::filesystem::create_directories(request.folder, status);
   StandInOptions wires;
   wires.pace = request.pace;
-  wires.uart = parts.stand.esc.serial;
+  wires.uart = parts.uart;
   wires.i2c = parts.stand.esc.i2c;
   auto serial = io::PseudoTerminal::open(request.folder + "/serial");
   if (!serial) return serial.error();
   wires.serial.emplace(std::move(serial.value()));
-  auto instruments = io::PseudoTerminal::open(request.folder + "/instruments");
-  if (!instruments) return instruments.error();
-  wires.instruments.emplace(std::move(instruments.value()));
+  if (!parts.flies) {
+    auto instruments = io::PseudoTerminal::open(request.folder + "/instruments");
+    if (!instruments) return instruments.error();
+    wires.instruments.emplace(std::move(instruments.value()));
+    wires.told = {"thrust", "bus_voltage", "supply_current"};
+  }
   if (!request.can.empty()) {
     auto can = bench::socket_can_port({"bus", request.can});
     if (!can) return can.error();
     wires.can = std::move(can.value());
-    wires.can_bus = static_cast<std::uint16_t>(parts.can_bus);
+    wires.can_bus = parts.can_bus;
   }
-  wires.told = {"thrust", "bus_voltage", "supply_current"};
   const auto written = write_text(request.folder + "/bench.lua", bench_file(request, parts));
   if (!written) return written.error();
   return wires;
@@ -190,6 +249,11 @@ void say_lateness(const StandIn& stand_in, double pace) {
               static_cast<double>(late.slipped_ns) * 1e-9);
 }
 
+std::unique_ptr<World> world_of(const Parts& parts) {
+  if (parts.flies) return std::make_unique<NoWorld>();
+  return std::make_unique<stand::StandWorld>(parts.stand, 1);
+}
+
 }  // namespace
 
 int stand_in_command(const cli::StandInRequest& request, const std::string& root) {
@@ -197,12 +261,12 @@ int stand_in_command(const cli::StandInRequest& request, const std::string& root
   if (!parts) return cli::complain(parts.error());
   auto wires = open_wires(request, parts.value());
   if (!wires) return cli::complain(wires.error());
-  stand::StandWorld world(parts.value().stand, 1);
+  const auto world = world_of(parts.value());
   VirtualBoardOptions options;
-  options.board = {parts.value().board, {.image = parts.value().image, .seed = 1}};
+  options.board = {bare_board(parts.value().board), {.image = parts.value().image, .seed = 1}};
   VirtualBoard board(std::move(options));
   pacing::MonotonicClock clock;
-  StandIn stand_in(world, board, clock, std::move(wires.value()));
+  StandIn stand_in(*world, board, clock, std::move(wires.value()));
   PlayedBridge bridge(stand_in, request.serial);
   if (parts.value().bridge) {
     if (const auto plugged = bridge.plug_in(); !plugged) {
@@ -212,7 +276,7 @@ int stand_in_command(const cli::StandInRequest& request, const std::string& root
     }
   }
   std::printf(
-      "%s stands in; whirl run test_plans/bench --target bench/%s/bench.lua --arm "
+      "%s stands in; whirl run PLAN --target bench/%s/bench.lua --arm "
       "\"nothing turns\"\n",
       parts.value().board.name.c_str(), request.folder.c_str());
   std::fflush(stdout);

@@ -1,6 +1,7 @@
 // What a flight is made of. What is physics goes to the plant's params, what is belief or protocol to
 // the ESC's.
 #pragma once
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <string>
@@ -22,6 +23,12 @@ struct BoardEars {
   bool receiver = true;  // of radio control
 };
 
+// A motor controller that is a board of its own: the shaft that its power stage turns is the vehicle's.
+struct FarShaft {
+  std::uint8_t board = 0;   // of the run
+  std::uint16_t stage = 1;  // its power stage's number there
+};
+
 struct FlightParams {
   std::string name;
   plant::VehicleParams vehicle;
@@ -38,6 +45,7 @@ struct FlightParams {
   Eigen::Vector3d imu_place_m = Eigen::Vector3d::Zero(), imu_turn_rad = Eigen::Vector3d::Zero();
   double hse_error = 0.0;
   std::vector<DrawnPart> drawn;
+  std::vector<FarShaft> far_shafts;  // index: motor number - 1; empty: native controllers
 };
 
 }  // namespace whirl::flight

@@ -59,6 +59,7 @@ void FlightWorld::name_signals() {
   name_fence_signals();
   if (has_load_) name_load_signals();
   name_motor_signals();
+  if (far_) name_exchange_signals();
   name_telemetry_signals();
   name_estimate_signals();
   name_receiver_signals();
@@ -87,7 +88,7 @@ void FlightWorld::name_fence_signals() {
 
 void FlightWorld::name_motor_signals() {
   using D = Dimension;
-  for (std::size_t i = 0; i < controllers_.size(); ++i) {
+  for (std::size_t i = 0; i < airframe_.rotors.size(); ++i) {
     const std::string n = "_" + std::to_string(i + 1);
     const auto motor = [this, i]() -> const plant::MotorState& {
       return vehicle_.state().motors[i];
@@ -105,14 +106,28 @@ void FlightWorld::name_motor_signals() {
                [=] { return motor().flap_back_rad; });
     add_signal("flapping_left" + n, D::angle, "the disc's tilt: up on the right, down on the left",
                [=] { return motor().flap_left_rad; });
-    const MotorController& controller = *controllers_[i];
-    add_signal("esc_armed" + n, D::none, "",
-               [&controller] { return controller.armed() ? 1.0 : 0.0; });
-    for (MotorController::NamedValue& named : controller.signals()) {
-      add_signal(named.signal.name + n, named.signal.dimension, named.signal.about,
-                 std::move(named.value));
-    }
+    if (!far_) name_controller_signals(i);
   }
+}
+
+void FlightWorld::name_controller_signals(std::size_t motor) {
+  const std::string n = "_" + std::to_string(motor + 1);
+  const MotorController& controller = *controllers_[motor];
+  add_signal("esc_armed" + n, Dimension::none, "",
+             [&controller] { return controller.armed() ? 1.0 : 0.0; });
+  for (MotorController::NamedValue& named : controller.signals()) {
+    add_signal(named.signal.name + n, named.signal.dimension, named.signal.about,
+               std::move(named.value));
+  }
+}
+
+void FlightWorld::name_exchange_signals() {
+  add_signal("exchange_share", Dimension::ratio,
+             "of the pack's energy so far: lost or gained between it and the boards' power stages",
+             [this] { return far_->exchange_share(); });
+  add_signal("stage_gap_share", Dimension::ratio,
+             "of the pack's energy so far: what the power stages' own books do not name",
+             [this] { return far_->gap_share(); });
 }
 
 void FlightWorld::name_telemetry_signals() {

@@ -35,20 +35,20 @@ FlightWorld::FlightWorld(const FlightParams& params, plant::RotorSet rotors, std
     : place_(params.place),
       has_load_(params.vehicle.load.has_value()),
       ears_(params.ears),
-      vehicle_(params.vehicle, std::move(rotors), seed),
+      vehicle_(make_vehicle(params, std::move(rotors), seed)),
       airframe_(params.vehicle.airframe),
       obstacles_(params.vehicle.obstacles),
       seed_(seed),
       drawn_(params.drawn),
       capture_(params.capture, seed),
       drag_truth_(params.vehicle.airframe) {
-  const ControllerType& type = type_named(params.controller, types);
-  const int motors = static_cast<int>(params.vehicle.airframe.rotors.size());
-  for (int motor = 1; motor <= motors; ++motor) {
-    controllers_.push_back(type.make(params, seed, motor));
-    unbalance_m_.push_back(
-        params.vehicle.airframe.rotors[static_cast<std::size_t>(motor) - 1].unbalance_kgm /
-        params.vehicle.airframe.mass_kg);
+  for (const plant::RotorMount& mount : airframe_.rotors) {
+    unbalance_m_.push_back(mount.unbalance_kgm / airframe_.mass_kg);
+  }
+  if (remote_ != nullptr) {
+    far_.emplace(params.far_shafts, *remote_);
+  } else {
+    make_controllers(params, seed, types);
   }
   station_.on_frame([this](const io::MavlinkFrame& frame, std::int64_t at_ns) {
     estimates_.hear(frame, at_ns);
@@ -56,6 +56,24 @@ FlightWorld::FlightWorld(const FlightParams& params, plant::RotorSet rotors, std
   });
   if (place_.start) begin(*place_.start);
   name_signals();
+}
+
+plant::Vehicle FlightWorld::make_vehicle(const FlightParams& params, plant::RotorSet rotors,
+                                         std::uint64_t seed) {
+  const plant::VehicleParams& v = params.vehicle;
+  if (params.far_shafts.empty()) return {v, std::move(rotors), seed};
+  auto remote = std::make_unique<plant::RemotePowertrain>(
+      v.airframe.rotors.size(), v.battery, v.avionics_current_A, v.motor.inertia_kgm2);
+  remote_ = remote.get();
+  return {v, std::move(rotors), std::move(remote), seed};
+}
+
+void FlightWorld::make_controllers(const FlightParams& params, std::uint64_t seed,
+                                   const ControllerTypes& types) {
+  const ControllerType& type = type_named(params.controller, types);
+  for (std::size_t i = 0; i < airframe_.rotors.size(); ++i) {
+    controllers_.push_back(type.make(params, seed, static_cast<int>(i) + 1));
+  }
 }
 
 void FlightWorld::begin(const Start& start) {
@@ -82,10 +100,13 @@ void FlightWorld::on_messages(const io::Batch& happened) {
   io::Reader reader(happened.bytes());
   while (reader.next()) {
     const io::Header& header = reader.header();
-    if (header.kind == io::Kind::esc_setpoint) {
-      WHIRL_CHECK(header.port >= 1 && header.port <= controllers_.size(), header.port);
+    if (far_ && far_->hears(header)) {
+      far_->on_message(reader);
+    } else if (header.kind == io::Kind::esc_setpoint) {
+      WHIRL_CHECK(header.port >= 1 && header.port <= airframe_.rotors.size(), header.port);
       const auto setpoint = reader.as<io::EscSetpoint>();
       if (setpoint.valid != 0) {
+        if (far_) continue;  // its board has it from the wire
         controllers_[header.port - 1u]->write(setpoint.value);
       } else {
         ++setpoints_refused_;
@@ -109,7 +130,9 @@ void FlightWorld::move(std::int64_t t_ns) {
                      controllers_[i]->step(now_ns_, before.motors[i], before.bus_voltage_V));
   }
   carry(t_ns);
+  if (far_) far_->before_step();
   vehicle_.step(kStep_s);
+  if (far_) far_->after_step(vehicle_.state().energy);
   drag_truth_.step(vehicle_.state(), kStep_s);
 }
 
@@ -141,6 +164,7 @@ void FlightWorld::send(std::int64_t t_ns, io::Batch& sensed) {
     sensed.add(io::Kind::esc_state, static_cast<std::uint16_t>(i + 1), t_ns,
                controllers_[i]->status());
   }
+  if (far_) far_->send(t_ns, sensed);
   transmitter_.step(t_ns, sensed);
   const auto send = [&sensed](std::int64_t at_ns, std::span<const std::uint8_t> frame) {
     sensed.add(io::Kind::uart_frame, kRadioPort, at_ns, frame.data(),
@@ -322,6 +346,10 @@ Result<Done> FlightWorld::blow(const request::Wind& wind, std::int64_t now_ns) {
 
 Result<bool> FlightWorld::take_fault(const FaultSpec& fault) {
   if (fault.kind == kEsc_stopped) {
+    if (far_) {
+      return Error{ErrorKind::bad_input, "", "the controllers of this vehicle are boards",
+                   "a fault of that board: reset_pin, code_hangs; or of its wire"};
+    }
     const int motor = motor_of(fault), motors = static_cast<int>(controllers_.size());
     if (motor < 1 || motor > motors) {
       return Error{ErrorKind::bad_input, "", "esc_stopped needs one of the vehicle's motors",

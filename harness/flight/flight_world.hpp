@@ -1,5 +1,6 @@
 // A flight: the vehicle in its air, a controller for each motor, the capture system and the ground station.
 //
+//   Motors   turned by native controllers, or by boards of the run (far_shafts.hpp)
 //   Step     controllers and station take what the target did; then everything moves 1 ms; then what is
 //            sensed goes out: body_motion, esc_state of each motor, uart_frame to the radio
 //   Command  Arm, TakeOff, GoTo, Figure8, Cruise, HoldAttitude, Waypoints, Teleoperation, Land, Sticks, SetParameter, Radio. Take-off also streams the point above where the vehicle stands
@@ -20,6 +21,7 @@
 #include "harness/flight/controllers.hpp"
 #include "harness/flight/drag_truth.hpp"
 #include "harness/flight/estimates.hpp"
+#include "harness/flight/far_shafts.hpp"
 #include "harness/flight/flight_params.hpp"
 #include "harness/flight/guest_radio.hpp"
 #include "harness/flight/hand.hpp"
@@ -43,6 +45,7 @@ class FlightWorld : public World {
 
   const std::vector<Signal>& signals() const override { return signals_; }
   void read(std::span<double> values) const override;
+  bool hears(const io::Header& head) const override { return far_ && far_->hears(head); }
   void step(std::int64_t t_ns, const io::Batch& happened, io::Batch& sensed) override;
   Result<Done> command(const Command& command, std::int64_t now_ns) override;
   Result<Done> disturb(const Disturbance& disturbance, std::int64_t now_ns) override;
@@ -56,6 +59,10 @@ class FlightWorld : public World {
   const plant::VehicleState& truth() const { return vehicle_.state(); }
 
  private:
+  plant::Vehicle make_vehicle(const FlightParams& params, plant::RotorSet rotors,
+                              std::uint64_t seed);
+  void make_controllers(const FlightParams& params, std::uint64_t seed,
+                        const ControllerTypes& types);
   void begin(const Start& start);
   void on_messages(const io::Batch& happened);
   void move(std::int64_t t_ns);
@@ -67,6 +74,8 @@ class FlightWorld : public World {
   void name_fence_signals();
   void name_load_signals();
   void name_motor_signals();
+  void name_controller_signals(std::size_t motor);
+  void name_exchange_signals();
   void name_telemetry_signals();
   void name_estimate_signals();
   void name_receiver_signals();
@@ -97,9 +106,12 @@ class FlightWorld : public World {
   Surroundings place_;
   bool has_load_;
   BoardEars ears_;
+  plant::RemotePowertrain* remote_ = nullptr;  // the vehicle's, where boards turn its shafts
   plant::Vehicle vehicle_;
-  std::vector<std::unique_ptr<MotorController>> controllers_;  // index: motor number - 1
-  std::vector<double> unbalance_m_;                            // likewise, over the vehicle's mass
+  std::optional<FarShafts> far_;
+  std::vector<std::unique_ptr<MotorController>>
+      controllers_;                  // index: motor number - 1; none if far
+  std::vector<double> unbalance_m_;  // likewise, over the vehicle's mass
   const plant::AirframeParams airframe_;
   const std::vector<plant::Obstacle> obstacles_;
   std::uint64_t seed_;

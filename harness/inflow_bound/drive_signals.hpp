@@ -5,7 +5,7 @@
 //   Method   the duty at which the plant's averaged motor gives that torque at that speed
 //   Sureness covariance of (current, voltage) about what the model says: what the instruments do, and what of
 //            motor and air has moved since the ESC was calibrated, each times the signals' slope over it
-//   Error    of the slopes 1 % (one-sided differences over one sigma); their curvature is left out
+//   Left out that a slope is one-sided, over one sigma: what of it is curvature is taken for slope
 #pragma once
 #include <Eigen/Core>
 

@@ -32,7 +32,8 @@ std::string job_text(const Job& job) {
                       {"set", settings},
                       {"results", job.results},
                       {"keep", job.keep},
-                      {"twice", job.twice}});
+                      {"twice", job.twice},
+                      {"calibrations", job.calibrations}});
 }
 
 Result<Job> read_job(std::string_view text) {
@@ -44,6 +45,7 @@ Result<Job> read_job(std::string_view text) {
     object.at("results").get_to(job.results);
     object.at("keep").get_to(job.keep);
     object.at("twice").get_to(job.twice);
+    object.at("calibrations").get_to(job.calibrations);
   });
 }
 

@@ -1,6 +1,6 @@
 // One run as data: what a parent hands to the process that does it, and what comes back.
 //
-//   Job      JSON {"file", "plan", "seed", "set": [{"key", "value"}], "results", "keep", "twice"};
+//   Job      JSON {"file", "plan", "seed", "set": [{"key", "value"}], "results", "keep", "twice", "calibrations"};
 //            "seed" is null for the plan's own
 //   Report   JSON {"exit_code", "folder", "outcome", "run"}: `run` is the text of run.json, `outcome` what
 //            people read of it
@@ -23,6 +23,7 @@ struct Job {
   Settings settings;
   std::string results;  // folder of runs and history
   bool keep = false, twice = false;
+  std::string calibrations;
 };
 
 struct JobReport {

@@ -19,7 +19,7 @@ Result<TargetState> Lockstep::step(const std::function<void(const io::Batch&)>& 
   if (sent) sent(sensed_);
   {
     const Stopwatch watch(times_.world_s);
-    const io::Batch& happened = of_first_board();
+    const io::Batch& happened = for_world();
     sensed_.clear();
     world_.step(next_ns, happened, sensed_);
   }
@@ -36,15 +36,16 @@ Result<TargetState> Lockstep::step(const std::function<void(const io::Batch&)>& 
 }
 
 // Of one board, as most runs are, nothing is copied.
-const io::Batch& Lockstep::of_first_board() {
+const io::Batch& Lockstep::for_world() {
   bool others = false;
   for (io::Reader r(happened_.bytes()); !others && r.next();) others = r.header().board != 0;
   if (!others) return happened_;
-  of_first_.clear();
+  for_world_.clear();
   for (io::Reader r(happened_.bytes()); r.next();) {
-    if (r.header().board == 0) of_first_.add(r.header(), r.payload());
+    const io::Header& head = r.header();
+    if (head.board == 0 || world_.hears(head)) for_world_.add(head, r.payload());
   }
-  return of_first_;
+  return for_world_;
 }
 
 void Lockstep::stop() {

@@ -44,12 +44,12 @@ class Lockstep {
   const HostTimes& host_times() const { return times_; }
 
  private:
-  // What the first board did in the latest step.
-  const io::Batch& of_first_board();
+  // What the first board did in the latest step, and what the world hears of others.
+  const io::Batch& for_world();
 
   World& world_;
   Target& target_;
-  io::Batch sensed_, happened_, of_first_;
+  io::Batch sensed_, happened_, for_world_;
   std::vector<double> row_;
   std::int64_t now_ns_ = 0;
   HostTimes times_;

@@ -39,6 +39,7 @@ struct Sandbox::Inner {
   fs::path root;                   // include stays below it
   std::string source;              // of the file
   std::vector<std::string> below;  // files that were read, relative to the root
+  std::string replaced, instead;   // a file's name, and the path that is read in its place
 
   static void* allocate(void* ud, void* block, std::size_t old_size, std::size_t size) {
     auto* self = static_cast<Inner*>(ud);
@@ -122,8 +123,9 @@ struct Sandbox::Inner {
         name.find('\0') != std::string::npos) {
       return not_read(name, "only files below the plan's folder");
     }
-    auto text = read_whole_file(path.string());
-    if (!text) return not_read(name, "cannot be read");
+    const bool other = !replaced.empty() && path.filename() == replaced;
+    auto text = read_whole_file(other ? instead : path.string());
+    if (!text) return not_read(other ? instead : name, "cannot be read");
     if (text.value().size() > kLongest_source_B) return not_read(name, "longer than 1 MiB");
     if (std::find(below.begin(), below.end(), inside.string()) == below.end()) {
       below.push_back(inside.string());
@@ -226,6 +228,11 @@ Result<Done> Sandbox::run_file(const std::string& path) {
   if (!text) return text.error();
   inner_->source = std::move(text.value());
   return run_text(inner_->source, path);
+}
+
+void Sandbox::put_instead(std::string file_name, std::string path) {
+  inner_->replaced = std::move(file_name);
+  inner_->instead = std::move(path);
 }
 
 Result<std::string> Sandbox::read_below(const std::string& name) {

@@ -46,6 +46,9 @@ class Sandbox {
   void set_owner(void* owner);
   static void* owner(lua_State* L);
 
+  // What include takes in place of every file of that name, with or without folders before it.
+  void put_instead(std::string file_name, std::string path);
+
   // Loads and runs a chunk; what it returns (one value) is left on the stack.
   Result<Done> run_file(const std::string& path);
   // A file below the folder of the file that runs, at most 1 MiB, as include takes it.

@@ -1,6 +1,7 @@
 // t:command, t:gust, t:fault: what a plan does to the world and to the board.
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
 #include "harness/plan/needs.hpp"
 #include "harness/plan/raise.hpp"
@@ -94,11 +95,13 @@ fault_at::Function function_at(lua_State* L, const std::string& name,
   return {name, number};
 }
 
-// The board that a fault's place is on, and the place without its node's name.
+// The board that a fault's place is on, and the place without its node's name. What is of the whole board has
+// its node alone: t:fault { kind = "reset_pin", node = "esc2" }
 NodePlace node_of_fault(lua_State* L, const lua::Table& asked, const std::vector<Node>& nodes) {
-  for (const char* key : {"device", "bus", "function"}) {
+  for (const char* key : {"device", "bus", "function", "node"}) {
     if (!asked.has(key)) continue;
-    const auto place = node_place(nodes, asked.text(key));
+    const bool whole = std::string_view(key) == "node";
+    const auto place = node_place(nodes, asked.text(key) + (whole ? "/." : ""));
     if (!place) raise(L, place.error().what, place.error().cure);
     return place.value();
   }
@@ -161,10 +164,11 @@ int fault(lua_State* L) {
   const Result<bool> taken = at.node == 0 ? self.stage().world.take_fault(fault) : false;
   if (!taken) raise(L, taken.error());
   if (!taken.value()) {
-    const bool named = asked.has("device") || asked.has("bus") || asked.has("function");
+    const bool named =
+        asked.has("device") || asked.has("bus") || asked.has("function") || asked.has("node");
     if (nodes.size() > 1 && !named) {
       raise(L, "a fault of kind " + fault.kind + " is on one board of several",
-            "name it by its device, bus or function: bus = \"" + nodes[0].name + "/i2c1\"");
+            "name it by its device, bus, function or node: bus = \"" + nodes[0].name + "/i2c1\"");
     }
     if (!self.stage().offers.has(Offer::wire_faults)) {
       raise(L, not_offered("a fault of kind " + fault.kind, Offer::wire_faults));

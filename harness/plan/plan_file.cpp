@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <lua.hpp>
+#include <optional>
 
 #include "base/text.hpp"
 #include "harness/lua/node.hpp"
@@ -19,8 +20,12 @@ const std::vector<std::string> kSurroundings = {"start",     "room",  "outdoors"
                                                 "obstacles", "field", "air",      "load"};
 
 PlanNode read_node(const lua::Table& t) {
-  return {"", t.text("image"), t.text_or("board", "px4fmu_v1"), t.texts("watch"),
-          t.flag_or("may_reset", false)};
+  return {"",
+          t.text("image"),
+          t.text_or("board", "px4fmu_v1"),
+          t.texts("watch"),
+          t.flag_or("may_reset", false),
+          t.texts("flash")};
 }
 
 // Names stand before a slash, in file names and in front of a dot.
@@ -31,27 +36,48 @@ bool is_node_name(const std::string& name) {
   return !name.empty() && name.size() <= 32 && std::all_of(name.begin(), name.end(), plain);
 }
 
-// "esc.usart1"
-PlanWire::End wire_end(const lua::Table& t, const char* key, const Plan& plan) {
-  const std::string text = t.text(key);
+// "fc.esc1": node and what is on it.
+std::optional<std::pair<std::size_t, std::string>> place_on_node(const std::string& text,
+                                                                 const Plan& plan) {
   const auto dot = text.find('.');
-  PlanWire::End end;
   const auto node = std::find_if(plan.nodes.begin(), plan.nodes.end(),
                                  [&](const PlanNode& n) { return n.name == text.substr(0, dot); });
-  const std::string bus = dot == std::string::npos ? "" : text.substr(dot + 1);
+  if (node == plan.nodes.end() || dot == std::string::npos) return {};
+  return std::pair(static_cast<std::size_t>(node - plan.nodes.begin()), text.substr(dot + 1));
+}
+
+// "esc.usart1"
+PlanWire::End wire_end(const lua::Table& t, const char* key, const Plan& plan) {
+  PlanWire::End end;
+  const auto place = place_on_node(t.text(key), plan);
+  const std::string bus = place ? place->second : "";
   const auto number =
       bus.starts_with("usart") || bus.starts_with("uart") ? bus_number(bus) : std::nullopt;
-  if (node == plan.nodes.end() || !number) {
-    t.refuse(key, "'" + text + "' is no UART of a node", "write NODE.usart1");
+  if (!number) {
+    t.refuse(key, "'" + t.text(key) + "' is no UART of a node", "write NODE.usart1");
     return end;
   }
-  end.node = static_cast<std::size_t>(node - plan.nodes.begin());
+  end.node = place->first;
   end.uart = static_cast<std::uint16_t>(*number);
   return end;
 }
 
+void read_board_wire(const lua::Table& t, Plan& plan) {
+  const auto from = place_on_node(t.text("from"), plan), to = place_on_node(t.text("to"), plan);
+  if (!from) t.refuse("from", "'" + t.text("from") + "' is on no node", "write NODE.DEVICE");
+  if (!to) t.refuse("to", "'" + t.text("to") + "' is on no node", "write NODE.i2c2");
+  if (!from || !to) return;
+  if (from->first == to->first) t.refuse("to", "a wire joins two boards");
+  plan.board_wires.push_back({from->first, from->second, to->first, to->second});
+}
+
 void read_wires(const lua::Table& t, Plan& plan) {
   for (const lua::Table& entry : t.tables("wires")) {
+    const std::string to = entry.text("to");
+    if (to.find(".i2c") != std::string::npos) {
+      read_board_wire(entry, plan);
+      continue;
+    }
     const PlanWire wire{wire_end(entry, "from", plan), wire_end(entry, "to", plan)};
     if (wire.a.node == wire.b.node) entry.refuse("to", "a wire joins two boards");
     plan.wires.push_back(wire);
@@ -63,7 +89,7 @@ void read_nodes(const lua::Table& t, Plan& plan) {
     plan.nodes.push_back(read_node(t));
     return;
   }
-  for (const char* key : {"image", "board", "watch", "may_reset"}) {
+  for (const char* key : {"image", "board", "watch", "may_reset", "flash"}) {
     if (t.has(key)) t.refuse(key, "stands in each of the nodes");
   }
   for (const lua::Table& entry : t.tables("nodes")) {
@@ -219,8 +245,9 @@ int PlanFile::add_plan(lua_State* L) {
 }
 
 Result<std::unique_ptr<PlanFile>> PlanFile::load(const std::string& path, lua::Limits limits,
-                                                 const Settings& settings) {
+                                                 const Settings& settings, const Instead& instead) {
   std::unique_ptr<PlanFile> file(new PlanFile(path, limits, settings));
+  file->sandbox_.put_instead(instead.file_name, instead.path);
   file->sandbox_.set_owner(file.get());
   const auto registered =
       file->sandbox_.protect(0, [](lua_State* L) { lua_register(L, "plan", declare); });

@@ -6,7 +6,9 @@
 //                  run = function(t) ... end }
 //   Nodes    instead of image, board, watch and may_reset: nodes = { { name = "esc", image = "esc", board = "esc32v2",
 //            watch = { ... } }, ... }; the vehicle or stand surrounds the first. wires = { { from = "esc.usart1",
-//            to = "fc.usart2" }, ... } join their UARTs, both ways, at the grain of the exchange
+//            to = "fc.usart2" }, ... } join their UARTs, both ways, at the grain of the exchange;
+//            { from = "fc.esc1", to = "esc.i2c2" }: that node's board takes the place of the device esc1 on fc's bus.
+//            A node's flash = { "esc_motor_1" } names ELF files that are flashed beside its image
 //   Stand    instead of vehicle: stand = { prop = "hk_10x4.5", battery = "4s_2200" }
 //   Around   of a vehicle: start, room, outdoors, fence, obstacles, field, air, load, read by who makes the world
 //   Limits   tags and names are checked; a plan without run, image or name is refused with its line
@@ -29,7 +31,8 @@ struct PlanNode {
   std::string name;          // empty: the plan has one image and one board
   std::string image, board;  // as written: names or paths
   std::vector<std::string> watch;
-  bool may_reset = false;  // by a watchdog, without failing the plan
+  bool may_reset = false;               // by a watchdog, without failing the plan
+  std::vector<std::string> flash = {};  // beside the image; names or paths
 };
 
 struct PlanWire {  // from UART to UART, both ways
@@ -40,12 +43,20 @@ struct PlanWire {  // from UART to UART, both ways
   End a, b;
 };
 
+struct PlanBoardWire {  // a board in the place of another one's device
+  std::size_t leader = 0;
+  std::string device;  // of the leader's board
+  std::size_t follower = 0;
+  std::string bus;  // of the follower: "i2c2"
+};
+
 struct Plan {
   std::string name, file, place;
   std::string vehicle;          // as written: a name or a path
   Settings vehicle_settings;    // what the plan has other than the vehicle's file
   std::vector<PlanNode> nodes;  // one at least
   std::vector<PlanWire> wires;
+  std::vector<PlanBoardWire> board_wires;
   std::vector<std::string> tags;
   std::vector<SourceCall> calls;  // of t's, in the text of its function
   std::vector<SourceCall> words;  // all names and texts in it
@@ -63,9 +74,14 @@ Plan plan_of_one_board(const std::string& name, const std::string& place);
 
 class PlanFile {
  public:
+  struct Instead {
+    std::string file_name, path;  // empty: nothing is replaced
+  };
   // settings: those of "plan." and "stand." take the place of what each plan of the file says.
+  // instead: an included file of that name is read from there.
   static Result<std::unique_ptr<PlanFile>> load(const std::string& path, lua::Limits limits = {},
-                                                const Settings& settings = {});
+                                                const Settings& settings = {},
+                                                const Instead& instead = {});
 
   const std::vector<Plan>& plans() const { return plans_; }
   lua::Sandbox& sandbox() { return sandbox_; }

@@ -24,18 +24,28 @@ const DataType* known(Kind kind, std::uint16_t id) {
 
 }  // namespace
 
-CanThrottle::CanThrottle(std::uint16_t motor, std::uint16_t bus)
-    : motor_(motor), bus_(bus), assembler_(known, kNode) {}
+CanThrottle::CanThrottle(std::uint16_t motor, std::uint16_t bus, bool by_speed)
+    : motor_(motor), bus_(bus), by_speed_(by_speed), assembler_(known, kNode) {}
 
-io::CanFrame CanThrottle::command() {
-  RawCommand message;
+std::vector<io::CanFrame> CanThrottle::command() {
+  if (!by_speed_) {
+    return command_of(&RawCommand::commands, static_cast<std::int16_t>(kRawSteps * v_));
+  }
+  const double speed_rpm = v_ == 0 ? 0.0 : io::value_of_setpoint(io::EscMode::rpm, v_);
+  return command_of(&RpmCommand::speeds_rpm, static_cast<std::int32_t>(std::lround(speed_rpm)));
+}
+
+// `own` at the motor's place, 0 at all others.
+template <typename Command, typename List, typename Count>
+std::vector<io::CanFrame> CanThrottle::command_of(List Command::*counts, Count own) {
+  Command message;
   for (std::uint16_t motor = 1; motor <= std::max<std::uint16_t>(motor_, 4); ++motor) {
-    message.commands.add(static_cast<std::int16_t>(motor == motor_ ? kRawSteps * v_ : 0));
+    (message.*counts).add(motor == motor_ ? own : Count{0});
   }
   const Payload payload = encode(message);
-  const Header header{Kind::message, RawCommand::kType.id, kPriority, kNode, 0, transfer_id_};
+  const Header header{Kind::message, Command::kType.id, kPriority, kNode, 0, transfer_id_};
   transfer_id_ = (transfer_id_ + 1) & tail::kTransfer_id;
-  return frames_of(header, RawCommand::kType.signature, payload.bytes()).front();
+  return frames_of(header, Command::kType.signature, payload.bytes());
 }
 
 void CanThrottle::send(std::int64_t t_ns, io::Batch& sensed) {
@@ -45,7 +55,9 @@ void CanThrottle::send(std::int64_t t_ns, io::Batch& sensed) {
     if (changed_) awaited_id_ = transfer_id_;
     awaited_ = awaited_ || changed_;
     changed_ = false;
-    sensed.add(io::Kind::can_order, bus_, at, io::to_message(command()));
+    for (const io::CanFrame& frame : command()) {
+      sensed.add(io::Kind::can_order, bus_, at, io::to_message(frame));
+    }
   }
 }
 
@@ -61,8 +73,9 @@ void CanThrottle::on_message(const io::Reader& message) {
     return;
   }
   ++reported_.replies;
-  const std::uint8_t id = frame.data[frame.length - 1u] & tail::kTransfer_id;
-  if (!awaited_ || id != awaited_id_) return;
+  const std::uint8_t last = frame.data[frame.length - 1u];
+  const bool whole = (last & tail::kEnd) != 0;
+  if (!awaited_ || !whole || (last & tail::kTransfer_id) != awaited_id_) return;
   awaited_ = false;
   on_wire_ns_ = message.header().t_ns;
 }

@@ -3,9 +3,12 @@
 //
 //   Start    set-point 0 from power-up on: the zeros that arm
 //   Scale    four steps of the command are one of the I2C protocol's 2047 (docs of esc_dronecan)
+//   Speed    of an ESC in the mode `rpm` the same as esc.RPMCommand, where the stand says so
 //   Wire     a set-point has passed when its frame has, acknowledged
 //   Reported by esc.Status and StatusExtended; refused counts our frames that failed
 #pragma once
+#include <vector>
+
 #include "harness/stand/throttle.hpp"
 #include "io_bridges/messages/messages.hpp"
 #include "io_bridges/protocols/dronecan/assembler.hpp"
@@ -15,7 +18,7 @@ namespace whirl::stand {
 
 class CanThrottle {
  public:
-  CanThrottle(std::uint16_t motor, std::uint16_t bus);
+  CanThrottle(std::uint16_t motor, std::uint16_t bus, bool by_speed = false);
 
   void set(std::uint16_t v) {
     v_ = v;
@@ -33,10 +36,13 @@ class CanThrottle {
   void on_message(const io::Reader& transfer);
 
  private:
-  io::CanFrame command();
+  std::vector<io::CanFrame> command();
+  template <typename Command, typename List, typename Count>
+  std::vector<io::CanFrame> command_of(List Command::*counts, Count own);
   void on_status(const io::dronecan::Transfer& transfer);
 
   std::uint16_t motor_, bus_;
+  bool by_speed_;
   std::uint16_t v_ = 0;
   bool silent_ = false, changed_ = false;
   std::int64_t every_ns_ = 20'000'000, on_wire_ns_ = -1;

@@ -40,7 +40,7 @@ Throttle::Raw raw_of(const request::RawTransfer& wanted) {
 EscMaster::EscMaster(const EscMasterParams& params)
     : params_(params),
       throttle_(params.address, params.i2c),
-      can_(params.motor, params.can),
+      can_(params.motor, params.can, params.rpm_command),
       pulses_(params.motor),
       line_(params.serial) {
   if (params_.pulse_rate_Hz > 0.0) throttle_.never_write();

@@ -22,7 +22,8 @@ struct EscMasterParams {
   std::uint8_t address = 0x29;
   double pulse_rate_Hz = 0.0;  // of the throttle's pulses; 0: it writes over I2C
   std::uint16_t i2c = 2, serial = 1, motor = 1;
-  std::uint16_t can = 0;  // the bus on which it speaks DroneCAN; 0: none
+  std::uint16_t can = 0;     // the bus on which it speaks DroneCAN; 0: none
+  bool rpm_command = false;  // and by RPMCommand, in mode rpm
 };
 
 class EscMaster {

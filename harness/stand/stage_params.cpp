@@ -1,5 +1,9 @@
 #include "harness/stand/stage_params.hpp"
 
+#include <algorithm>
+#include <utility>
+#include <vector>
+
 #include "base/check.hpp"
 
 namespace whirl::stand {
@@ -22,33 +26,64 @@ Result<Done> set_stage(BoardDescription& board, int motor, const StageParams& pa
 
 namespace {
 
-void take(const StageParams& params, const char* name, double& into) {
-  if (const auto found = params.find(name); found != params.end()) into = found->second;
+using plant::CurrentShuntParams;
+using plant::MotorParams;
+
+template <typename Params>
+using Places = std::vector<std::pair<const char*, double Params::*>>;
+
+const Places<MotorParams> kMotor = {{"torque_constant", &MotorParams::torque_constant_NmpA},
+                                    {"resistance", &MotorParams::resistance_ohm},
+                                    {"inductance", &MotorParams::inductance_H},
+                                    {"no_load_current", &MotorParams::no_load_current_A},
+                                    {"inertia", &MotorParams::inertia_kgm2},
+                                    {"heat_capacity", &MotorParams::heat_capacity_JpK},
+                                    {"bearing_share", &MotorParams::bearing_share}};
+const Places<CurrentShuntParams> kDrawn_shunt = {
+    {"shunt.gain", &CurrentShuntParams::gain_tolerance},
+    {"shunt.warm_up", &CurrentShuntParams::warm_up_A},
+    {"shunt.wander", &CurrentShuntParams::wander_A}};
+const Places<CurrentShuntParams> kOwn_shunt = {
+    {"shunt.offset", &CurrentShuntParams::offset_low_A},
+    {"shunt.gain_error", &CurrentShuntParams::gain_error},
+    {"shunt.noise", &CurrentShuntParams::noise_A}};
+
+template <typename Params>
+void take(const StageParams& from, const Places<Params>& places, Params& into) {
+  for (const auto& [name, place] : places) {
+    if (const auto found = from.find(name); found != from.end()) into.*place = found->second;
+  }
+}
+
+template <typename Params>
+void put(const Params& from, const Places<Params>& places, StageParams& into) {
+  for (const auto& [name, place] : places) into[name] = from.*place;
 }
 
 }  // namespace
 
-plant::MotorParams motor_of(const StageParams& params) {
-  plant::MotorParams m;
-  take(params, "torque_constant", m.torque_constant_NmpA);
-  take(params, "resistance", m.resistance_ohm);
-  take(params, "inductance", m.inductance_H);
-  take(params, "no_load_current", m.no_load_current_A);
-  take(params, "inertia", m.inertia_kgm2);
+MotorParams motor_of(const StageParams& params) {
+  MotorParams m;
+  take(params, kMotor, m);
+  m.winding_resistance_ohm = std::min(m.winding_resistance_ohm, m.resistance_ohm);
   return m;
 }
 
-plant::CurrentShuntParams shunt_of(const StageParams& params) {
-  plant::CurrentShuntParams s;
-  take(params, "shunt.gain", s.gain_tolerance);
-  take(params, "shunt.warm_up", s.warm_up_A);
-  take(params, "shunt.wander", s.wander_A);
-  take(params, "shunt.offset", s.offset_low_A);
-  take(params, "shunt.gain_error", s.gain_error);
-  if (params.contains("shunt.noise")) take(params, "shunt.noise", s.noise_A), s.noise_per_A = 0.0;
+CurrentShuntParams shunt_of(const StageParams& params) {
+  CurrentShuntParams s;
+  take(params, kDrawn_shunt, s);
+  take(params, kOwn_shunt, s);
+  if (params.contains("shunt.noise")) s.noise_per_A = 0.0;
   if (params.contains("shunt.gain_error")) s.gain_tolerance = 0.0;
   if (params.contains("shunt.offset")) s.offset_high_A = s.offset_low_A;
   return s;
+}
+
+StageParams stage_of(const MotorParams& motor, const CurrentShuntParams& shunt) {
+  StageParams params;
+  put(motor, kMotor, params);
+  put(shunt, kDrawn_shunt, params);
+  return params;
 }
 
 }  // namespace whirl::stand

@@ -18,8 +18,11 @@ using StageParams = std::map<std::string, double>;  // SI, by the power stage's 
 // Gives these parameters to the power stage of that motor. Refused where the board has no such stage.
 Result<Done> set_stage(BoardDescription& board, int motor, const StageParams& params);
 
-// The same as the plant's own parameters, for who computes with them on the host.
+// The same as the plant's own parameters, for who computes with them on the host; what a stage has no name
+// for is the plant's own, but a winding has no more resistance than the whole.
 plant::MotorParams motor_of(const StageParams& params);
 plant::CurrentShuntParams shunt_of(const StageParams& params);
+// And back: a motor, and a current sense that is drawn from its tolerances.
+StageParams stage_of(const plant::MotorParams& motor, const plant::CurrentShuntParams& shunt);
 
 }  // namespace whirl::stand

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "base/rpm.hpp"
+#include "harness/sweep/tally.hpp"
 #include "plant/rotor/twist_fit.hpp"
 
 namespace whirl::sweep {
@@ -30,23 +31,20 @@ struct Teller {
   }
 };
 
-struct Tally {
-  double off = 0, signed_off = 0, all = 0;
-  int inside = 0, n = 0;
+struct BandTally : Tally {
+  int inside = 0;
   void add(double got, double want, double half) {
-    off += std::abs(got - want), signed_off += got - want, all += std::abs(want);
+    Tally::add(got, want);
     inside += std::abs(got - want) <= half ? 1 : 0;
-    ++n;
   }
-  double percent(double sum) const { return n == 0 ? 0.0 : 100.0 * sum / all; }
 };
 
-ForwardJudged judged(const Tally& T, const Tally& P) {
+ForwardJudged judged(const BandTally& T, const BandTally& P) {
   const double n = std::max(T.n, 1);
-  return {T.percent(T.off),
-          P.percent(P.off),
-          T.percent(T.signed_off),
-          P.percent(P.signed_off),
+  return {T.wmape_percent(),
+          P.wmape_percent(),
+          T.mean_percent(),
+          P.mean_percent(),
           100.0 * T.inside / n,
           100.0 * P.inside / n,
           T.n};
@@ -100,7 +98,7 @@ double zero_thrust_J(const Teller& teller, double omega) {
 void add_over_J(const Teller& teller, const std::vector<MeasuredFile>& measured, double speed_radps,
                 ForwardSweep& sweep) {
   Pair pair("In flight, over J = V/(n D)", "advance ratio J");
-  Tally T, P;
+  BandTally T, P;
   const auto curve = [&](double omega) {
     const double end = zero_thrust_J(teller, omega);
     std::vector<double> x;
@@ -120,22 +118,22 @@ void add_over_J(const Teller& teller, const std::vector<MeasuredFile>& measured,
     curve(flying.front().omega_radps);
     std::vector<double> x;
     const auto told = teller.tell(flying);
-    Tally t, p;
+    BandTally t, p;
     for (std::size_t i = 0; i < flying.size(); ++i) {
       x.push_back(flying[i].advance_ratio);
       if (!(flying[i].CT > 0.0 && flying[i].CP > 0.0)) continue;
-      for (Tally* each : {&t, &T}) {
+      for (BandTally* each : {&t, &T}) {
         each->add(told[i].mean.CT, flying[i].CT, plant::kNine_in_ten * told[i].deviation.CT);
       }
-      for (Tally* each : {&p, &P}) {
+      for (BandTally* each : {&p, &P}) {
         each->add(told[i].mean.CP, flying[i].CP, plant::kNine_in_ten * told[i].deviation.CP);
       }
     }
     pair.mark(file.name, x, flying);
-    report(pair.CT, file.name + ": CT, WMAPE", t.percent(t.off));
-    report(pair.CT, file.name + ": CT, mean error", t.percent(t.signed_off));
-    report(pair.CP, file.name + ": CP, WMAPE", p.percent(p.off));
-    report(pair.CP, file.name + ": CP, mean error", p.percent(p.signed_off));
+    report(pair.CT, file.name + ": CT, WMAPE", t.wmape_percent());
+    report(pair.CT, file.name + ": CT, mean error", t.mean_percent());
+    report(pair.CP, file.name + ": CP, WMAPE", p.wmape_percent());
+    report(pair.CP, file.name + ": CP, mean error", p.mean_percent());
   }
   if (pair.CT.curves.empty()) {
     for (const double share : {0.5, 0.75, 1.0}) curve(share * speed_radps);
@@ -162,7 +160,7 @@ void add_over_speed(const Teller& teller, const std::vector<MeasuredFile>& measu
     std::snprintf(name, sizeof name, "J = %.1f", J);
     pair.draw(name, x, teller.tell(where), teller.fit.has_value() && J == 0.0);
   }
-  Tally T, P;
+  BandTally T, P;
   for (const MeasuredFile& file : measured) {
     std::vector<MeasuredPoint> still;
     std::vector<double> x;

@@ -32,6 +32,9 @@ std::vector<results::Chart> propeller_sweep(const std::shared_ptr<const plant::B
 std::vector<results::Chart> vehicle_sweep(const flight::FlightParams& vehicle,
                                           const Options& options);
 
+// One motor and propeller on their feed: over voltage, and the propeller.
+std::vector<results::Chart> drive_sweep(const flight::FlightParams& drive, const Options& options);
+
 // One point of a vehicle's drive: motor and propeller at a constant mean voltage of the bridge.
 struct DrivePoint {
   double voltage_V = 0, speed_radps = 0, thrust_N = 0, torque_Nm = 0;
@@ -42,6 +45,10 @@ DrivePoint drive_point(const flight::FlightParams& vehicle, double voltage_V, do
 // The voltage at which it lifts thrust_N, by bisection; an Error where no voltage up to bus_V does.
 Result<DrivePoint> drive_for_thrust(const flight::FlightParams& vehicle, double thrust_N,
                                     double bus_V);
+
+// The voltage at which it turns so fast; an Error where none up to bus_V does.
+Result<DrivePoint> drive_at_speed(const flight::FlightParams& drive, double speed_radps,
+                                  double bus_V);
 
 struct HoverPoint {
   DrivePoint each;  // motor

@@ -2,9 +2,9 @@
 
 #include "base/rpm.hpp"
 #include "harness/flight/controllers.hpp"
+#include "harness/sweep/steady_motor.hpp"
 #include "harness/sweep/sweep.hpp"
 #include "plant/battery/battery.hpp"
-#include "plant/motor/averaged_motor.hpp"
 #include "plant/rotor/rotor.hpp"
 
 namespace whirl::sweep {
@@ -14,7 +14,6 @@ using plant::AveragedMotor;
 using results::Chart;
 using results::ChartFigure;
 
-constexpr double kSubStep_s = 2e-4;
 constexpr double kGravity_mps2 = 9.80665;
 
 plant::RotorLoads at_speed(const plant::Rotor& rotor, double omega_radps) {
@@ -77,29 +76,6 @@ plant::Drive drive_of(const flight::FlightParams& vehicle, double voltage_V, dou
           .diode = type.freewheel == plant::Freewheel::diode};
 }
 
-constexpr int kSubSteps = 50;
-
-plant::MotorBooks run_piece(AveragedMotor& motor, const plant::Drive& drive,
-                            const plant::ShaftLoad& load) {
-  plant::MotorBooks books;
-  for (int i = 0; i < kSubSteps; ++i) books += motor.step(drive, load, kSubStep_s);
-  return books;
-}
-
-// Runs the motor at that drive, in pieces of 10 ms, until its speed stays; `load_at` says what the air
-// takes of the shaft at a speed. The books are those of the last piece.
-template <typename LoadAt>
-plant::MotorBooks run_until_steady(AveragedMotor& motor, const plant::Drive& drive,
-                                   const LoadAt& load_at) {
-  plant::MotorBooks books;
-  for (int piece = 0; piece < 400; ++piece) {
-    const double before = motor.speed_radps();
-    books = run_piece(motor, drive, load_at(before));
-    if (std::abs(motor.speed_radps() - before) <= 1e-7 * (1.0 + before)) break;
-  }
-  return books;
-}
-
 DrivePoint point_of(const plant::MotorBooks& books, double speed_radps,
                     const plant::RotorLoads& loads, double voltage_V, double bus_V) {
   const double time_s = kSubSteps * kSubStep_s;
@@ -150,7 +126,7 @@ Result<DrivePoint> drive_rotor(const flight::FlightParams& vehicle, const RotorP
   plant::MotorBooks books = run(bus_V);
   if (!(rotor.loads.thrust_N >= thrust_N && motor.speed_radps() >= speed_radps)) {
     return Error{ErrorKind::bad_input, vehicle.name,
-                 "the drive cannot lift the vehicle at this voltage",
+                 "the drive cannot turn or lift that much at this voltage",
                  "a stronger motor, a larger propeller or more cells"};
   }
   double low = 0.0, high = bus_V;
@@ -230,6 +206,13 @@ Result<DrivePoint> drive_for_thrust(const flight::FlightParams& vehicle, double 
                      bus_V);
 }
 
+Result<DrivePoint> drive_at_speed(const flight::FlightParams& drive, double speed_radps,
+                                  double bus_V) {
+  const plant::Rotor rotor(drive.blade, +1);
+  const RotorPoint point{speed_radps, at_speed(rotor, speed_radps)};
+  return drive_rotor(drive, point, point.loads.thrust_N, bus_V);
+}
+
 Result<HoverPoint> hover_point(const flight::FlightParams& vehicle, double bus_V) {
   const plant::Battery full = rested(vehicle.vehicle.battery, 0.0);
   const double source_V = bus_V > 0.0 ? bus_V : full.open_circuit_V();
@@ -242,12 +225,12 @@ Result<HoverPoint> hover_point(const flight::FlightParams& vehicle, double bus_V
   return hover;
 }
 
-std::vector<Chart> vehicle_sweep(const flight::FlightParams& vehicle, const Options& options) {
-  const double bus_V = full_pack_V(vehicle, options);
-  std::vector<DrivePoint> points;
-  for (int i = 2; i <= 16; ++i) points.push_back(drive_point(vehicle, bus_V * i / 16.0, bus_V));
+namespace {
+
+std::vector<Chart> over_voltage_and_propeller(const flight::FlightParams& drive,
+                                              const Options& options,
+                                              const std::vector<DrivePoint>& points) {
   std::vector<Chart> charts;
-  charts.push_back(hover_chart(vehicle, points, options.bus_V));
   charts.push_back(over_voltage(points, "Speed", "speed / rpm",
                                 [](const DrivePoint& p) { return rpm_of(p.speed_radps); }));
   charts.push_back(
@@ -258,7 +241,29 @@ std::vector<Chart> vehicle_sweep(const flight::FlightParams& vehicle, const Opti
   currents.curves.push_back({"bus", currents.curves[0].x, {}, false});
   for (const DrivePoint& p : points) currents.curves[1].y.push_back(p.bus_A);
   charts.push_back(currents);
-  for (Chart& chart : propeller_sweep(vehicle.blade, options)) charts.push_back(std::move(chart));
+  for (Chart& chart : propeller_sweep(drive.blade, options)) charts.push_back(std::move(chart));
+  return charts;
+}
+
+std::vector<DrivePoint> over_all_voltages(const flight::FlightParams& drive, double bus_V) {
+  std::vector<DrivePoint> points;
+  points.reserve(15);
+  for (int i = 2; i <= 16; ++i) points.push_back(drive_point(drive, bus_V * i / 16.0, bus_V));
+  return points;
+}
+
+}  // namespace
+
+std::vector<Chart> drive_sweep(const flight::FlightParams& drive, const Options& options) {
+  return over_voltage_and_propeller(drive, options,
+                                    over_all_voltages(drive, full_pack_V(drive, options)));
+}
+
+std::vector<Chart> vehicle_sweep(const flight::FlightParams& vehicle, const Options& options) {
+  const double bus_V = full_pack_V(vehicle, options);
+  const std::vector<DrivePoint> points = over_all_voltages(vehicle, bus_V);
+  std::vector<Chart> charts = over_voltage_and_propeller(vehicle, options, points);
+  charts.insert(charts.begin(), hover_chart(vehicle, points, options.bus_V));
   return charts;
 }
 

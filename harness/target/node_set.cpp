@@ -6,9 +6,69 @@
 
 namespace whirl {
 
-NodeSet::NodeSet(std::vector<Entry> nodes, std::vector<UartWire> wires)
-    : nodes_(std::move(nodes)), wires_(std::move(wires)), inbox_(nodes_.size()) {
+namespace {
+
+// How much the end of one target says of the run.
+int weight(TargetState state) {
+  switch (state) {
+    case TargetState::cpu_locked:
+      return 3;
+    case TargetState::over_limit:
+      return 2;
+    case TargetState::ended:
+      return 1;
+    case TargetState::running:
+      return 0;
+  }
+  return 0;
+}
+
+}  // namespace
+
+NodeSet::NodeSet(std::vector<Entry> nodes, std::vector<UartWire> wires,
+                 std::vector<BoardWireLink> board_wires)
+    : nodes_(std::move(nodes)),
+      wires_(std::move(wires)),
+      board_wires_(std::move(board_wires)),
+      arrived_(nodes_.size(), false),
+      inbox_(nodes_.size()) {
   WHIRL_CHECK(!nodes_.empty() && nodes_.size() <= 256, nodes_.size());
+  if (board_wires_.empty()) return;  // none waits for another
+  for (Entry& node : nodes_) {
+    node.target->set_company([this](bool silent) { return look_after(silent); });
+  }
+}
+
+Error NodeSet::blame(std::size_t node, Error error) {
+  error.place = nodes_[node].name + ": " + error.place;
+  close_wires();
+  blamed_ = error;
+  return error;
+}
+
+// Asked while one of them is waited for.
+std::optional<Error> NodeSet::look_after(bool silent) {
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    if (arrived_[i]) continue;
+    Target& target = *nodes_[i].target;
+    if (const auto error = target.died()) return blame(i, *error);
+    if (target.over()) close_wires();  // whoever waits for it waits for nothing
+    if (!silent || waits_for_another(i)) continue;
+    if (const auto error = target.hangs()) return blame(i, *error);
+  }
+  return {};
+}
+
+bool NodeSet::waits_for_another(std::size_t node) const {
+  for (const BoardWireLink& link : board_wires_) {
+    if (link.leader == node && link.wire.leader_waits()) return true;
+    if (link.follower == node && link.wire.follower_waits()) return true;
+  }
+  return false;
+}
+
+void NodeSet::close_wires() {
+  for (BoardWireLink& link : board_wires_) link.wire.close();
 }
 
 Result<Done> NodeSet::start() {
@@ -24,6 +84,7 @@ Result<Done> NodeSet::start() {
 
 void NodeSet::run(std::int64_t until_ns, const io::Batch& sensed) {
   until_ns_ = until_ns;
+  arrived_.assign(nodes_.size(), false);
   std::vector<io::Batch> own(nodes_.size());
   for (io::Reader r(sensed.bytes()); r.next();) {
     io::Header header = r.header();
@@ -48,11 +109,14 @@ Result<TargetState> NodeSet::arrive(io::Batch& happened) {
     const auto arrived = nodes_[i].target->arrive(own);
     io::add_for_board(own, static_cast<std::uint8_t>(i), happened);
     carry(i, own);
-    if (arrived && state == TargetState::running) state = arrived.value();
+    arrived_[i] = true;
+    if (arrived && weight(arrived.value()) > weight(state)) state = arrived.value();
+    if (!arrived || arrived.value() != TargetState::running) close_wires();
     if (arrived || first) continue;
     first = arrived.error();
     first->place = nodes_[i].name + ": " + first->place;
   }
+  if (blamed_) return *blamed_;
   if (first) return *first;
   return state;
 }

@@ -9,6 +9,8 @@
 //            its last output in `what`.
 #pragma once
 #include <cstdint>
+#include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -52,6 +54,15 @@ class Target {
   // Of its log of buses: "i2c3", "pin_NAME".
   virtual bool sees(const std::string& /*wires*/) const { return offers().has(Offer::bus_log); }
   virtual std::string why_ended() const { return {}; }
+  // Of several targets that wait for each other, asked while one of them is waited for:
+  virtual bool over() const { return false; }         // it has given its last words
+  virtual std::optional<Error> died() { return {}; }  // it has ended without any
+  virtual std::optional<Error> hangs() {
+    return {};
+  }  // it is silent and nobody's fault but its own
+  // Whom to ask about the others while this one is waited for, and has been silent for its limit.
+  using Company = std::function<std::optional<Error>(bool silent)>;
+  virtual void set_company(Company /*ask*/) {}
   virtual const HeldPace* held_pace() const { return nullptr; }  // null: it waits for the harness
 };
 

@@ -208,8 +208,9 @@ std::vector<std::string> command_line(const VirtualBoardOptions& options, const 
   return line;
 }
 
-// Lets only the two given descriptors through to QEMU.
-pid_t launch_process(const std::vector<std::string>& line, int log_fd, int link_fd, int config_fd) {
+// Lets only the given descriptors through to QEMU.
+pid_t launch_process(const std::vector<std::string>& line, int log_fd,
+                     const std::vector<int>& passed) {
   std::vector<char*> argv;
   argv.reserve(line.size() + 1);
   for (const std::string& word : line) argv.push_back(const_cast<char*>(word.c_str()));
@@ -221,8 +222,7 @@ pid_t launch_process(const std::vector<std::string>& line, int log_fd, int link_
   setpgid(0, 0);  // a terminal's interrupt is the harness's to act on
   if (getppid() != parent) _exit(kNot_started);  // it died before we asked
   const int null = open("/dev/null", O_RDONLY);
-  fcntl(link_fd, F_SETFD, 0);
-  fcntl(config_fd, F_SETFD, 0);
+  for (const int fd : passed) fcntl(fd, F_SETFD, 0);
   dup2(null, 0);
   dup2(log_fd, 1);
   dup2(log_fd, 2);
@@ -250,9 +250,11 @@ Result<Done> VirtualBoard::start() {
   }
   fcntl(process_->log_fd, F_SETFL, O_APPEND);
   process_->watch_silence = launch.value().gdb_port == 0;
+  std::vector<int> passed = {process_->link.fd(), config_fd};
+  for (const WireEnd& wire : options_.board.run.wires) passed.push_back(wire.fd);
   process_->pid =
       launch_process(command_line(options_, launch.value(), process_->link.fd(), config_fd),
-                     process_->log_fd, process_->link.fd(), config_fd);
+                     process_->log_fd, passed);
   close(config_fd);
   if (process_->pid < 0) {
     process_->pid = 0;
@@ -266,6 +268,7 @@ Result<Done> VirtualBoard::start() {
 void VirtualBoard::run(std::int64_t until_ns, const io::Batch& sensed) {
   WHIRL_CHECK(process_ != nullptr);
   process_->until_ns = until_ns;
+  cpu_s_.reset();
   posted_ = process_->link.post(until_ns, sensed.bytes());
 }
 
@@ -288,15 +291,35 @@ Result<TargetState> VirtualBoard::await(io::Batch& happened) {
     if (process_->gone() && !process_->link.wait(0)) {
       return why_it_ended(process_->status, options_.qemu, output());
     }
+    if (company_) {
+      if (auto other = company_(false)) return *other;
+    }
     if (interrupted_by() != 0) {
       return Error{ErrorKind::host, "virtual board", "interrupted while it waited", ""};
     }
     const auto silent = std::chrono::steady_clock::now() - from;
     if (process_->watch_silence && silent > std::chrono::seconds(options_.silence_s)) {
-      return give_up(cpu_s);
+      const auto other = company_ ? company_(true) : std::nullopt;
+      return other ? *other : give_up(cpu_s);
     }
   }
   return delivered(happened);
+}
+
+bool VirtualBoard::over() const {
+  return process_ && process_->link.arrived() && process_->link.state() != io::BoardState::running;
+}
+
+std::optional<Error> VirtualBoard::died() {
+  if (!process_ || process_->pid == 0) return {};
+  if (!cpu_s_) cpu_s_ = activity_of(process_->pid).cpu_s;
+  if (!process_->gone() || process_->link.arrived()) return {};
+  return why_it_ended(process_->status, options_.qemu, output());
+}
+
+std::optional<Error> VirtualBoard::hangs() {
+  if (!process_ || process_->pid == 0 || process_->link.arrived()) return {};
+  return give_up(cpu_s_.value_or(0.0));
 }
 
 // A QEMU that computes without end is our bug; one that hardly got to compute is the host's.
@@ -336,7 +359,8 @@ void VirtualBoard::stop(io::Batch& happened) {
     io::Batch last;
     last.add(io::Kind::end_of_run, 0, process_->until_ns, nullptr, 0);
     posted_ = process_->link.post(process_->until_ns, last.bytes());
-    if (process_->link.wait(kFarewell_ms)) happened.assign(process_->link.received().bytes);
+    const bool came = process_->link.wait(process_->gone() ? 0 : kFarewell_ms);
+    if (came) happened.assign(process_->link.received().bytes);
   }
   process_->end();
 }

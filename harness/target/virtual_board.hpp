@@ -5,9 +5,12 @@
 //   Silence   no answer for silence_s of host time, or the process gone: an Error with the last lines
 //             that QEMU wrote, of the host when it was ended or stopped from outside. Off when a gdb
 //             port is set: the world stands still while gdb holds it.
+//   Others    a board that waits for another board's over a wire is silent for no fault of its own: the set
+//             that it is in says who hangs, or has died
 //   Threads   start() and all that follows belong to one thread (PDEATHSIG hangs on it)
 #pragma once
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -37,6 +40,10 @@ class VirtualBoard final : public Target {
   void stop(io::Batch& happened) override;
   std::vector<std::pair<std::string, std::string>> versions() const override;
   Offers offers() const override { return kAll_offers; }
+  bool over() const override;
+  std::optional<Error> died() override;
+  std::optional<Error> hangs() override;
+  void set_company(Company ask) override { company_ = std::move(ask); }
 
   int pid() const;             // 0: not running
   std::string output() const;  // what QEMU wrote so far, the last few KiB
@@ -49,7 +56,9 @@ class VirtualBoard final : public Target {
   std::unique_ptr<Process> process_;
   VirtualBoardOptions options_;
   Result<Done> posted_ = Done{};
-  io::Batch at_start_;  // what the board told of itself before its first step
+  Company company_;
+  std::optional<double> cpu_s_;  // used when it was first looked at in this step
+  io::Batch at_start_;           // what the board told of itself before its first step
 };
 
 // For `whirl doctor`: QEMU's first line of --version, or what is wrong.

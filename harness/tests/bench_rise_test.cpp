@@ -26,7 +26,7 @@ TEST(Bench, TheThrustRiseOfTheRealImageIsMeasuredOverItsWires) {
   const ScratchFolder folder;
   Metal metal(folder, 0.15);
   const auto wire = [&](const bench::BridgeLink&) -> Result<std::unique_ptr<bench::I2cPort>> {
-    return std::unique_ptr<bench::I2cPort>(std::make_unique<WireOfStandIn>(*metal.stand_in));
+    return std::unique_ptr<bench::I2cPort>(std::make_unique<WireOfStandIn>(**metal.stand_in));
   };
   expect_a_rise(run_on_bench(folder, metal, R"(bus = "i2c2", bridge = "cp2112")", {wire}), metal);
 }

@@ -237,7 +237,7 @@ TEST(Program, SweepsRefuseWhatTheyCannotRead) {
   root.write("neither.lua", "return { kind = \"boat\" }");
   const std::string file = root.path() + "/neither.lua";
   EXPECT_EQ(whirl(root, {"sweep", "nowhere.lua"}).code, 2);
-  EXPECT_NE(whirl(root, {"sweep", file}).err.find("neither a vehicle nor a propeller"),
+  EXPECT_NE(whirl(root, {"sweep", file}).err.find("is no propeller, motor, stand or vehicle"),
             std::string::npos);
   EXPECT_NE(whirl(root, {"sweep", file, "--speed", "5 V"}).err.find("--speed: '5 V' is a voltage"),
             std::string::npos);

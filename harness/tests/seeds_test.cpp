@@ -57,6 +57,42 @@ TEST(Seeds, OneThatFailsFailsTheCommandAndIsNamed) {
   EXPECT_NE(table.find(",pass"), std::string::npos) << table;
 }
 
+// Its own constants, and not those of another copy of the hardware.
+TEST(Seeds, EachTakesWhatItsOwnCalibrationFound) {
+  FakeRoot root;
+  root.write("test_plans/a.lua",
+             "local c = include 'include/x_calibration.lua'\n" +
+                 plan_text("t:wait \"1 s\" t:expect(t:value \"tilt\"):at_most \"1 rad\" "
+                           "t:expect(t:quantity(c .. \" s\"), \"c\"):at_most(7)"));
+  root.write("test_plans/include/x_calibration.lua", "return 1");
+  root.write("results/calibrations/x/seed_3/constants.lua", "return 3");
+  root.write("results/calibrations/x/seed_9/constants.lua", "return 9");
+  const std::string folder = root.path() + "/results/calibrations/x";
+  EXPECT_EQ(whirl(root, {"run", "--seeds", "3,9"}).code, 0);
+  EXPECT_EQ(whirl(root, {"run", "--seeds", "3,9", "--calibrations", folder}).code, 1);
+  EXPECT_NE(root.read("results/seeds/p.csv").find("\"c\",9,9,"), std::string::npos);
+  EXPECT_EQ(whirl(root, {"run", "--seed", "3", "--calibrations", folder + "/"}).code, 0);
+  EXPECT_NE(root.read("results/runs/latest/run.json").find("constants.lua fnv1a64"),
+            std::string::npos);
+  const Outcome missing = whirl(root, {"run", "--seed", "4", "--calibrations", folder});
+  EXPECT_EQ(missing.code, 2);
+  EXPECT_NE(missing.out.find("the ESC of seed 4 was not calibrated"), std::string::npos)
+      << missing.out << missing.err;
+  EXPECT_EQ(whirl(root, {"run", "--calibrations", folder}).code, 2);
+}
+
+TEST(Seeds, LimitsAreProposedFromTheWorst) {
+  FakeRoot root;
+  root.write("test_plans/a.lua", plan_text(kDrawn));
+  const Outcome outcome = whirl(root, {"limits", "--seeds", "1..3"});
+  EXPECT_EQ(outcome.code, 0) << outcome.out << outcome.err;
+  EXPECT_NE(outcome.out.find("; proposed at most "), std::string::npos) << outcome.out;
+  for (const char* bad : {"0 %", "2000 %", "x", "3 m"}) {
+    EXPECT_EQ(whirl(root, {"limits", "--seeds", "1..2", "--margin", bad}).code, 2) << bad;
+  }
+  EXPECT_EQ(whirl(root, {"limits"}).code, 2);
+}
+
 // One that a later plan of that name had replaced would be lost, and with it a failure.
 TEST(Seeds, PlansOfOneNameHaveFilesOfTheirOwn) {
   FakeRoot root;
@@ -93,7 +129,14 @@ TEST(Target, WhatNoBenchCanRunIsSaidBeforeAnythingTurns) {
   // In processes of their own two runs would know of no bench, and pass on the virtual board.
   refused({"--target", "bench/b", "--seeds", "1..2"}, "--seeds");
   refused({"--target", "bench/b", "--jobs", "2"}, "--jobs");
-  refused({"--target", "bench/b"}, "a bench is a thrust stand");  // the plan has a vehicle
+  refused({"--target", "bench/b"}, "'b' is not there");
+  // The plan has a vehicle: each of its board's devices is played by somebody.
+  const std::string bench =
+      R"(return { bench = "b", board = "fake", late = "1 ms", late_share = "1 %",
+    links = { { name = "bus", bus = "can2", interface = "can0" } },
+    safety = { phrase = "clear", longest = "9 s" } })";
+  root.write("test_plans/benches/b.lua", bench);
+  refused({"--target", "bench/b"}, "nothing plays ");
   refused({"--arm", "clear"}, "--target");
 }
 

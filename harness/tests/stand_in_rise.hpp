@@ -5,16 +5,13 @@
 #include <cstdio>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <thread>
 
 #include "base/scratch_folder.hpp"
 #include "harness/catalogue/board_file.hpp"
 #include "harness/catalogue/stand_table.hpp"
 #include "harness/composition/boards.hpp"
-#include "harness/pacing/host_clock.hpp"
 #include "harness/stand/stand_world.hpp"
-#include "harness/standin/stand_in.hpp"
-#include "harness/target/virtual_board.hpp"
+#include "harness/tests/running_stand_in.hpp"
 
 namespace whirl {
 
@@ -36,35 +33,20 @@ struct Metal {  // what the bench hangs on
         serial(folder.file("terminal")),
         cell(folder.file("cell")) {
     auto board = read_board(kRoot + "/test_plans/boards/" + board_name + ".lua");
-    VirtualBoardOptions options;
-    options.board = {board.value(), {.image = kRoot + "/build/firmware/esc.elf", .seed = 1}};
-    target.emplace(std::move(options));
     StandInOptions wires;
     wires.pace = pace;
     wires.serial.emplace(std::move(io::PseudoTerminal::open(serial).value()));
     wires.instruments.emplace(std::move(io::PseudoTerminal::open(cell).value()));
     wires.can = std::move(can);
     wires.told = {"thrust", "bus_voltage", "supply_current"};
-    stand_in.emplace(world, *target, clock, std::move(wires));
-    thread = std::thread([this] {
-      const auto ran = stand_in->run();
-      EXPECT_TRUE(ran.ok()) << ran.error().message();
-    });
+    stand_in.emplace(world, board.value(), kRoot + "/build/firmware/esc.elf", std::move(wires));
   }
-  ~Metal() { stop(); }
-  void stop() {
-    if (!thread.joinable()) return;
-    stand_in->end();
-    thread.join();
-  }
+  void stop() { stand_in->stop(); }
 
   double pace;
   std::string board_name, serial, cell;
   stand::StandWorld world{stand_params(), 1};
-  pacing::MonotonicClock clock;
-  std::optional<VirtualBoard> target;
-  std::optional<StandIn> stand_in;
-  std::thread thread;
+  std::optional<RunningStandIn> stand_in;
 };
 
 // link: the keys of the one that commands.
@@ -117,7 +99,7 @@ inline BenchRun run_on_bench(const ScratchFolder& folder, Metal& metal, const st
 inline void expect_a_rise(const BenchRun& run, Metal& metal) {
   const std::string reason = run.file["reason"];
   metal.stop();
-  if (run.code != 0 && metal.stand_in->lateness().slipped_ns > 0) {
+  if (run.code != 0 && (*metal.stand_in)->lateness().slipped_ns > 0) {
     std::printf("not judged, the stand-in was late: %s\n", reason.c_str());
     return;
   }

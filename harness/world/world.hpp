@@ -27,6 +27,8 @@ class World {
   virtual const std::vector<Signal>& signals() const = 0;
   virtual void read(std::span<double> values) const = 0;  // in the order of signals()
 
+  // Which messages it wants beside those of the first board, which it surrounds.
+  virtual bool hears(const io::Header& /*of_another_board*/) const { return false; }
   virtual void step(std::int64_t t_ns, const io::Batch& happened, io::Batch& sensed) = 0;
 
   // At now_ns. Errors  bad_input, the place being the key that it is about: not understood, or out of

@@ -73,8 +73,20 @@ struct BoardDescription {
   bool operator==(const BoardDescription&) const = default;
 };
 
+// One end of a wire to another board. Where this one has the bus's master, the other board takes the
+// place of a device; where it has the slave, it follows on a bus.
+struct WireEnd {
+  std::string device = {};  // of the master's board, an I2C device; empty: this board follows
+  std::string bus = {};     // of the slave's board: "i2c2"
+  int fd = -1;              // io_bridges/link/wire.hpp
+
+  bool operator==(const WireEnd&) const = default;
+};
+
 struct BoardRun {  // what differs from run to run
   std::string image = {};
+  std::vector<std::string> flashed = {};  // ELF files beside the image: settings, calibrations
+  std::vector<WireEnd> wires = {};
   std::uint64_t seed = 1;
   int gdb_port = 0;  // 0: no gdb
   // Where the board's parts leave files (the run's folder), and whose they are in a run of several

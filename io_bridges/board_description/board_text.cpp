@@ -147,6 +147,26 @@ BoardPin read_pin(const json& object, const std::string& place, Error& first) {
   return pin;
 }
 
+WireEnd read_wire(const json& object, const std::string& place, Error& first) {
+  Keys keys(object, place, first);
+  WireEnd wire;
+  keys.read("device", wire.device);
+  keys.read("bus", wire.bus);
+  keys.read("fd", wire.fd);
+  keys.refuse_others();
+  return wire;
+}
+
+void read_texts(Keys& keys, const char* key, std::vector<std::string>& into) {
+  for (const json& entry : keys.list(key)) {
+    if (entry.is_string()) {
+      into.push_back(entry.get<std::string>());
+    } else {
+      keys.fail(key, "is not a list of names");
+    }
+  }
+}
+
 template <typename T, typename Read>
 void read_objects(Keys& keys, const char* key, std::vector<T>& into, Error& first, Read read) {
   for (const json& entry : keys.list(key)) {
@@ -200,10 +220,15 @@ std::string board_text(const BoardStart& start) {
               {"gdb_port", start.run.gdb_port},
               {"folder", start.run.folder},
               {"node", start.run.node},
+              {"flashed", start.run.flashed},
+              {"wires", json::array()},
               {"devices", json::array()},
               {"pins", json::array()},
               {"watch", board.watch}};
   for (const BoardDevice& device : board.devices) out["devices"].push_back(json_of(device));
+  for (const WireEnd& wire : start.run.wires) {
+    out["wires"].push_back({{"device", wire.device}, {"bus", wire.bus}, {"fd", wire.fd}});
+  }
   for (const BoardPin& pin : board.pins) {
     out["pins"].push_back({{"name", pin.name},
                            {"pin", pin.pin},
@@ -239,13 +264,9 @@ Result<BoardStart> read_board_text(std::string_view text) {
   keys.read("node", start.run.node);
   read_objects(keys, "devices", board.devices, first, read_device);
   read_objects(keys, "pins", board.pins, first, read_pin);
-  for (const json& entry : keys.list("watch")) {
-    if (entry.is_string()) {
-      board.watch.push_back(entry.get<std::string>());
-    } else {
-      keys.fail("watch", "is not a list of names");
-    }
-  }
+  read_objects(keys, "wires", start.run.wires, first, read_wire);
+  read_texts(keys, "flashed", start.run.flashed);
+  read_texts(keys, "watch", board.watch);
   keys.refuse_others();
   check(start, keys);
   if (first.what.empty()) return start;

@@ -2,7 +2,8 @@
 // that starts the process, read once by the process.
 //
 //   Keys    file, board, mcu, hse_Hz, hse_start_ns, lse_Hz, hsi_error, hse_error, boot_image, start,
-//           ns_per_instruction, image, seed, gdb_port, folder, node, devices[] {name, type, place, senses[], any key by its path},
+//           ns_per_instruction, image, seed, gdb_port, folder, node, flashed[],
+//           wires[] {device, bus, fd}, devices[] {name, type, place, senses[], any key by its path},
 //           pins[] {name, pin, pull, bus, place}, watch[]
 //   Exact   what is read back equals what was written, to the last bit of each number; a text that is
 //           no UTF-8 (a path may hold any bytes) comes back with other characters in their place

@@ -120,7 +120,8 @@ class CanBus {
   // silent: sends nothing at all, not even an ACK. alone: it acknowledges and hears its own frames
   // (bxCAN's loop-back).
   void configure(CanStation& station, double bit_ns, bool silent = false, bool alone = false);
-  // It joins after so many runs of eleven recessive bits: 1, after bus-off 128. Its counters begin anew.
+  static constexpr int kIdles_after_bus_off = 128;
+  // It joins after so many runs of eleven recessive bits: 1, or kIdles_after_bus_off. Its counters begin anew.
   void connect(CanStation& station, int idles);
   void disconnect(CanStation& station);
   // It has something to send.

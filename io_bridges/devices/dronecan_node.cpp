@@ -63,7 +63,7 @@ void DroneCanNode::failed(CanError /*error*/, bool sending, Nanoseconds /*now*/)
 
 void DroneCanNode::bus_off(Nanoseconds /*now*/) {
   waiting_.clear();
-  bus_.connect(station_, 128);
+  bus_.connect(station_, CanBus::kIdles_after_bus_off);
 }
 
 void DroneCanNode::receive(const CanFrame& frame, Nanoseconds now) {

@@ -7,7 +7,8 @@
 namespace whirl::io {
 
 bool EventQueue::before(const Event& a, const Event& b) {
-  return a.due_ != b.due_ ? a.due_ < b.due_ : a.sequence_ < b.sequence_;
+  if (a.due_ != b.due_) return a.due_ < b.due_;
+  return a.rank_ != b.rank_ ? a.rank_ < b.rank_ : a.sequence_ < b.sequence_;
 }
 
 Nanoseconds EventQueue::next_deadline() const {

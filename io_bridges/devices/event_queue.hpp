@@ -1,6 +1,6 @@
 // Virtual time and what happens in it: one queue per board, exact nanoseconds, deterministic order.
 //
-//   Order    by time; events of equal time fire in the order in which they were set
+//   Order    by time; of equal time by rank, then in the order in which they were set
 //   Driver   QEMU's virtual clock in the board process, run_until() in tests
 //   Progress a model whose events keep setting new ones at one instant is a bug: a failed check
 //   Rule     an action runs with now() == its due time; it may set or cancel any event, itself too
@@ -16,6 +16,10 @@ using Nanoseconds = std::int64_t;
 inline constexpr Nanoseconds kNever = INT64_MAX;
 
 class Event;
+
+// Of events of one nanosecond: what comes over a wire from another board acts when the board's own
+// models have; a boundary ends what is done at its instant.
+enum class Rank : std::uint8_t { own, wire, boundary };
 
 class EventQueue {
  public:
@@ -55,8 +59,8 @@ class EventQueue {
 // One thing that may happen. Lives inside its owner; leaving the scope cancels it.
 class Event {
  public:
-  Event(EventQueue& queue, std::function<void()> action)
-      : queue_(queue), action_(std::move(action)) {}
+  Event(EventQueue& queue, std::function<void()> action, Rank rank = Rank::own)
+      : queue_(queue), action_(std::move(action)), rank_(rank) {}
   ~Event() { cancel(); }
   Event(const Event&) = delete;
   Event& operator=(const Event&) = delete;
@@ -75,6 +79,7 @@ class Event {
   std::function<void()> action_;
   Nanoseconds due_ = kNever;
   std::uint64_t sequence_ = 0;
+  Rank rank_;
   std::size_t slot_ = kIdle;
 };
 

@@ -25,6 +25,7 @@ void I2cBus::start(Nanoseconds now) {
   addressed_.clear();
   current_ = {};
   current_.start_ns = now;
+  for (const auto& started : on_start_) started(now);
 }
 
 bool I2cBus::address(std::uint8_t address_7bit, bool read, Nanoseconds now) {
@@ -90,6 +91,14 @@ void I2cBus::stop(Nanoseconds now) {
   if (!busy_) return;
   for (I2cTarget* target : addressed_) target->stop(now);
   finish(false, now);
+  set_free(now);
+}
+
+void I2cBus::stop_unseen(Nanoseconds now) {
+  if (busy_) set_free(now);
+}
+
+void I2cBus::set_free(Nanoseconds now) {
   addressed_.clear();
   busy_ = false;
   for (const auto& free : on_free_) free(now);

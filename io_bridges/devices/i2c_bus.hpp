@@ -69,13 +69,18 @@ class I2cBus {
   void answer(bool ack, Nanoseconds now);
   std::uint8_t read(bool ack, Nanoseconds now);  // both at once
   void stop(Nanoseconds now);
+  // A STOP of what was meant for targets that are not on this side of the wire: not in the log.
+  void stop_unseen(Nanoseconds now);
   // The controller has let go of both lines without a STOP: the bus stays busy until the next one.
   void abandon(Nanoseconds now);
   // Told at each STOP: a controller that waits for a free bus may try again.
   void on_free(std::function<void(Nanoseconds)> free) { on_free_.push_back(std::move(free)); }
+  // Told at each START, repeated ones too.
+  void on_start(std::function<void(Nanoseconds)> start) { on_start_.push_back(std::move(start)); }
 
  private:
   void finish(bool repeated, Nanoseconds now);
+  void set_free(Nanoseconds now);
   void byte_passed(Nanoseconds now);
   int index() const { return static_cast<int>(current_.bytes.size()); }
 
@@ -85,7 +90,7 @@ class I2cBus {
   std::vector<I2cTarget*> addressed_;
   I2cFaults* faults_ = nullptr;
   std::function<void(const I2cTransaction&)> log_;
-  std::vector<std::function<void(Nanoseconds)>> on_free_;
+  std::vector<std::function<void(Nanoseconds)>> on_free_, on_start_;
   I2cTransaction current_;
   Nanoseconds released_ns_ = 0;
   bool busy_ = false;

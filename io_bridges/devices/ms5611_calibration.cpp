@@ -18,6 +18,27 @@ double dT_of(const Prom& prom, double temperature_K) {
   return 2.0 * above_cdegC / (slope + root);
 }
 
+// Pressure by D1 at that temperature.
+struct Line {
+  double first_cdegC, OFF, SENS;
+};
+Line line_of(const Prom& prom, double dT) {
+  const double first_cdegC = 2000.0 + dT * prom[6] / 8388608.0;
+  double OFF = prom[2] * 65536.0 + prom[4] * dT / 128.0;
+  double SENS = prom[1] * 32768.0 + prom[3] * dT / 256.0;
+  if (first_cdegC < 2000.0) {
+    const double square = (first_cdegC - 2000.0) * (first_cdegC - 2000.0);
+    OFF -= 5.0 * square / 2.0;
+    SENS -= 5.0 * square / 4.0;
+  }
+  if (first_cdegC < -1500.0) {
+    const double square = (first_cdegC + 1500.0) * (first_cdegC + 1500.0);
+    OFF -= 7.0 * square;
+    SENS -= 11.0 * square / 2.0;
+  }
+  return {first_cdegC, OFF, SENS};
+}
+
 }  // namespace
 
 std::uint8_t crc4(const Prom& prom) {
@@ -58,21 +79,16 @@ double counts_of_temperature(const Prom& prom, double temperature_K) {
 }
 
 double counts_of_pressure(const Prom& prom, double pressure_Pa, double temperature_K) {
-  const double dT = dT_of(prom, temperature_K);
-  const double first_cdegC = 2000.0 + dT * prom[6] / 8388608.0;
-  double OFF = prom[2] * 65536.0 + prom[4] * dT / 128.0;
-  double SENS = prom[1] * 32768.0 + prom[3] * dT / 256.0;
-  if (first_cdegC < 2000.0) {
-    const double square = (first_cdegC - 2000.0) * (first_cdegC - 2000.0);
-    OFF -= 5.0 * square / 2.0;
-    SENS -= 5.0 * square / 4.0;
-  }
-  if (first_cdegC < -1500.0) {
-    const double square = (first_cdegC + 1500.0) * (first_cdegC + 1500.0);
-    OFF -= 7.0 * square;
-    SENS -= 11.0 * square / 2.0;
-  }
-  return (pressure_Pa * 32768.0 + OFF) * 2097152.0 / SENS;
+  const Line line = line_of(prom, dT_of(prom, temperature_K));
+  return (pressure_Pa * 32768.0 + line.OFF) * 2097152.0 / line.SENS;
+}
+
+Air compensated(const Prom& prom, double pressure_counts, double temperature_counts) {
+  const double dT = temperature_counts - prom[5] * 256.0;
+  const Line line = line_of(prom, dT);
+  const double cold_cdegC = line.first_cdegC < 2000.0 ? dT * dT / 2147483648.0 : 0.0;
+  return {(pressure_counts * line.SENS / 2097152.0 - line.OFF) / 32768.0,
+          (line.first_cdegC - cold_cdegC) / 100.0 + 273.15};
 }
 
 }  // namespace whirl::io::ms5611

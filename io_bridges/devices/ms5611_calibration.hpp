@@ -33,4 +33,10 @@ Coefficients draw_coefficients(double spread, std::uint64_t seed, const std::str
 double counts_of_temperature(const Prom& prom, double temperature_K);                   // D2
 double counts_of_pressure(const Prom& prom, double pressure_Pa, double temperature_K);  // D1
 
+// The sheet's calculation itself, of real numbers.
+struct Air {
+  double pressure_Pa, temperature_K;
+};
+Air compensated(const Prom& prom, double pressure_counts, double temperature_counts);
+
 }  // namespace whirl::io::ms5611

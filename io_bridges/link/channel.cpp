@@ -1,12 +1,9 @@
 #include "io_bridges/link/channel.hpp"
 
 #include <fcntl.h>
-#include <linux/futex.h>
-#include <sched.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
-#include <sys/syscall.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -19,27 +16,12 @@
 #include <new>
 #include <tuple>
 
+#include "io_bridges/link/futex.hpp"
+
 namespace whirl::io {
 namespace {
 
 constexpr std::uint64_t kMagic = 0x31306b6e696c6877;  // "whlink01"
-
-void futex(std::atomic<std::uint32_t>& word, int operation, std::uint32_t value,
-           const timespec* timeout) {
-  syscall(SYS_futex, reinterpret_cast<std::uint32_t*>(&word), operation, value, timeout, nullptr,
-          0);
-}
-
-void relax() {
-#if defined(__x86_64__)
-  __builtin_ia32_pause();
-#endif
-}
-
-int own_cores() {
-  cpu_set_t cores;
-  return sched_getaffinity(0, sizeof cores, &cores) == 0 ? CPU_COUNT(&cores) : 1;
-}
 
 long preemptions() {
   rusage use{};
@@ -195,6 +177,10 @@ bool Channel::sleep_until(Mailbox& box, int timeout_ms) const {
     futex(box.sequence, FUTEX_WAIT, seen_, timeout_ms < 0 ? nullptr : &limit);
   }
   return true;
+}
+
+bool Channel::arrived() const {
+  return incoming().sequence.load(std::memory_order_acquire) != seen_;
 }
 
 Delivery Channel::received() const {

@@ -49,6 +49,7 @@ class Channel {
   Result<Done> post(std::int64_t t_ns, std::span<const std::uint8_t> bytes);
   // True: a new delivery is there. False: the time-out (ms; negative: none) passed without one.
   bool wait(int timeout_ms);
+  bool arrived() const;       // a delivery waits to be waited for
   Delivery received() const;  // of the last successful wait(); valid until the next but one post
 
   void set_state(BoardState state);

@@ -37,6 +37,14 @@ struct StaticPoint {
   double power_coefficient = 0.0;   // P / (rho n^3 D^5); 0: was not measured
 };
 
+// Measured along the shaft, J = V / (n D) above 0; coefficients as above.
+struct FlightPoint {
+  double omega_radps = 0.0;
+  double advance_ratio = 0.0;
+  double thrust_coefficient = 0.0;
+  double power_coefficient = 0.0;  // 0: was not measured
+};
+
 // What resists twisting. No modulus: a rigid blade.
 struct BladeMaterial {
   double shear_modulus_Pa = 0.0;
@@ -51,6 +59,7 @@ inline constexpr BladeMaterial kWood{0.7e9, 650.0};
 struct PropellerDescription {
   std::string place;  // "hk_10x4.5.lua", repeated in errors
   std::string name;
+  std::string make;  // "": not known
   int blade_count = 2;
   double diameter_m = 0.0;
   std::vector<PropellerStation> stations;
@@ -58,6 +67,7 @@ struct PropellerDescription {
   double mass_kg = 0.0;                     // whole propeller
   double tip_twist_correction_rad = 0.0;    // added in proportion to r/R; stated in the file
   std::vector<StaticPoint> static_points;   // for make_fitted_blade(), which finds that correction
+  std::vector<FlightPoint> flight_points;   // for fit_blade() alone
   double flap_stiffness_Nm_per_rad = 60.0;  // root spring of one blade; stiff plastic by default
   double induced_factor = 1.15;             // in hover; fades with through-flow (ring_balance.hpp)
   BladeMaterial material;                   // rigid unless given

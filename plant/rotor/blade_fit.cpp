@@ -108,7 +108,7 @@ TraitBelief fit_traits(const AxialBlade& blade, const std::vector<TrustedSet>& s
     }
     if (!better) break;
   }
-  return {t, H.llt().solve(TraitMatrix::Identity())};
+  return {t, H.llt().solve(TraitMatrix::Identity()), prior.strange_make};
 }
 
 std::vector<Prediction> predict(const AxialBlade& blade, const TraitBelief& belief,
@@ -123,9 +123,11 @@ std::vector<Prediction> predict(const AxialBlade& blade, const TraitBelief& beli
       const double spread = J.row(row) * belief.covariance * J.row(row).transpose();
       return std::sqrt(spread + own * own);
     };
-    out.push_back(
-        {{here[at], here[at + 1]},
-         {deviation(at, kThrust_off * still.CT), deviation(at + 1, kPower_off * still.CP)}});
+    const double T = belief.strange_make ? kStrange_thrust : 1.0;
+    const double P = belief.strange_make ? kStrange_power : 1.0;
+    out.push_back({{here[at], here[at + 1]},
+                   {T * deviation(at, kThrust_off * still.CT),
+                    P * deviation(at + 1, kPower_off * still.CP)}});
   }
   return out;
 }

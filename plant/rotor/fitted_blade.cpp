@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 #include <optional>
+#include <utility>
 
 #include "base/check.hpp"
 #include "plant/rotor/blade_rings.hpp"
@@ -18,6 +19,7 @@ constexpr double kRefused_beyond_deg = 2.0;
 constexpr double kLeast_answer =
     0.01;  // of thrust, per degree of tip twist; healthy blades: 0.03 to 0.06
 constexpr double kStrange = 0.75;
+constexpr double kSurprising = 3.0;  // standard deviations
 
 std::string said(const char* format, double a, double b = 0.0) {
   char text[160];
@@ -34,19 +36,47 @@ std::vector<MeasuredPoint> at_rest(const std::vector<StaticPoint>& rows) {
   return points;
 }
 
-// What the rows leave over.
-void weigh(const std::vector<StaticPoint>& rows, FittedBlade& fit) {
-  double thrust = 0.0, power = 0.0, thrust_off = 0.0, power_off = 0.0;
-  for (const StaticPoint& row : rows) {
-    const auto k = axial_coefficients(fit.axial, fit.belief.mean, row.omega_radps, 0.0);
-    thrust += row.thrust_coefficient;
-    thrust_off += std::abs(k.CT - row.thrust_coefficient);
-    if (row.power_coefficient == 0.0) continue;
-    power += row.power_coefficient;
-    power_off += std::abs(k.CP - row.power_coefficient);
+std::vector<MeasuredPoint> in_flight(const std::vector<FlightPoint>& rows) {
+  std::vector<MeasuredPoint> points;
+  points.reserve(rows.size());
+  for (const FlightPoint& row : rows) {
+    points.push_back(
+        {row.omega_radps, row.advance_ratio, row.thrust_coefficient, row.power_coefficient});
   }
-  if (thrust > 0.0) fit.thrust_off = thrust_off / thrust;
-  if (power > 0.0) fit.power_off = power_off / power;
+  return points;
+}
+
+struct LeftOver {
+  double CT = 0.0, CP = 0.0;
+};
+
+// Sum of |error| over sum of measured; 0 where nothing was.
+LeftOver left_over(const FittedBlade& fit, const std::vector<MeasuredPoint>& points) {
+  double thrust = 0.0, power = 0.0, thrust_off = 0.0, power_off = 0.0;
+  for (const MeasuredPoint& p : points) {
+    const auto k = axial_coefficients(fit.axial, fit.belief.mean, p.omega_radps, p.advance_ratio);
+    thrust += p.CT;
+    thrust_off += std::abs(k.CT - p.CT);
+    if (p.CP == 0.0) continue;
+    power += p.CP;
+    power_off += std::abs(k.CP - p.CP);
+  }
+  return {thrust > 0.0 ? thrust_off / thrust : 0.0, power > 0.0 ? power_off / power : 0.0};
+}
+
+// How far the rows lie from what was believed before them, in its own standard deviations.
+void surprise(const std::vector<StaticPoint>& rows, FittedBlade& fit) {
+  const auto before = predict(fit.axial, fit.belief, at_rest(rows));
+  double powers = 0.0;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const Prediction& p = before[i];
+    fit.thrust_surprise += (rows[i].thrust_coefficient - p.mean.CT) / p.deviation.CT /
+                           static_cast<double>(rows.size());
+    if (rows[i].power_coefficient == 0.0) continue;
+    fit.power_surprise += (rows[i].power_coefficient - p.mean.CP) / p.deviation.CP;
+    powers += 1.0;
+  }
+  if (powers > 0.0) fit.power_surprise /= powers;
 }
 
 double answer_to_twist(const FittedBlade& fit, double omega_radps) {
@@ -97,6 +127,23 @@ void note_doubts(const PropellerDescription& d, FittedBlade& fit) {
         said("static power is left over by %.0f %%: no section met thrust and power",
              100.0 * fit.power_off));
   }
+  if (fit.flight_thrust_off > kMost_left) {
+    fit.doubts.push_back(said("thrust in flight is left over by %.0f %%: check J, rpm and the unit",
+                              100.0 * fit.flight_thrust_off));
+  }
+  for (const auto& [what, sigmas] :
+       {std::pair("thrust", fit.thrust_surprise), std::pair("power", fit.power_surprise)}) {
+    if (std::abs(sigmas) <= kSurprising) continue;
+    fit.doubts.push_back(std::string("static ") + what +
+                         said(" is %+.1f standard deviations off what blades of this shape take: "
+                              "check its unit, the density and the diameter",
+                              sigmas));
+  }
+  if (fit.belief.strange_make) {
+    fit.doubts.emplace_back(
+        d.make.empty() ? "its make is not named: its band is that of a make nobody measured"
+                       : "no propeller of its make was measured: its band is wider");
+  }
   if (fit.strangeness > kStrange) {
     fit.doubts.emplace_back("its shape is like that of no propeller measured so far");
   }
@@ -115,11 +162,17 @@ Result<FittedBlade> fit_blade(PropellerDescription d) {
   fit.strangeness = d.known->strangeness(shape);
   const bool given = d.tip_twist_correction_rad != 0.0;
   fit.belief = d.known->prior_for(shape, d.drawn || given);
+  fit.belief.strange_make = !d.known->knows(d.make);
   if (given) fit.belief.mean[tip_twist_deg] = d.tip_twist_correction_rad * 180.0 / 3.14159265358979;
-  if (!d.static_points.empty()) {
-    fit.belief = fit_traits(fit.axial, {{at_rest(d.static_points), kStatic_trust}}, fit.belief);
-    weigh(d.static_points, fit);
-  }
+  surprise(d.static_points, fit);
+  std::vector<TrustedSet> sets;
+  if (!d.static_points.empty()) sets.push_back({at_rest(d.static_points), kStatic_trust});
+  if (!d.flight_points.empty()) sets.push_back({in_flight(d.flight_points), kFlight_trust});
+  if (!sets.empty()) fit.belief = fit_traits(fit.axial, sets, fit.belief);
+  const LeftOver still = left_over(fit, at_rest(d.static_points));
+  fit.thrust_off = still.CT;
+  fit.power_off = still.CP;
+  fit.flight_thrust_off = left_over(fit, in_flight(d.flight_points)).CT;
   if (auto no = refusal(d, fit)) return *no;
   note_doubts(d, fit);
   d.traits = std::make_shared<const TraitBelief>(fit.belief);

@@ -1,6 +1,7 @@
 #include "plant/rotor/known_blades.hpp"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
 
 namespace whirl::plant {
@@ -122,14 +123,14 @@ TraitBelief first_belief(bool drawn) {
   return b;
 }
 
-KnownBlade known_blade(const std::string& name, bool drawn,
+KnownBlade known_blade(const std::string& name, const std::string& make, bool drawn,
                        const std::vector<PropellerStation>& stations, const AxialBlade& blade,
                        const std::vector<TrustedSet>& sets) {
   const TraitBelief first = first_belief(drawn);
   const TraitBelief fit = fit_traits(blade, sets, first);
   const TraitMatrix all = fit.covariance.llt().solve(TraitMatrix::Identity());
   const TraitMatrix before = first.covariance.llt().solve(TraitMatrix::Identity());
-  KnownBlade known{name, drawn, blade_shape(stations), {}, {}};
+  KnownBlade known{name, make, drawn, blade_shape(stations), {}, {}};
   known.sure = all - before;
   known.pull = all * (fit.mean - first.mean);
   return known;
@@ -174,6 +175,11 @@ double KnownBlades::strangeness(const BladeShape& shape) const {
   double most = 0.0;
   for (const KnownBlade& b : blades_) most = std::max(most, likeness(b.shape, shape) - kCommon);
   return 1.0 - most;
+}
+
+bool KnownBlades::knows(const std::string& make) const {
+  return std::any_of(blades_.begin(), blades_.end(),
+                     [&](const KnownBlade& b) { return b.make == make; });
 }
 
 }  // namespace whirl::plant

@@ -25,7 +25,7 @@ BladeShape blade_shape(const std::vector<PropellerStation>& stations);
 // What its own measurements say of its traits, the prior taken out: information matrix and vector about the
 // prior's mean.
 struct KnownBlade {
-  std::string name;
+  std::string name, make;
   bool drawn = false;  // built to a drawing or scanned: its angles are known
   BladeShape shape = BladeShape::Zero();
   TraitVector pull = TraitVector::Zero();
@@ -35,7 +35,7 @@ struct KnownBlade {
 // Before any propeller was seen.
 TraitBelief first_belief(bool drawn);
 // From all that was measured of a propeller, at rest and in flight.
-KnownBlade known_blade(const std::string& name, bool drawn,
+KnownBlade known_blade(const std::string& name, const std::string& make, bool drawn,
                        const std::vector<PropellerStation>& stations, const AxialBlade& blade,
                        const std::vector<TrustedSet>& sets);
 
@@ -47,6 +47,7 @@ class KnownBlades {
   TraitBelief prior_for(const BladeShape& shape, bool drawn) const;
   // 0 for a shape like those known, towards 1 for one that is like none.
   double strangeness(const BladeShape& shape) const;
+  bool knows(const std::string& make) const;
 
   const std::vector<KnownBlade>& blades() const { return blades_; }
   const TraitMatrix& spread() const { return spread_; }

@@ -53,10 +53,10 @@ std::string known_text(const KnownBlades& known) {
   std::string text =
       "# Made from the measurements beside this file: `whirl validate` leaves it in "
       "results/validation.\n"
-      "# blade NAME drawn|read, 8 numbers of shape, then pull and certainty of the traits\n"
+      "# blade NAME MAKE drawn|read, 8 numbers of shape, then pull and certainty of the traits\n"
       "# (plant/rotor/known_blades.hpp); at the end the spread of the traits.\n";
   for (const KnownBlade& b : known.blades()) {
-    text += "blade " + b.name + (b.drawn ? " drawn" : " read");
+    text += "blade " + b.name + " " + b.make + (b.drawn ? " drawn" : " read");
     for (const double x : b.shape) put(text, x);
     for (const double x : b.pull) put(text, x);
     put(text, b.sure);
@@ -84,7 +84,7 @@ Result<KnownBlades> read_known(std::string_view text, std::string_view place) {
       continue;
     }
     KnownBlade& b = blades.emplace_back();
-    words >> b.name >> how;
+    words >> b.name >> b.make >> how;
     b.drawn = how == "drawn";
     good = kind == "blade" && take_all(words, b.shape) && take_all(words, b.pull) &&
            take(words, b.sure);

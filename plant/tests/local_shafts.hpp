@@ -27,9 +27,7 @@ class LocalShafts {
     }
   }
 
- private:
-  static constexpr int kSubSteps = 8;
-
+  // One shaft under a load of its own.
   RemoteShaftState run(std::size_t i, const RemoteShaftLoad& load, double dt_s) {
     RemoteShaftState state;
     Battery feed(lab_supply(std::max(0.1, load.source_V), load.source_ohm));
@@ -54,6 +52,9 @@ class LocalShafts {
     state.source_current_A = charge_C / dt_s;
     return state;
   }
+
+ private:
+  static constexpr int kSubSteps = 8;
 
   std::vector<AveragedMotor> motors_;
   std::vector<Drive> drives_;

@@ -29,7 +29,7 @@ struct Pair {
   static inline const BatteryParams kPack = lipo_4s_2200();
   std::size_t motors;
   BatteryParams pack;
-  AveragedPowertrain averaged{motors, MotorParams{}, pack, kAvionics_A};
+  AveragedPowertrain averaged{std::vector<MotorParams>(motors), pack, kAvionics_A};
   RemotePowertrain remote{motors, pack, kAvionics_A, MotorParams{}.inertia_kgm2};
   LocalShafts shafts{motors, MotorParams{}};
   PowertrainState here, there;  // averaged and remote

@@ -61,6 +61,26 @@ TEST(Vehicle, AcceleratesUpAsThrustOverMassLessGravity) {
                    round_off(1000, 10.0)));
 }
 
+TEST(Vehicle, TellsWhatEachRotorsBladesDo) {
+  const VehicleParams params = hp_quad();
+  RotorSet rotors;
+  for (int i = 1; i <= 4; ++i) {
+    rotors.emplace_back([i](const RotorConditions&, double) {
+      RotorLoads loads;
+      loads.flap_rad = {0.1 * i, 0.01 * i, -0.001 * i};
+      return loads;
+    });
+  }
+  Vehicle v(params, rotors, 1);
+  v.step(kStep_s);
+  for (int i = 1; i <= 4; ++i) {
+    const MotorState& m = v.state().motors[static_cast<std::size_t>(i - 1)];
+    EXPECT_EQ(m.coning_rad, 0.1 * i);
+    EXPECT_EQ(m.flap_back_rad, 0.01 * i);
+    EXPECT_EQ(m.flap_left_rad, -0.001 * i);
+  }
+}
+
 // Torques by geometry [Bangura2017, 4.3 with its signs mended]: tau_x = l (T4 - T2),
 // tau_y = l (T1 - T3), and rotors 1 and 3 push the nose to the right.
 TEST(Vehicle, EachMotorTurnsTheBodyAsItsPlaceSays) {

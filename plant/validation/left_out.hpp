@@ -3,6 +3,8 @@
 //   How      the one left out gives its geometry and its static rows, never a row in flight; what is believed of
 //            blades like it comes from the others' rows (plant/rotor/known_blades.hpp), once without it
 //            and once without its whole make. Static rows are judged on every second speed, left out.
+//   One row  of it in flight, as a propeller file may give it, beside that: what rest does not tell is one angle, and
+//            one row at 0.7 of the J range tells it. Judged on all its points, that one among them
 //   Error    sum of |error| over sum of |measured|, over all points with J > 0.1 and positive efficiency
 //   Band     stated 90 %: share of measured points inside, half-width over the mean of the measured
 //   In view  the form of the section, the length and shares of the likeness, the first belief and the discrepancy

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "base/text.hpp"
+#include "results/spread/sums.hpp"
 
 namespace whirl::results {
 namespace {
@@ -14,7 +15,7 @@ namespace {
 struct Measured {
   ProposedLimit limit;
   std::set<std::string> names;
-  std::vector<double> values;
+  Sums sums;
   bool usable = true;
 };
 
@@ -32,16 +33,9 @@ double two_digits(double x, bool up) {
   return rounded(x, std::pow(10.0, std::floor(std::log10(std::abs(x))) - 1.0), up);
 }
 
-double sigma_of(const std::vector<double>& values) {
-  double mean = 0.0, squares = 0.0;
-  for (const double x : values) mean += x / static_cast<double>(values.size());
-  for (const double x : values) squares += (x - mean) * (x - mean);
-  return std::sqrt(squares / std::max<double>(1.0, static_cast<double>(values.size()) - 1.0));
-}
-
 void add(const Expectation& e, std::uint64_t seed, Measured& m) {
   ProposedLimit& p = m.limit;
-  const bool first = m.values.empty() && m.names.empty();
+  const bool first = m.names.empty();
   m.names.insert(e.name);
   m.usable = m.usable && std::isfinite(e.measured) &&
              (e.how == "at most" || e.how == "at least" || e.how == "within");
@@ -52,7 +46,7 @@ void add(const Expectation& e, std::uint64_t seed, Measured& m) {
   }
   m.usable = m.usable && e.unit == p.unit && e.how == p.how;
   if (!m.usable) return;
-  m.values.push_back(e.measured);
+  m.sums.add(e.measured);
   // Limits that the plan computes may differ: the loosest is what the line lets pass.
   if (e.high && p.high) p.high = std::max(*p.high, *e.high);
   if (e.low && p.low) p.low = std::min(*p.low, *e.low);
@@ -72,8 +66,8 @@ void propose(const Measured& m, double margin, ProposedLimit& p) {
   } else if (p.how == "at least" && p.lowest != 0.0) {
     p.low_proposed = two_digits(p.lowest - margin * std::abs(p.lowest), false);
   } else if (p.how == "within") {
-    const double away = margin * std::max(p.highest - p.lowest, 3.0 * sigma_of(m.values));
-    if (away == 0.0) return;
+    const double away = margin * std::max(p.highest - p.lowest, 3.0 * m.sums.sigma());
+    if (m.sums.n < 2 || away == 0.0) return;
     const double width = p.highest - p.lowest + 2.0 * away;
     const double step = std::pow(10.0, std::floor(std::log10(width)) - 1.0);
     p.low_proposed = rounded(p.lowest - away, step, false);
@@ -113,7 +107,7 @@ std::vector<ProposedLimit> propose_limits(const std::vector<const SeedRun*>& run
   std::vector<Measured> all;
   for (const SeedRun* run : runs) {
     for (const Expectation& e : run->report.expectations) {
-      const auto [found, is_new] = at.emplace(e.place, all.size());
+      const auto [found, is_new] = at.emplace(e.place + "\n" + e.how + "\n" + e.unit, all.size());
       if (is_new) all.emplace_back();
       add(e, run->report.seed, all[found->second]);
     }

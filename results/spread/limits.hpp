@@ -1,6 +1,7 @@
 // Limits that a small regression would break, proposed from what a plan measured on many seeds.
 //
-//   Place    one proposal for each line of the plan: a line that judges in a loop is one limit for all of it
+//   Place    one proposal for each line of the plan (and unit, and kind of limit): a line that judges in a loop is one limit
+//            for all of it
 //   Upper    worst + margin |worst|; lower: worst - margin |worst|; a range of two sides: each side moves away from
 //            what was measured by margin times the spread between lowest and highest (three sigma if that is more)
 //   Rounded  outwards to two digits, of a range to a hundredth of its width

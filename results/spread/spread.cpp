@@ -7,6 +7,7 @@
 
 #include "base/text.hpp"
 #include "results/spread/same_expectation.hpp"
+#include "results/spread/sums.hpp"
 
 namespace whirl::results {
 namespace {
@@ -17,18 +18,6 @@ std::string number(double x, const char* format = "%.4g") {
   std::snprintf(text, sizeof text, format, x);
   return text;
 }
-
-struct Sums {
-  std::size_t n = 0;
-  double mean = 0, squares = 0;  // after Welford: of what differs little, too
-
-  void add(double x) {
-    ++n;
-    const double before = x - mean;
-    mean += before / static_cast<double>(n);
-    squares += before * (x - mean);
-  }
-};
 
 void add(const Expectation& e, std::uint64_t seed, SpreadRow& row, Sums& sums) {
   if (row.runs == 0) {
@@ -50,7 +39,7 @@ void add(const Expectation& e, std::uint64_t seed, SpreadRow& row, Sums& sums) {
 
 void conclude(const Sums& sums, SpreadRow& row) {
   row.mean = sums.n > 0 ? sums.mean : std::nan("");
-  row.sigma = sums.n > 1 ? std::sqrt(sums.squares / static_cast<double>(sums.n - 1)) : std::nan("");
+  row.sigma = sums.sigma();
 }
 
 std::vector<const SeedRun*> by_seed(std::vector<const SeedRun*> runs) {

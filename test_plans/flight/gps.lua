@@ -3,6 +3,7 @@
 -- (receiver_north, receiver_east); how far that is from the truth is told beside it.
 include "include/calibration.lua"
 include "include/gps.lua"
+include "include/judged_gps.lua"
 include "include/parameter.lua"
 
 plan "gps" {
@@ -16,47 +17,7 @@ plan "gps" {
     t:budget("fw::imu_task") { period = "1 ms", jitter = "20 us" }
     t:budget("fw::attitude_task") { execution = "300 us", response = "500 us" }
     t:budget("fw::gps_task") { execution = "200 us", response = "500 us" }
-    t:always("inside_fence"):at_least(1)
-
-    t:step "take-off"
-    t:command { takeoff = "6 m" }
-    t:within("30 s", function(s) return s.told_height_m > 5.8 end, "6 m high")
-    t:wait "10 s"
-
-    t:wait "20 s" -- the receiver settles with 15 s
-
-    t:step "hover"
-    local hover = t:record({ "receiver_north", "receiver_east", "north", "east", "height", "told_height", "attitude_error", "velocity_error_north",
-                             "velocity_error_east", "velocity_error_down", "tilt" }, "60 s")
-    t:expect(hover:rms_error { receiver_north = "0 m", receiver_east = "0 m" }, "hover: RMS distance, by its receiver"):at_most "0.5 m"
-    -- Two errors of 2.1 m per axis, the origin's and the present one, three times.
-    t:expect(hover:rms_error { north = "0 m", east = "0 m" }, "hover: RMS distance in truth"):at_most "9 m"
-    -- What it makes of its barometer, it holds. The rotors' wash, which only capture would tell, is 4 Pa of 0.1 of
-    -- their disc load; the air wanders by 5 Pa (1 sigma) in three minutes: 0.36 m, and three times 0.44 m.
-    t:expect(hover:rms_error("told_height", "6 m"), "hover: height RMS error, by its own estimate"):at_most "0.3 m"
-    t:expect(hover:rms_error("height", "6.1 m"), "hover: height RMS error in truth"):at_most "1.7 m"
-    t:expect(hover:rms_error { velocity_error_north = "0 m/s", velocity_error_east = "0 m/s" }, "hover: RMS error of velocity over ground"):at_most "0.4 m/s"
-    t:expect(hover:rms "velocity_error_down", "hover: RMS error of its climb"):at_most "0.2 m/s"
-    -- Not calibrated: 0.15 m/s2 of zero point (1 sigma) is 0.9 degrees about each axis, and across a field that dips by
-    -- 66 degrees turns the heading by 2.0: together 2.4, three times.
-    t:expect(hover:rms "attitude_error", "hover: RMS error of attitude"):at_most "7.1 deg"
-    t:expect(hover:max "tilt", "hover: tilt"):at_most "25 deg"
-
-    t:step "10 m away and back"
-    t:command { position = { north = "10 m" } }
-    t:within("20 s", function(s) return math.abs(s.receiver_north_m - 10) < 1 end, "there, by its receiver")
-    t:wait "5 s"
-    local away = t:record({ "receiver_north", "receiver_east" }, "20 s")
-    -- A third of the time: it scatters more.
-    t:expect(away:rms_error { receiver_north = "10 m", receiver_east = "0 m" }, "away: RMS distance, by its receiver"):at_most "0.7 m"
-    t:command { position = { north = "0 m" } }
-    t:within("20 s", function(s) return math.abs(s.receiver_north_m) < 1 end, "back, by its receiver")
-    t:wait "5 s"
-
-    t:step "land"
-    t:command { land = true }
-    t:within("40 s", function(s) return s.on_ground == 1 end, "on the ground")
-    t:within("8 s", function(s) return s.told_armed == 0 end, "disarmed")
+    judged_gps(t)
   end,
 }
 

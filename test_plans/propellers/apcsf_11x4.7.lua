@@ -5,6 +5,7 @@
 return {
   kind = "propeller",
   name = "APC slow fly 11x4.7",
+  make = "APC",
   blades = 2,
   diameter = "11 in",
   mass = "14 g",

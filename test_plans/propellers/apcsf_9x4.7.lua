@@ -5,6 +5,7 @@
 return {
   kind = "propeller",
   name = "APC slow fly 9x4.7",
+  make = "APC",
   blades = 2,
   diameter = "9 in",
   mass = "8.5 g",

@@ -5,6 +5,7 @@
 return {
   kind = "propeller",
   name = "GWS slow fly 11x4.7",
+  make = "GWS",
   blades = 2,
   diameter = "11 in",
   mass = "9 g",

@@ -5,6 +5,7 @@
 return {
   kind = "propeller",
   name = "GWS slow fly 9x4.7",
+  make = "GWS",
   blades = 2,
   diameter = "9 in",
   mass = "6 g",

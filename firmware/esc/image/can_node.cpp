@@ -53,35 +53,58 @@ constinit Can can;
 constinit Access access;
 constinit dronecan::Node<Can, Access> node(can, access);
 constinit dronecan::Reassembly<40> commands;  // of 20 ESCs
+constinit dronecan::Reassembly<47> speeds;    // likewise
+constinit bool by_speed = false;              // the mode's set-points are speeds
 constinit std::uint16_t setpoint = 0;
 constinit bool fresh = false, rejected = false, heard = false;
 constinit std::uint32_t ms = 0;
 constinit std::uint8_t status_transfer = 0, extended_transfer = 0;
 
-void on_command() {
-  dronecan::BitsIn in(commands.payload());
-  const std::uint32_t index = access.motor_number - 1;
-  std::int32_t raw = 0;  // an array too short to reach it says 0
-  for (std::uint32_t i = 0; i <= index && in.left() >= 14; ++i) {
-    const std::int32_t one = in.get_signed(14);
-    if (i == index) raw = one;
-  }
-  if (raw < 0) {
+// Ours of an array; one too short to reach it says 0.
+std::int32_t own_of(std::span<const std::uint8_t> payload, unsigned width) {
+  dronecan::BitsIn in(payload);
+  in.skip(width * (access.motor_number - 1));
+  return in.left() >= width ? in.get_signed(width) : 0;
+}
+
+// Negative: no such set-point.
+void follow(std::int32_t v) {
+  if (v < 0) {
     rejected = true;
     return;
   }
-  setpoint = static_cast<std::uint16_t>(raw / 4);
+  setpoint = static_cast<std::uint16_t>(v);
   fresh = true;
+}
+
+std::int32_t setpoint_of_raw(std::int32_t raw) {
+  return raw < 0 ? -1 : raw / 4;
+}
+
+// The nearest step of the speed mode's range. Slower than it begins, or faster than it ends: none.
+std::int32_t setpoint_of_speed(std::int32_t speed_rpm) {
+  if (speed_rpm == 0) return 0;
+  constexpr auto range = range_of(Mode::speed);
+  constexpr auto low = static_cast<std::int32_t>(range.min / kRadps_per_rpm + 0.5f);
+  constexpr auto high = static_cast<std::int32_t>(range.max / kRadps_per_rpm + 0.5f);
+  if (!by_speed || speed_rpm < low || speed_rpm > high) return -1;
+  return 1 + ((speed_rpm - low) * (kSetpointMax - 1) + (high - low) / 2) / (high - low);
 }
 
 void read_frames() {
   hal::CanFrame frame;
   for (int i = 0; i < 4 && can.read(frame); ++i) {
     heard = true;
-    if (!dronecan::is_message(frame.id, dronecan::kRawCommand)) {
+    if (dronecan::is_message(frame.id, dronecan::kRawCommand)) {
+      if (commands.take(frame, dronecan::kRawCommand)) {
+        follow(setpoint_of_raw(own_of(commands.payload(), 14)));
+      }
+    } else if (dronecan::is_message(frame.id, dronecan::kRpmCommand)) {
+      if (speeds.take(frame, dronecan::kRpmCommand)) {
+        follow(setpoint_of_speed(own_of(speeds.payload(), 18)));
+      }
+    } else {
       node.on_frame(frame);
-    } else if (commands.take(frame, dronecan::kRawCommand)) {
-      on_command();
     }
   }
 }
@@ -121,12 +144,14 @@ void start(std::uint32_t motor_number) {
   const std::uint8_t id = protocol::address_of(motor_number);
   node.be({id, "org.whirlstand.esc", unique_id()});
   const std::array<hal::CanFilter, 2> filters{
-      {{dronecan::message_id(0, dronecan::kRawCommand.id, 0), 0x00FF'FF80},
+      {{dronecan::message_id(0, dronecan::kRawCommand.id, 0),
+        0x00FF'FE80},  // and RPMCommand, beside it
        dronecan::Node<Can, Access>::services_to(id)}};
   std::ignore = can.init(filters);
 }
 
-bool take_setpoint(std::uint16_t& v) {
+bool take_setpoint(Mode mode, std::uint16_t& v) {
+  by_speed = mode == Mode::speed;
   read_frames();
   if (!fresh) return false;
   fresh = false;

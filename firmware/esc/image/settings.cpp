@@ -2,22 +2,13 @@
 
 #include <cstring>
 
-#include "firmware/crc32.hpp"
 #include "firmware/esc/image/registers.hpp"
+#include "firmware/esc/image/settings_page.hpp"
 
 namespace fw::esc::settings {
 namespace {
 
 using namespace f103;
-
-struct Stored {
-  std::uint32_t magic;
-  std::uint32_t size;
-  Settings settings;
-  std::uint32_t crc;
-};
-static_assert(sizeof(Stored) % 4 == 0 && sizeof(Stored) <= 1024);
-constexpr std::uint32_t kMagic = 0x5E77'0002;
 
 std::uint32_t crc_of(const Stored& stored) {
   const auto* bytes = static_cast<const char*>(static_cast<const void*>(&stored));

@@ -52,6 +52,19 @@ TEST(Motor, SharesAreOfThePlantsOwnOnAVehicleToo) {
   EXPECT_EQ(read.inertia_kgm2, 4e-5);
 }
 
+TEST(Motor, AFileIsThatMotorButForTheKeysBesideIt) {
+  const std::string stock = std::string(WHIRL_SOURCE_FOLDER) + "/test_plans/motors/d2836_9.lua";
+  const plant::MotorParams own,
+      read = motor("{ file = '" + stock + "', inertia = '+10 %' }", MissingKeys::refused);
+  EXPECT_TRUE(near(read.torque_constant_NmpA, own.torque_constant_NmpA,
+                   stated(1e-5, "the plant's own is rounded to a hundred thousandth")));
+  EXPECT_TRUE(near(read.inductance_H, own.inductance_H, round_off(4, 2e-5)));
+  EXPECT_TRUE(near(read.inertia_kgm2, 1.1 * own.inertia_kgm2, round_off(4, 1e-4)));
+  const lua::Table missing = table("{ file = 'nowhere.lua' }");
+  read_motor(missing, MissingKeys::refused);
+  EXPECT_NE(complaint(missing).find("nowhere.lua"), std::string::npos) << complaint(missing);
+}
+
 TEST(Feed, ShortAndLongFormAreTheSamePack) {
   const auto is_lipo = [](const std::string& text) {
     const lua::Table t = table(text);
@@ -135,7 +148,7 @@ TEST(StandTable, OldWordsAreRefusedWithTheList) {
   ASSERT_FALSE(read.ok());
   EXPECT_EQ(read.error().message(),
             "part.lua:1: unknown key 'supply_resistance' (known here: address, battery, i2c, mode, "
-            "motor, prop, serial, shunt, supply, throttle)");
+            "motor, prop, serial, shunt, supply, throttle, tolerance)");
 }
 
 TEST(StandTable, WhatTheBoardsPowerStageCannotTakeIsRefused) {

@@ -64,7 +64,30 @@ TEST_F(PropellerFile, NewtonsAndWattsSayWhatCoefficientsSay) {
                    stated(1e-4, "five digits")));
 }
 
+// Two rows that contradict what blades of this shape do: the fit moves towards each, and only as far as its trust.
+TEST_F(PropellerFile, ARowInFlightMovesTheBladeTowardsIt) {
+  const std::string still = "static = { { rpm = 6000, CT = 0.161, CP = 0.080 } },";
+  const auto at = [](const auto& prop) {
+    return plant::propeller_coefficients(prop.value(), 628.3185, 0.4).CT;
+  };
+  const double alone = at(read(still));
+  for (const double share : {0.9, 1.1}) {
+    const auto prop =
+        read(still + "flight = { { rpm = 6000, J = 0.4, CT = " + std::to_string(share * alone) +
+             " } },");
+    ASSERT_TRUE(prop.ok()) << prop.error().message();
+    EXPECT_GT((at(prop) / alone - 1.0) / (share - 1.0), 0.4) << share;
+    EXPECT_LT((at(prop) / alone - 1.0) / (share - 1.0), 1.05) << share;
+  }
+}
+
 TEST_F(PropellerFile, SlipsOfThePenAreRefused) {
+  EXPECT_NE(fault("flight = { { rpm = 6000, CT = 0.1 } },").find("J"), std::string::npos);
+  EXPECT_NE(fault("flight = { { rpm = 6000, J = 0, CT = 0.1 } },").find("J"), std::string::npos);
+  EXPECT_NE(fault("flight = { { rpm = 6000, J = 0.4, CT = 0.1 } }, polars = { { r = 0, file = "
+                  "\"e63.polar\" } },")
+                .find("goes without polars"),
+            std::string::npos);
   EXPECT_NE(fault("material = \"nylon\",").find("goes with polars"), std::string::npos);
   EXPECT_NE(fault("static = { { rpm = 6000, CT = 0.161 } }, tip_twist_correction = \"2 deg\",")
                 .find("does not go with static"),

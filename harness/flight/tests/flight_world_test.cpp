@@ -74,6 +74,31 @@ TEST(FlightWorld, AGustPushesItDownwind) {
   EXPECT_GT(flight.value("east"), before_m + 0.01);
 }
 
+// Nose north: a wind from the north tilts the discs back, one from the east to the left, each of them; what the
+// advancing sides add differs in sign with the spins, and is smaller.
+TEST(FlightWorld, ItsDiscsTiltAwayFromTheWind) {
+  for (const char* axis : {"back", "left"}) {
+    Flight flight;
+    flight.run(1.0);
+    flight.height_m = 1.1;
+    flight.run(4.0);
+    const bool back = std::string(axis) == "back";
+    const auto gust =
+        back ? "{ north = '-4 m/s', duration = '1 s' }" : "{ east = '-4 m/s', duration = '1 s' }";
+    ASSERT_TRUE(plan::disturb(flight.world, table(gust), flight.t_ns).ok());
+    flight.run(0.2);
+    double away = 0.0, across = 0.0;
+    for (const std::string n : {"_1", "_2", "_3", "_4"}) {
+      EXPECT_GT(flight.value("flapping_cone" + n), 1e-3) << n;
+      EXPECT_GT(flight.value("flapping_" + std::string(axis) + n), 0.0) << n;
+      away += flight.value("flapping_" + std::string(axis) + n);
+      across += flight.value(std::string("flapping_") + (back ? "left" : "back") + n);
+    }
+    EXPECT_GT(away, 4e-4) << axis;
+    EXPECT_LT(std::abs(across), 0.3 * away) << axis;
+  }
+}
+
 TEST(FlightWorld, TellsTheBoardWhatItFeels) {
   Flight flight;
   flight.run(1.0);

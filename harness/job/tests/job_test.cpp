@@ -8,13 +8,13 @@ namespace {
 TEST(Job, CrossesAProcessBoundaryWhole) {
   const Job sent{
       "a b.lua", "hover \xC3\xA4", UINT64_MAX, {{"vehicle.motor.resistance", "1 ohm"}}, "out", true,
-      true};
+      true,      "calibrations/x"};
   const auto got = read_job(job_text(sent));
   ASSERT_TRUE(got.ok()) << got.error().message();
   EXPECT_EQ(job_text(got.value()), job_text(sent));
   EXPECT_EQ(got.value().seed, UINT64_MAX);
   EXPECT_EQ(got.value().settings.at(0).value, "1 ohm");
-  EXPECT_FALSE(read_job(job_text({"f", "p", std::nullopt, {}, "", false, false})).value().seed);
+  EXPECT_FALSE(read_job(job_text({"f", "p", std::nullopt, {}, "", false, false, ""})).value().seed);
 }
 
 TEST(Job, AReportCrossesBackWhole) {

@@ -42,7 +42,15 @@ Result<Done> BenchTarget::start() {
   started_ = true;
   if (options_.real_time) held_.scheduling = pacing::take_real_time().told;
   std::ignore = pacer_.due_ns(0);
+  for (const auto& link : links_) link->keep_time(time());
   return Done{};
+}
+
+BenchTime BenchTarget::time() {
+  return {[this](std::int64_t host_ns) {
+            return std::clamp<std::int64_t>(pacer_.virtual_ns(host_ns), 0, until_ns_);
+          },
+          [this](std::int64_t t_ns) { return pacer_.due_ns(t_ns); }};
 }
 
 void BenchTarget::run(std::int64_t until_ns, const io::Batch& sensed) {

@@ -43,6 +43,7 @@ class BenchTarget final : public Target {
   const HeldPace* held_pace() const override { return &held_; }
 
  private:
+  BenchTime time();
   Result<Done> serve_until(std::int64_t due_host_ns);
   Result<Done> serve_all(std::int64_t now_host_ns);
   void tell(std::int64_t until_ns, io::Batch& happened);

@@ -9,8 +9,6 @@
 #include "io_bridges/protocols/dronecan/esc.hpp"
 #include "io_bridges/protocols/dronecan/transfer.hpp"
 #include "io_bridges/protocols/dronecan/vehicle_state.hpp"
-#include "io_bridges/socketcan/candump_log.hpp"
-#include "io_bridges/socketcan/socket_can.hpp"
 
 namespace whirl::bench {
 namespace {
@@ -33,26 +31,15 @@ std::int64_t host_now_ns() {
 
 }  // namespace
 
-Result<std::unique_ptr<io::CanPort>> socket_can_port(const CanBusLink& link) {
-  auto port = io::SocketCan::open(link.interface, link.bit_rate_bps);
-  if (!port) return port.error();
-  return std::unique_ptr<io::CanPort>(std::make_unique<io::SocketCan>(std::move(port.value())));
-}
-
 CanLink::CanLink(CanOptions options, CanMaker maker)
-    : options_(std::move(options)),
-      maker_(std::move(maker)),
-      monitor_(options_.link.bit_rate_bps) {}
+    : options_(std::move(options)), end_(options_.link, std::move(maker), options_.log) {}
 
 CanLink::~CanLink() {
   close();
 }
 
 Result<Done> CanLink::open() {
-  auto port = maker_(options_.link);
-  if (!port) return port.error();
-  port_ = std::move(port.value());
-  if (!options_.log.empty()) log_.open(options_.log);
+  if (auto opened = end_.open(); !opened) return opened;
   heard_host_ns_ = host_now_ns();
   thread_ = std::thread([this] { work(); });
   return Done{};
@@ -96,10 +83,8 @@ Result<Done> CanLink::send_due(std::int64_t now_host_ns) {
 }
 
 Result<bool> CanLink::send(const io::CanFrame& frame) {
-  const auto sent = port_->send(frame);
-  if (!sent) return sent;
-  if (!sent.value()) return monitor_.on_queue_full(), sent;
-  if (frame.length == 0) return sent;
+  const auto sent = end_.send(frame);
+  if (!sent || !sent.value() || frame.length == 0) return sent;
   const std::uint8_t tail = frame.data[frame.length - 1u];
   next_transfer_id_[frame.id] = static_cast<std::uint8_t>((tail + 1) & dc::tail::kTransfer_id);
   return sent;
@@ -107,20 +92,10 @@ Result<bool> CanLink::send(const io::CanFrame& frame) {
 
 Result<Done> CanLink::take_in(Arrivals& arrivals) {
   for (int n = 0; n < kMost_arrivals; ++n) {
-    const auto got = port_->receive();
+    const auto got = end_.receive();
     if (!got) return got.error();
     if (!got.value()) break;
     const io::CanArrival& arrival = *got.value();
-    monitor_.on_arrival(arrival);
-    if (arrival.trouble) {
-      if (!arrival.trouble->bus_off) continue;
-      return Error{ErrorKind::host, options_.link.interface,
-                   "is bus-off: too many of its frames were not understood",
-                   "bit rates, terminators and wires, then whirl bench check"};
-    }
-    if (log_) {
-      log_ << io::candump_line(arrival.host_ns, options_.link.interface, arrival.frame) << '\n';
-    }
     io::CanRecord record;
     record.start_ns = arrival.host_ns;
     record.frame = io::to_message(arrival.frame);
@@ -156,7 +131,7 @@ void CanLink::send_zeros() {
 
 void CanLink::make_safe() {
   const std::scoped_lock lock(mutex_);
-  if (safe_ || !port_) return;
+  if (safe_ || !end_.is_open()) return;
   safe_ = true;
   orders_.clear();
   send_zeros();
@@ -202,19 +177,7 @@ void CanLink::close() {
     changed_.notify_one();
   }
   thread_.join();
-  port_.reset();
-  log_.close();
-}
-
-std::vector<std::pair<std::string, std::string>> CanLink::versions() const {
-  return {{"link " + options_.link.name, port_ ? port_->version() : ""}};
-}
-
-std::vector<std::string> CanLink::findings() const {
-  const io::CanCounts& c = monitor_.counts();
-  const bool quiet = c.dropped == 0 && c.error_frames == 0 && c.queue_full == 0;
-  if (quiet) return {};
-  return {options_.link.interface + ": " + monitor_.text()};
+  end_.close();
 }
 
 }  // namespace whirl::bench

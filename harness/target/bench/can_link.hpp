@@ -10,24 +10,14 @@
 #pragma once
 #include <condition_variable>
 #include <deque>
-#include <fstream>
-#include <functional>
 #include <map>
-#include <memory>
 #include <mutex>
-#include <optional>
 #include <thread>
 
-#include "harness/target/bench/bench_description.hpp"
+#include "harness/target/bench/can_end.hpp"
 #include "harness/target/bench/link.hpp"
-#include "io_bridges/socketcan/can_monitor.hpp"
-#include "io_bridges/socketcan/can_port.hpp"
 
 namespace whirl::bench {
-
-// Opens it. Errors  bad_input: see io_bridges/socketcan/can_interface.hpp
-using CanMaker = std::function<Result<std::unique_ptr<io::CanPort>>(const CanBusLink&)>;
-Result<std::unique_ptr<io::CanPort>> socket_can_port(const CanBusLink& link);
 
 struct CanOptions {
   CanBusLink link;
@@ -47,13 +37,15 @@ class CanLink final : public Link {
   bool take(const io::Reader& order, std::int64_t due_host_ns) override;
   Result<Done> serve(std::int64_t now_host_ns, Arrivals& arrivals) override;
   std::int64_t next_due_host_ns() const override;
-  int file() const override { return port_ ? port_->file() : -1; }
+  int file() const override { return end_.file(); }
   void make_safe() override;
   bool heartbeat_lost() const override;
   void close() override;
-  std::vector<std::pair<std::string, std::string>> versions() const override;
-  std::vector<std::string> findings() const override;
-  const io::CanMonitor& monitor() const { return monitor_; }
+  std::vector<std::pair<std::string, std::string>> versions() const override {
+    return end_.versions();
+  }
+  std::vector<std::string> findings() const override { return end_.findings(); }
+  const io::CanMonitor& monitor() const { return end_.monitor(); }
 
  private:
   struct Order {
@@ -67,11 +59,8 @@ class CanLink final : public Link {
   Result<Done> take_in(Arrivals& arrivals);
 
   CanOptions options_;
-  CanMaker maker_;
-  std::unique_ptr<io::CanPort> port_;
-  io::CanMonitor monitor_;
-  std::ofstream log_;
-  mutable std::mutex mutex_;  // over all below, and the port's send()
+  CanEnd end_;
+  mutable std::mutex mutex_;  // over all below, and end_'s send()
   std::condition_variable changed_;
   std::deque<Order> orders_;
   std::map<std::uint32_t, std::uint8_t> next_transfer_id_;  // by identifier, after what went out

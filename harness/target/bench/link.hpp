@@ -30,6 +30,12 @@ using Arrivals = std::vector<Arrival>;
 // The virtual time of one of the host's.
 using VirtualTime = std::function<std::int64_t(std::int64_t host_ns)>;
 
+// For a link that lives in virtual time itself.
+struct BenchTime {
+  VirtualTime virtual_ns;                                      // never beyond the step at hand
+  std::function<std::int64_t(std::int64_t t_ns)> due_host_ns;  // when a virtual time is due
+};
+
 class Link {
  public:
   virtual ~Link() = default;
@@ -37,6 +43,8 @@ class Link {
   virtual std::string name() const = 0;
   // Errors  bad_input: what the bench file names is not there, or not what it says; with place and cure
   virtual Result<Done> open() = 0;
+  // Once, before the first order.
+  virtual void keep_time(BenchTime /*time*/) {}
   // True: it is this link's, and will go out at that time of the host.
   virtual bool take(const io::Reader& order, std::int64_t due_host_ns) = 0;
   // Errors  host: it was unplugged, or nobody takes what is written

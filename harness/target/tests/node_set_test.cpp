@@ -1,6 +1,9 @@
 #include "harness/target/node_set.hpp"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <optional>
 
 namespace whirl {
 namespace {
@@ -13,6 +16,8 @@ class PlayedTarget : public Target {
     io::Batch next;  // to be delivered with the next arrive()
     Result<TargetState> state = TargetState::running;
     int stopped = 0;
+    std::optional<Error> died, hung;
+    std::optional<bool> asks;  // about the others while it is waited for; true: it is silent
   };
   explicit PlayedTarget(Log& log) : log_(log) {}
 
@@ -23,11 +28,17 @@ class PlayedTarget : public Target {
     }
   }
   Result<TargetState> arrive(io::Batch& happened) override {
+    if (log_.asks) {
+      if (const auto other = company_(*log_.asks)) return *other;
+    }
     io::add_for_board(log_.next, 0, happened);
     log_.next.clear();
     return log_.state;
   }
   void stop(io::Batch&) override { ++log_.stopped; }
+  std::optional<Error> died() override { return log_.died; }
+  std::optional<Error> hangs() override { return log_.hung; }
+  void set_company(Company ask) override { company_ = std::move(ask); }
   Offers offers() const override { return kAll_offers; }
   std::vector<std::pair<std::string, std::string>> versions() const override {
     return {{"qemu", "7.2"}};
@@ -35,6 +46,7 @@ class PlayedTarget : public Target {
 
  private:
   Log& log_;
+  Company company_;
 };
 
 class NodeSets : public ::testing::Test {
@@ -44,6 +56,15 @@ class NodeSets : public ::testing::Test {
     entries.push_back({"fc", std::make_unique<PlayedTarget>(fc_)});
     entries.push_back({"esc", std::make_unique<PlayedTarget>(esc_)});
     return {std::move(entries), std::move(wires)};
+  }
+  // fc leads, esc follows.
+  NodeSet led_pair(io::BoardWire wire) {
+    std::vector<NodeSet::Entry> entries;
+    entries.push_back({"fc", std::make_unique<PlayedTarget>(fc_)});
+    entries.push_back({"esc", std::make_unique<PlayedTarget>(esc_)});
+    std::vector<BoardWireLink> links;
+    links.push_back({0, 1, std::move(wire)});
+    return {std::move(entries), {}, std::move(links)};
   }
   static void send(PlayedTarget::Log& log, std::uint16_t uart, const std::string& text) {
     log.next.add(io::Kind::uart_received, uart, 500'000, text.data(),
@@ -113,6 +134,49 @@ TEST_F(NodeSets, TheFirstThatEndsOrErrsEndsAllByItsName) {
   EXPECT_EQ(arrived.error().place, "fc: QEMU");
   set.stop(happened);
   EXPECT_EQ(fc_.stopped + esc_.stopped, 2);
+}
+
+// fc is waited for, and waits for the answer of an ESC that is dead.
+TEST_F(NodeSets, WhoDiesWhileAnotherWaitsForItIsNamedAndItsWireIsClosed) {
+  auto wire = io::BoardWire::create(2);
+  auto esc_end = io::BoardWire::attach(dup(wire.value().fd()));
+  NodeSet set = led_pair(std::move(wire.value()));
+  fc_.asks = false;
+  set.run(1'000'000, {});
+  io::Batch happened;
+  EXPECT_TRUE(set.arrive(happened).ok());  // nobody has died
+  EXPECT_TRUE(esc_end.value().post({}));
+  esc_.died = Error{ErrorKind::host, "virtual board", "was killed", ""};
+  set.run(2'000'000, {});
+  const auto arrived = set.arrive(happened);
+  ASSERT_FALSE(arrived.ok());
+  EXPECT_EQ(arrived.error().place, "esc: virtual board");
+  EXPECT_FALSE(esc_end.value().post({}));
+}
+
+TEST_F(NodeSets, WhoIsSilentWithoutWaitingForAnotherHangs) {
+  auto wire = io::BoardWire::create(2);
+  NodeSet set = led_pair(std::move(wire.value()));
+  esc_.hung = Error{ErrorKind::host, "virtual board", "was stopped", ""};
+  fc_.asks = false;
+  set.run(1'000'000, {});
+  io::Batch happened;
+  EXPECT_TRUE(set.arrive(happened).ok());
+  fc_.asks = true;  // its limit has passed
+  set.run(2'000'000, {});
+  const auto arrived = set.arrive(happened);
+  ASSERT_FALSE(arrived.ok());
+  EXPECT_EQ(arrived.error().place, "esc: virtual board");
+}
+
+// What the leader's end makes of the others is less than what ended it.
+TEST_F(NodeSets, ALockedCoreSaysMoreThanTheEndOfThoseThatWaitedForIt) {
+  NodeSet set = pair_with({});
+  fc_.state = TargetState::ended;
+  esc_.state = TargetState::cpu_locked;
+  io::Batch happened;
+  set.run(1'000'000, {});
+  EXPECT_EQ(set.arrive(happened).value(), TargetState::cpu_locked);
 }
 
 }  // namespace

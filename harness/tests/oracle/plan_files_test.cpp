@@ -106,6 +106,27 @@ TEST(PlanFile, NodesAndTheirWiresAreTaken) {
   EXPECT_EQ(plan.wires[0].b.uart, 12);
 }
 
+TEST(PlanFile, ABoardInTheDevicesPlaceAndWhatIsFlashedBesideItsImageAreTaken) {
+  std::string text = nodes("wires = { { from = 'a.esc1', to = 'b.i2c2' } },");
+  text.replace(text.find("board = 'c'"), 11, "board = 'c', flash = { 'cells' }");
+  const Loaded loaded = load(text);
+  ASSERT_EQ(loaded.plans.size(), 1u) << loaded.error;
+  const Plan& plan = loaded.plans[0];
+  EXPECT_TRUE(plan.wires.empty());
+  ASSERT_EQ(plan.board_wires.size(), 1u);
+  EXPECT_EQ(plan.board_wires[0].leader, 0u);
+  EXPECT_EQ(plan.board_wires[0].device, "esc1");
+  EXPECT_EQ(plan.board_wires[0].follower, 1u);
+  EXPECT_EQ(plan.board_wires[0].bus, "i2c2");
+  EXPECT_EQ(plan.nodes[1].flash, std::vector<std::string>{"cells"});
+  const auto refused = [](const std::string& from, const std::string& to) {
+    return load(nodes("wires = { { from = '" + from + "', to = '" + to + "' } },")).error;
+  };
+  EXPECT_NE(refused("c.esc1", "b.i2c2").find("wires[1].from: 'c.esc1' is on no node"),
+            std::string::npos);
+  EXPECT_NE(refused("b.esc1", "b.i2c2").find("a wire joins two boards"), std::string::npos);
+}
+
 TEST(PlanFile, RefusesNodesAndWiresThatLeadNowhere) {
   const auto refused = [](const std::string& from, const std::string& to) {
     return load(nodes("wires = { { from = '" + from + "', to = '" + to + "' } },")).error;

@@ -16,6 +16,8 @@ Result<BoardStart> read(const std::string& pairs) {
 BoardStart everything() {
   BoardStart start;
   start.run = {.image = "a.elf",
+               .flashed = {"cells.elf"},
+               .wires = {{.device = "esc1", .fd = 7}, {.bus = "i2c2", .fd = 8}},
                .seed = 18446744073709551615u,
                .gdb_port = 1234,
                .folder = "runs/1",

@@ -49,6 +49,7 @@ class FakeOpenocd {
     char piece[512];
     for (ssize_t n = 0; (n = ::recv(peer, piece, sizeof piece, 0)) > 0;) {
       waiting.append(piece, static_cast<std::size_t>(n));
+      if (waiting.find("{die}") != std::string::npos) break;
       for (std::size_t end; (end = waiting.find('\x1a')) != std::string::npos;
            waiting.erase(0, end + 1)) {
         const std::string reply = answer(waiting.substr(0, end)) + '\x1a';
@@ -142,6 +143,16 @@ TEST(TclClient, NobodyThereIsSaid) {
   const auto client = TclClient::connect(port);
   ASSERT_FALSE(client);
   EXPECT_EQ(client.error().kind, ErrorKind::host);
+}
+
+TEST(TclClient, AServerThatEndsInsteadOfAnsweringIsSaid) {
+  FakeOpenocd server({});
+  const auto client = TclClient::connect(server.port(), 1000);
+  ASSERT_TRUE(client.ok()) << client.error().message();
+  const auto answer = client.value()->ask("die", 1000);
+  ASSERT_FALSE(answer.ok());
+  EXPECT_EQ(answer.error().kind, ErrorKind::host);
+  EXPECT_NE(answer.error().what.find("has ended"), std::string::npos) << answer.error().what;
 }
 
 // Wilson's interval as published: 81 of 263 is 0.308, 0.2553 to 0.3662 [Newcombe, Statistics in Medicine 17 (1998), table I].

@@ -9,11 +9,13 @@
 #include <tuple>
 
 #include "base/text.hpp"
+#include "io_bridges/board_description/bus_name.hpp"
 #include "io_bridges/devices/faults.hpp"
 #include "io_bridges/qemu/board/chip_factory.hpp"
 #include "io_bridges/qemu/board/post_mortem.hpp"
 #include "io_bridges/qemu/stm32/adc.hpp"
 #include "io_bridges/rack/devices/table.hpp"
+#include "io_bridges/rack/tell_finding.hpp"
 
 namespace whirl::board {
 namespace {
@@ -41,8 +43,11 @@ Board::Board(Setup setup, io::Channel channel, Emulator& emulator)
           {events_, *this, *this, *this, [this](const io::Finding& f) { report(f); },
            setup_.description.hse_Hz, setup_.description.lse_Hz, setup_.description.hse_start_ns,
            setup_.description.hsi_error, setup_.description.hse_error})),
+      wires_({events_, [this](const io::Finding& f) { report(f); },
+              [this] { finish(io::BoardState::ended); }}),
       devices_({events_, *chip_, happened_, [this](const io::Finding& f) { report(f); },
-                setup_.run.seed, rack::device_types(), setup_.run.folder, setup_.run.node}),
+                setup_.run.seed, rack::device_types(), setup_.run.folder, setup_.run.node, &wires_,
+                setup_.run.wires}),
       hangs_(events_, emulator, happened_),
       systick_(
           events_, chip_->clocks(), [this] { return emulator_.ahead_ns(); },
@@ -64,7 +69,8 @@ Board::Board(Setup setup, io::Channel channel, Emulator& emulator)
       tpiu_("TPIU", 0),
       etm_("ETM", 0),
       debug_mcu_("DBGMCU", setup_.part->idcode),
-      boundary_(events_, [this] { synchronise(); }),
+      boundary_(
+          events_, [this] { synchronise(); }, io::Rank::boundary),
       profile_(events_, [this] { check_profile(); }) {
   events_.set_clock([this] { return emulator_.now(); });
   events_.set_rearm([this](Nanoseconds deadline) { emulator_.arm(deadline); });
@@ -86,7 +92,23 @@ Peek Board::peek() const {
 
 Result<Done> Board::build_devices() {
   if (const auto built = devices_.build(setup_.description); !built) return built.error();
+  if (const auto followed = follow_wires(); !followed) return followed.error();
   return watch_converters();
+}
+
+Result<Done> Board::follow_wires() {
+  for (const WireEnd& end : setup_.run.wires) {
+    if (!end.device.empty()) continue;  // led by the rack, in place of that device
+    io::I2cBus* bus = devices_.i2c(bus_number(end.bus).value_or(0));
+    if (bus == nullptr) {
+      return Error{ErrorKind::bad_input, setup_.description.name,
+                   "the part has no '" + end.bus + "' for the wire to another board", ""};
+    }
+    auto wire = io::BoardWire::attach(end.fd);
+    if (!wire) return wire.error();
+    wires_.follow(*bus, std::move(wire.value()));
+  }
+  return Done{};
 }
 
 // "adc1" in the watch list: each of its sequences is told like a call, from its trigger to its end.
@@ -166,6 +188,7 @@ void Board::synchronise() {
   report_clocks();
   report_busy();
   if (!reported_) {
+    wires_.at_boundary(now);
     devices_.report(now);
     const auto posted = channel_.post(now, happened_.bytes());
     if (!posted) refuse(posted.error());
@@ -184,6 +207,7 @@ void Board::await_orders() {
   WHIRL_CHECK(reader.complete());
   WHIRL_CHECK(orders.t_ns > events_.now(), orders.t_ns, events_.now());
   boundary_.at(orders.t_ns);
+  wires_.after_boundary(events_.now(), orders.t_ns);
 }
 
 void Board::hang(const io::FaultCommand& fault) {
@@ -214,6 +238,7 @@ void Board::on_message(const io::Reader& message) {
   if (devices_.on_message(message)) return;
   if (message.header().kind == io::Kind::end_of_run) {
     watch_.run_ends(events_.now());
+    wires_.run_ends(events_.now());
     devices_.run_ends(events_.now());
     add_statistics();
     finish(io::BoardState::ended);
@@ -335,9 +360,7 @@ void Board::core_stopped(StoppedCore why, Nanoseconds now, const Registers& regi
 }
 
 void Board::report(const io::Finding& finding) {
-  const std::string text = finding.where + '\0' + finding.what;
-  happened_.add(io::Kind::finding, 0, finding.t_ns, text.data(),
-                static_cast<std::uint32_t>(text.size()));
+  rack::tell_finding(finding, happened_);
 }
 
 void Board::set(int irq, bool level) {

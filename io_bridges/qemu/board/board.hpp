@@ -24,6 +24,7 @@
 #include "io_bridges/qemu/board/parts.hpp"
 #include "io_bridges/qemu/board/unanswered.hpp"
 #include "io_bridges/qemu/board/watch.hpp"
+#include "io_bridges/qemu/board/wire_ends.hpp"
 #include "io_bridges/qemu/stm32/chip_model.hpp"
 
 namespace whirl::board {
@@ -98,6 +99,7 @@ class Board final : stm32::InterruptLines, stm32::SystemBus, stm32::FlashArray {
   void hang(const io::FaultCommand& fault);
   void pull_reset_pin(const io::FaultCommand& fault);
   Result<Done> watch_converters();
+  Result<Done> follow_wires();
   void retime();
   void report_clocks();
   void report_busy();
@@ -122,6 +124,7 @@ class Board final : stm32::InterruptLines, stm32::SystemBus, stm32::FlashArray {
   io::Batch happened_;
   Watch watch_;
   std::unique_ptr<stm32::ChipModel> chip_;
+  WireEnds wires_;
   DeviceRack devices_;
   CodeHangs hangs_;
   std::deque<io::Event> reset_pulls_;  // events must stay where they are

@@ -6,9 +6,10 @@
 #include "io_bridges/devices/can_wire_faults.hpp"
 #include "io_bridges/devices/wire_faults.hpp"
 #include "io_bridges/qemu/board/board_pins.hpp"
-#include "io_bridges/qemu/board/can_log.hpp"
+#include "io_bridges/qemu/board/empty_can.hpp"
 #include "io_bridges/qemu/board/spi_log.hpp"
 #include "io_bridges/qemu/stm32/bxcan.hpp"
+#include "io_bridges/rack/can_log.hpp"
 #include "io_bridges/rack/check_board.hpp"
 
 namespace whirl::board {
@@ -57,6 +58,8 @@ class DeviceRack::Wiring final : public rack::Rack {
   Result<Done> check_pins(const BoardDevice& device) const;
   std::string bus_of(const std::string& pin) const;
   Result<Done> add(const BoardDescription& board, int number);
+  Result<Done> lead(const BoardDevice& device, std::unique_ptr<io::I2cBus> ear);
+  const WireEnd* far_end(const BoardDevice& device) const;
   Result<Done> subscribe(rack::RackDevice& device, const std::string& place);
   io::SpiBus* spi(int number);
   void report_fights(io::Wire& wire, const std::string& name);
@@ -68,7 +71,9 @@ class DeviceRack::Wiring final : public rack::Rack {
   std::map<const io::Wire*, std::string> names_;  // of devices by their chip select
   std::vector<BoardPin> named_pins_;              // with neither resistor nor bus
   std::vector<std::string> analog_;               // pins that a device puts a voltage on
-  std::set<int> i2c_soldered_;                    // to the pins that the board names
+  io::I2cBus* ear_ =
+      nullptr;  // of the device that is being made, where another board takes its place
+  std::set<int> i2c_soldered_;  // to the pins that the board names
   std::map<int, std::unique_ptr<io::I2cWireFaults>> i2c_buses_;
   std::map<int, std::unique_ptr<io::CanWireFaults>> can_buses_;
   std::map<int, io::SpiBus*> spi_buses_;
@@ -143,11 +148,38 @@ Result<Done> DeviceRack::Wiring::add(const BoardDescription& board, int number) 
   const rack::DeviceType* type = rack::find_type(site_.types, device.type);
   WHIRL_CHECK(type != nullptr, device.type);
   rack::DeviceSlot slot(*this, board.name, device, *type, number);
+  std::unique_ptr<io::I2cBus> ear;
+  if (far_end(device) != nullptr) ear = std::make_unique<io::I2cBus>(device.name);
+  ear_ = ear.get();
   auto made = type->make(slot);
+  ear_ = nullptr;
   if (slot.error()) return *slot.error();
   WHIRL_CHECK(made != nullptr, device.type);
+  if (ear != nullptr) {
+    if (const auto led = lead(device, std::move(ear)); !led) return led.error();
+  }
   devices_.push_back(std::move(made));
   return subscribe(*devices_.back(), slot.place());
+}
+
+const WireEnd* DeviceRack::Wiring::far_end(const BoardDevice& device) const {
+  for (const WireEnd& end : site_.ends) {
+    if (end.device == device.name) return &end;
+  }
+  return nullptr;
+}
+
+Result<Done> DeviceRack::Wiring::lead(const BoardDevice& device, std::unique_ptr<io::I2cBus> ear) {
+  io::I2cBus* bus = i2c(bus_number(device.bus).value_or(0));
+  if (bus == nullptr || device.address < 0 || !device.bus.starts_with("i2c")) {
+    return Error{ErrorKind::bad_input, device.place + ": " + device.name,
+                 "is no I2C device of this part: no board can take its place", ""};
+  }
+  auto wire = io::BoardWire::attach(far_end(device)->fd);
+  if (!wire) return wire.error();
+  site_.wires->lead(*bus, std::move(ear), static_cast<std::uint8_t>(device.address),
+                    std::move(wire.value()));
+  return Done{};
 }
 
 Result<Done> DeviceRack::Wiring::subscribe(rack::RackDevice& device, const std::string& place) {
@@ -192,6 +224,7 @@ void DeviceRack::Wiring::run_ends(io::Nanoseconds now) {
 }
 
 io::I2cBus* DeviceRack::Wiring::i2c(int number) {
+  if (ear_ != nullptr) return ear_;
   io::I2cBus* bus = site_.chip.i2c(number);
   if (bus == nullptr || i2c_buses_.count(number) != 0) return bus;
   if (i2c_soldered_.count(number) == 0) site_.chip.solder_i2c(number, "", "");
@@ -221,7 +254,7 @@ io::CanBus* DeviceRack::Wiring::can(int number) {
   constexpr double kBabbling_bit_ns = 1000.0;
   can_buses_[number] =
       std::make_unique<io::CanWireFaults>(site_.events, faults_, bus, number, kBabbling_bit_ns);
-  log_can(bus, number, site_.happened);
+  rack::log_can(bus, number, site_.happened);
   return &bus;
 }
 
@@ -298,6 +331,10 @@ bool DeviceRack::on_message(const io::Reader& message) {
 
 void DeviceRack::report(io::Nanoseconds now) {
   wiring_->report(now);
+}
+
+io::I2cBus* DeviceRack::i2c(int number) {
+  return wiring_->i2c(number);
 }
 
 void DeviceRack::run_ends(io::Nanoseconds now) {

@@ -7,6 +7,7 @@
 //   Findings  two that drive one pin or a line of an I2C bus against each other, and two devices selected at once on one SPI
 //             bus (once for each two), a pin of the board file that nothing ever drove (at the end)
 //   Files     of memory parts: NAME.img in the run's folder, NAME_NODE.img of a board with a name
+//   Far       a device that a wire names is on another board: what stands here only listens to what that one is sent
 //   Errors    bad_input: what check_board.hpp refuses, a bus or pin that the part does not have
 #pragma once
 #include <memory>
@@ -15,6 +16,7 @@
 #include "base/result.hpp"
 #include "io_bridges/board_description/board_description.hpp"
 #include "io_bridges/messages/messages.hpp"
+#include "io_bridges/qemu/board/wire_ends.hpp"
 #include "io_bridges/qemu/stm32/chip_model.hpp"
 #include "io_bridges/rack/device_type.hpp"
 
@@ -30,6 +32,8 @@ class DeviceRack {
     std::uint64_t seed;
     const rack::DeviceTypes& types;
     std::string folder = {}, node = {};  // BoardRun
+    WireEnds* wires = nullptr;           // to other boards
+    std::vector<WireEnd> ends = {};      // of those that a device's place is led to
   };
 
   explicit DeviceRack(Site site);
@@ -41,6 +45,8 @@ class DeviceRack {
   // At a boundary, before what happened is posted: what devices tell at each one.
   void report(io::Nanoseconds now);
   void run_ends(io::Nanoseconds now);
+  // With its faults and its log; null: the part has none of that number.
+  io::I2cBus* i2c(int number);
 
  private:
   class Wiring;

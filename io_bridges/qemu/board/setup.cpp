@@ -35,6 +35,12 @@ Result<Setup> read_setup(std::string_view text) {
     const auto added = image.value().add(std::move(boot.value()), board.boot_image);
     if (!added) return added.error();
   }
+  for (const std::string& file : told.value().run.flashed) {
+    auto cells = load_image(file, *part);
+    if (!cells) return cells.error();
+    const auto added = image.value().add(std::move(cells.value()), file);
+    if (!added) return added.error();
+  }
   const std::uint32_t start = board.start != 0 ? board.start : part->flash.base;
   if (start % 0x200 != 0 || start - part->flash.base >= part->flash.size) {
     return wrong_start(board, start);

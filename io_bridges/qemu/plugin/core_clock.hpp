@@ -36,6 +36,8 @@ class CoreClock {
   // Before that instruction, in the middle of translated code.
   virtual Moment at(std::int64_t site) const = 0;
 
+  // Before QEMU's clock is read: it goes to the core's time, as far as no deadline lies before that.
+  virtual void settle() {}
   // Where QEMU's clock may be read, which shows `now`.
   virtual void anchor(Nanoseconds now) = 0;
   virtual Nanoseconds core_now() const = 0;       // as of the last anchor

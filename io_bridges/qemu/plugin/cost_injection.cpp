@@ -177,7 +177,7 @@ class CostInjection::Writer {
   }
 
   // `store` puts QEMU's budget back, already less the block's instructions: less the debt as well, but
-  // not below 0.
+  // not below 0. Nor is it given any back for a debt below 0: it may be full, in its 16 bits.
   void take_off_budget(Operation& store) {
     const tcg::Numbers& op = tcg::numbers();
     owner_.find_budget(static_cast<std::intptr_t>(store.arguments[2]));
@@ -187,16 +187,19 @@ class CostInjection::Writer {
     const Argument debt =
         ahead.op64(op.add64, ahead.op64(op.ld64, where), tcg::number64(places_[0]));
     add_fetches(store, debt, ahead.op64(op.ld64, flag));
-    const Argument ns = ahead.op64(op.sar64, debt, tcg::number64(kUnit_shift));
+    const auto below_0 = [&](Argument x) {
+      return ahead.op64(op.and64, ahead.op64(op.sar64, x, tcg::number64(63)), x);
+    };
+    const Argument whole = ahead.op64(op.sar64, debt, tcg::number64(kUnit_shift));
+    const Argument ns = ahead.op64(op.sub64, whole, below_0(whole));
     left_ns_ = store.arguments[0];  // a local of QEMU's: it lives on behind the next branch
     const Argument left = ahead.op64(op.sub64, ahead.op64(op.widen, left_ns_), ns);
-    const Argument beyond =
-        ahead.op64(op.and64, ahead.op64(op.sar64, left, tcg::number64(63)), left);
+    const Argument beyond = below_0(left);
     const Argument kept = ahead.op64(op.sub64, left, beyond);
     ahead.put(op.move32, left_ns_, kept);
-    const Argument rest = ahead.op64(op.and64, debt, tcg::number64(kUnits_per_ns - 1));
-    const Argument unpaid = ahead.op64(op.shl64, beyond, tcg::number64(kUnit_shift));
-    ahead.put(op.st64, ahead.op64(op.sub64, rest, unpaid), where);
+    const Argument paid =
+        ahead.op64(op.shl64, ahead.op64(op.add64, ns, beyond), tcg::number64(kUnit_shift));
+    ahead.put(op.st64, ahead.op64(op.sub64, debt, paid), where);
     ahead.put(op.st64, tcg::number64(0), flag);
     stored_ = true;
   }
@@ -359,6 +362,11 @@ std::int64_t CostInjection::ahead_at(const BlockCost& cost, std::size_t n) {
   };
   return at(places, n + 1) + static_cast<std::int64_t>(cost.each.size()) * kUnits_per_ns -
          at(cost.each, n);
+}
+
+void CostInjection::settle() {
+  if (!count_.found() || state_.debt <= 0) return;
+  state_.debt -= count_.take_ns(state_.debt >> kUnit_shift) << kUnit_shift;
 }
 
 // Called, rarely, when the budget may not last for the whole block. Gives back what was taken off, and

@@ -5,7 +5,10 @@
 //   Budget    QEMU takes a block's length (1 ns an instruction) off its budget at the block's start, if
 //             that lasts. There `debt` is taken off too, which holds what the block costs beyond that;
 //             what the budget cannot pay stays in `debt`. So no deadline is passed unseen, and the core
-//             is ahead of QEMU's clock by `debt`
+//             is ahead of QEMU's clock by `debt`. The budget comes in pieces of 65,535 ns, filled up at
+//             moments that are none of the guest's: nothing may hang on these. So a debt that only the piece
+//             at hand was too short for is paid before the clock is read (settle()), and one below 0 waits:
+//             a piece that is full has no room for it
 //   Registers QEMU leaves a block before an access that turns out to reach a register, and does it again
 //             as a block of its own. So the cost of a load or store, and of what follows it, is counted
 //             behind it only
@@ -76,6 +79,7 @@ class CostInjection {
   void forget_data_lines() { state_.data.forget(); }
 
   const InstructionCount& count() const { return count_; }
+  void settle();
   std::int64_t debt() const { return state_.debt; }
   void owe(std::int64_t units) { state_.debt += units; }
   void set_debt(std::int64_t units) { state_.debt = units; }

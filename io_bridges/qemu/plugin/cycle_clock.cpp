@@ -97,10 +97,11 @@ Moment CycleClock::at(std::int64_t site) const {
 void CycleClock::anchor(Nanoseconds now) {
   if (code_.count().found() && code_.count().now_ns() != now) refuse_();
   anchor_ns_ = now;
-  // What rounding has added up since the last edge known, far below half a cycle, goes.
+  // What rounding has added up since the last edge known goes. It is far below the half of a quarter of a
+  // cycle, and costs are whole quarters.
   const double cycles = cycles_since_edge();
   const double whole = std::round(cycles);
-  if (whole > 0 && std::abs(cycles - whole) < 0.25) take_edge(whole);
+  if (whole > 0 && std::abs(cycles - whole) < 0.125) take_edge(whole);
 }
 
 double CycleClock::cycles_since_edge(std::int64_t units) const {

@@ -12,6 +12,9 @@
 //   Buses     an access to APB waits for the bridge; a store leaves the core at once and holds the
 //             bridge instead. So does a write to a bit-band alias, for two transfers (DDI 0337G 12.10:
 //             the core waits only if it comes to the bus meanwhile)
+//   Charged   the core's own accesses. DMA moves what registers hold past this clock (stm32::DmaBus, which
+//             tells the bound on what the core may have waited for it), and costs the core nothing where it
+//             finds no register
 //   Left out  see core_model.hpp and fetch_model.hpp; bit-band aliases of SRAM and of AHB, DMA on the
 //             buses
 //   Source    ARM: DDI 0403E B1.5; AMBA APB: two PCLK a transfer; RM0090 2.1 and RM0008 3.1
@@ -36,6 +39,7 @@ class CycleClock final : public CoreClock {
   void code_thrown_away() override { code_.code_thrown_away(); }
   bool reached_register(std::uint32_t pc) override { return register_sites_.reached(pc); }
   Moment at(std::int64_t site) const override;
+  void settle() override { code_.settle(); }
   void anchor(Nanoseconds now) override;
   Nanoseconds core_now() const override;
   double ahead_ns() const override;

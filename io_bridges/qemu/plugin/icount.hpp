@@ -12,6 +12,7 @@
 //   Source   QEMU 7.2: include/hw/core/cpu.h, softmmu/cpu-timers.c, softmmu/icount.c,
 //            accel/tcg/tcg-accel-ops-icount.c
 #pragma once
+#include <algorithm>
 #include <cstdint>
 
 #include "base/result.hpp"
@@ -32,6 +33,12 @@ class InstructionCount {
   void set_left_ns(std::int64_t left) {
     budget_[1] = 0;
     *low_ = static_cast<std::uint16_t>(left);
+  }
+  // Off what QEMU puts into `low` when that is used up; returns how much of it there was.
+  std::int64_t take_ns(std::int64_t ns) {
+    const std::int64_t taken = std::min(ns, budget_[1]);
+    budget_[1] -= taken;
+    return taken;
   }
   std::uint16_t* low() const { return low_; }
   std::uint32_t* next_flags() const { return next_flags_; }

@@ -88,7 +88,7 @@ void Instruments::report_unreachable_code(std::uint32_t address) {
 void Instruments::code_thrown_away() {
   sites_.clear();
   starts_.clear();
-  machine_.clock().code_thrown_away();
+  machine_.code_thrown_away();
 }
 
 void Instruments::find_at_start(std::uint32_t address) {

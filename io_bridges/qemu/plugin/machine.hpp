@@ -49,16 +49,24 @@ class Machine final : public board::Emulator {
 
   // The core cannot go on, by the firmware's doing. Ends the process.
   [[noreturn]] void core_stopped(board::StoppedCore why);
-  // The core reaches for what is no memory.
+  // The core reaches for what is no memory. DMA may too, and is nothing that the core waits for.
   void accessed(std::uint32_t address);
-  void waits_for_bus(std::uint32_t address, bool write) { clock_->accessed(address, write); }
+  void waits_for_bus(std::uint32_t address, bool write) {
+    if (!moves_by_dma_) clock_->accessed(address, write);
+  }
   // Around what a register does: its events wait for the end.
   void begin_access() { ++accesses_; }
   void end_access();
 
   // For the instruments.
   CoreClock& clock() { return *clock_; }
-  void throw_code_away() { api_.tb_flush(cpu_); }
+  void throw_code_away() {
+    throws_code_away_ = true;
+    api_.tb_flush(cpu_);
+  }
+  // So QEMU has, for us or because its buffer was full. That is a finding: time is not proven to stay
+  // exact then (a second of flight is the same, a hover of 35 s with a buffer of 1 MiB is not).
+  void code_thrown_away();
   // Only the blocks with that instruction. Also from within one: it runs to its end.
   void forget_code_at(std::uint32_t address) {
     api_.tb_invalidate_phys_addr(api_.address_space_memory, address, kPrivileged);
@@ -93,7 +101,10 @@ class Machine final : public board::Emulator {
   };
   static std::uint64_t read_window(void* window, hwaddr offset, unsigned size);
   static void write_window(void* window, hwaddr offset, std::uint64_t value, unsigned size);
-  void anchor() { clock_->anchor(now()); }
+  void anchor() {
+    clock_->settle();
+    clock_->anchor(now());
+  }
   [[noreturn]] void clock_not_as_known();
   void wake();
   void on_timer();
@@ -103,6 +114,7 @@ class Machine final : public board::Emulator {
   MemoryRegion& new_region();
   void map_block(MemoryRegion* parent, const stm32::Region& block, int priority);
   std::uint8_t* map_ram(MemoryRegion* parent, const char* name, const board::MemoryBlock& block);
+  bool move_by_dma(std::uint32_t address, void* bytes, std::size_t size, bool write);
   std::uint8_t* sram_at(std::uint32_t address, std::size_t size) const;
   void bar(std::uint32_t from, std::uint32_t to);
   void map_memories();
@@ -145,7 +157,9 @@ class Machine final : public board::Emulator {
   static constexpr io::Nanoseconds kNothing_wanted = -1;
   io::Nanoseconds wanted_ns_ = kNothing_wanted;  // by what is accessed
   int accesses_ = 0;                             // under way: one, or within it by DMA another
-  Timer jump_;                                   // under gdb: moves the clock of a core that sleeps
+  bool throws_code_away_ = false, full_buffer_told_ = false;
+  bool moves_by_dma_ = false;  // what is accessed through QEMU's address spaces
+  Timer jump_;                 // under gdb: moves the clock of a core that sleeps
   std::unique_ptr<CoreClock> clock_;
   ExitRequest exit_request_;
   ClassCasts class_casts_;

@@ -3,6 +3,7 @@
 // The memories and register blocks of the part, over those of QEMU's machine.
 #include <cstdlib>
 #include <cstring>
+#include <utility>
 
 #include "io_bridges/qemu/board/post_mortem.hpp"
 #include "io_bridges/qemu/plugin/machine.hpp"
@@ -51,6 +52,7 @@ const RegionOps kFlashOps = {read_flash,       nullptr,       nullptr,
 // No register may be a place on the stack. An exception's frame that would go there must be stopped
 // before the clock is read: in the middle of an exception's entry QEMU has none, and gives up.
 void Machine::accessed(std::uint32_t address) {
+  if (moves_by_dma_) return;
   constexpr std::uint32_t kFrame = 0x6C;  // the largest: with floating point, aligned
   const std::uint32_t sp = core_registers_[kSp];
   if (address - (sp - kFrame) < 2 * kFrame) {
@@ -114,6 +116,16 @@ std::uint8_t* Machine::sram_at(std::uint32_t address, std::size_t size) const {
   return offset < block.size && size <= block.size - offset ? sram_ + offset : nullptr;
 }
 
+void Machine::code_thrown_away() {
+  clock_->code_thrown_away();
+  const bool ours = std::exchange(throws_code_away_, false);
+  if (ours || full_buffer_told_ || board().run().gdb_port != 0) return;
+  full_buffer_told_ = true;
+  board().report({clock_->core_now(), "core",
+                  "QEMU's buffer for translated code was full: from here on times are not "
+                  "proven to be exact, and another run may differ"});
+}
+
 void Machine::code_translated(std::uint32_t from, std::uint32_t to) {
   const board::MemoryBlock& block = board_.part().sram;
   for (std::uint32_t at = from & ~(kCode_page - 1); at < to; at += kCode_page) {
@@ -127,8 +139,15 @@ bool Machine::read_bus(std::uint32_t address, void* to, std::size_t size) {
     std::memcpy(to, memory, size);
     return true;
   }
-  return api_.address_space_rw(api_.address_space_memory, address, kPrivileged, to, size, false) ==
-         kOk;
+  return move_by_dma(address, to, size, false);
+}
+
+bool Machine::move_by_dma(std::uint32_t address, void* bytes, std::size_t size, bool write) {
+  const bool outer = std::exchange(moves_by_dma_, true);
+  const std::uint32_t result =
+      api_.address_space_rw(api_.address_space_memory, address, kPrivileged, bytes, size, write);
+  moves_by_dma_ = outer;
+  return result == kOk;
 }
 
 // Code that has been translated must be known to be stale: QEMU sees to it.
@@ -142,8 +161,7 @@ bool Machine::write_bus(std::uint32_t address, const void* from, std::size_t siz
     std::memcpy(memory, from, size);
     return true;
   }
-  return api_.address_space_rw(api_.address_space_memory, address, kPrivileged,
-                               const_cast<void*>(from), size, true) == kOk;
+  return move_by_dma(address, const_cast<void*>(from), size, true);
 }
 
 // The machine has memory here, the part has not: a bus fault.

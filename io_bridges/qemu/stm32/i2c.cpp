@@ -31,7 +31,8 @@ void I2c::clear_state() {
   const bool owned = master_ || phase_ == Phase::stopping;
   phase_ = Phase::idle;
   slave_ = Slave::none;
-  master_ = transmitter_ = dr_full_ = shift_full_ = nacked_ = dma_last_ = waits_for_scl_ = false;
+  master_ = transmitter_ = dr_full_ = shift_full_ = nacked_ = dma_last_ = false;
+  waits_for_scl_ = fetch_due_ = false;
   general_call_ = second_address_ = false;
   sr1_ = sr1_seen_ = 0;
   cr1_ &= ~(START | STOP | ACK | POS | PEC);

@@ -4,7 +4,7 @@
 //   Timing    bit = 2, 3 or 25 CCR / PCLK1; SB half a bit after START is possible, a byte after
 //             nine bits, STOP one bit. TXE when DR moves to the shift register, BTF when that is
 //             through as well
-//   Clock     a byte neither begins nor ends while SCL is low: a slave that stretches, a stuck
+//   Clock     a byte neither begins (nor is asked for) nor ends while SCL is low: a slave that stretches, a stuck
 //             line. As a slave it stretches through its SCL pin (NOSTRETCH = 0)
 //             A transmitter whose clock goes away holds its bit, SDA low unless it sends FF, until PE
 //             or SWRST frees it
@@ -112,6 +112,7 @@ class I2c final : public WordBlock, private io::I2cTarget {
   bool next_ack_ = true;     // POS: what the ACK bit said one byte ago
   bool dma_last_ = false;    // LAST: the byte that comes now is the last
   bool waits_for_scl_ = false;
+  bool fetch_due_ = false;  // the byte to receive begins once SCL is high
   bool general_call_ = false, second_address_ = false;
   std::uint8_t dr_ = 0, shift_ = 0;
   double bit_ns_ = 1.0;

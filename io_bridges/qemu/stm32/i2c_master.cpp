@@ -35,6 +35,8 @@ void I2c::begin_bits(Phase phase, int bits) {
     waits_for_scl_ = true;
     return;
   }
+  if (fetch_due_) shift_ = bus_.fetch(chip_.events.now());
+  fetch_due_ = false;
   const Nanoseconds from = std::max(chip_.events.now(), bus_.released_ns());
   step_.at(from + std::llround(bits * bit_ns_));
 }
@@ -124,8 +126,9 @@ void I2c::byte_sent() {
   if (phase_ == Phase::holding && !nacked_) sr1_ |= BTF;
 }
 
+// What a slave that stretches will send is known when it lets go of the clock.
 void I2c::begin_receive() {
-  shift_ = bus_.fetch(chip_.events.now());
+  fetch_due_ = true;
   begin_bits(Phase::receiving, 9);
 }
 

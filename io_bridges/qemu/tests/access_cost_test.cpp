@@ -86,6 +86,17 @@ TEST(AccessCost, AWriteByABitBandAliasHoldsTheBridgeForTwoTransfersAndNotTheCore
   }
 }
 
+// RM0090 2.1: the bus matrix lets masters take turns; here none of DMA's transfers holds up the core.
+TEST(AccessCost, TheCoreDoesNotPayForWhatDmaAccesses) {
+  const Counts counts = counts_of("dma_wait", "stm32f405rg");
+  ASSERT_EQ(counts.size(), 8u);
+  for (const std::size_t n : {2u, 4u, 6u}) {
+    EXPECT_TRUE(near(counts[n], counts[0], stated(12, "where deadlines cut the loop"))) << n;
+    EXPECT_LT(counts[n + 1], 19000u) << n;
+    EXPECT_GT(counts[n + 1], 0u) << n;
+  }
+}
+
 // DDI 0337: UMULL, SMULL 3 to 5, UMLAL, SMLAL 4 to 7, the signed one a cycle longer, by the size of the
 // operands; DDI 0439: always 1.
 TEST(OperandCost, LongMultipliesOfAnM3GoByTheSizeOfTheirOperands) {

@@ -89,6 +89,32 @@ TEST(CycleClock, WatchingChangesNoMomentOfTheImageAndCountsEachCallOnce) {
   }
 }
 
+// A register's events go by QEMU's clock, in whole nanoseconds. QEMU fills up its budget every 65 us, at
+// moments that are none of the guest's: there it may lag no more than elsewhere.
+TEST(CycleClock, TheTimeOfEventsIsTheCoresWhereverQemuFillsItsBudget) {
+  // What TIME and CYCCNT are rounded by, and a literal's quarter of a cycle twice.
+  constexpr double kNanosecond = 21, kHalf_cycle = 62.5, kLiterals = 62.5;
+  const auto said = run_for(by_cycles("clocks1"), 60).said();
+  ASSERT_EQ(said.size(), 1u);
+  EXPECT_LE(said[0], kNanosecond + kHalf_cycle + kLiterals);
+}
+
+// The load in which a deadline falls is done at the deadline, and ends up to its own cycles later.
+TEST(CycleClock, TheTimeOfEventsLagsByNoMoreThanTheAccessThatADeadlineFallsIn) {
+  constexpr double kLoad_and_its_wait = 5 * 125;
+  const auto said = run_for(by_cycles("clocks2"), 60).said();
+  ASSERT_EQ(said.size(), 1u);
+  EXPECT_LE(said[0], kLoad_and_its_wait + 21 + 62.5);
+}
+
+// QEMU fills its budget of 16 bits at each of these stores: nothing may be added to it there.
+TEST(CycleClock, NoTurnOfALoopTakesLongerForADeadlineThatItSets) {
+  const auto said = run_for(by_cycles("turns"), 20).said();
+  ASSERT_EQ(said.size(), 1u);
+  // The waits for APB, and pairs that no longer overlap where the harness's turn cuts a block in two.
+  EXPECT_LE(said[0], 12u);
+}
+
 // Each image's calls differ by their NOPs of a cycle each, in SRAM as in flash without wait states.
 TEST(CycleClock, CodeThatIsWrittenOverOtherCodeCostsWhatItNowIs) {
   const auto said = run_for(by_cycles("rewritten"), 20).said();

@@ -46,7 +46,7 @@ class CanPortDevice final : public RackDevice, private io::CanNode {
   void receive(const io::CanFrame& /*frame*/, Nanoseconds /*now*/) override {}  // the log has it
   void bus_off(Nanoseconds /*now*/) override {
     waiting_.clear();
-    bus_.connect(station_, 128);
+    bus_.connect(station_, io::CanBus::kIdles_after_bus_off);
   }
 
   std::uint16_t bus_number_;

@@ -7,9 +7,9 @@
 //              StatusExtended with the flags of the I2C protocol's status byte
 #include <cmath>
 
-#include "io_bridges/devices/dronecan_node.hpp"
 #include "io_bridges/protocols/dronecan/esc.hpp"
 #include "io_bridges/protocols/dronecan/esc_extended.hpp"
+#include "io_bridges/rack/devices/can_node_keys.hpp"
 #include "io_bridges/rack/devices/table.hpp"
 
 namespace whirl::rack {
@@ -27,12 +27,7 @@ class CanEscDevice final : public RackDevice {
       : motor_(slot.whole("motor")),
         happened_(slot.rack().happened()),
         node_(slot.rack().events(), slot.can(),
-              {.name = slot.name(),
-               .info = "org.whirlstand.esc",
-               .number = slot.number(),
-               .node_id = static_cast<std::uint8_t>(
-                   slot.given("params.node") ? slot.whole("params.node") : kFirstNode + motor_),
-               .rate_Hz = slot.quantity("params.rate")}),
+              can_node_of(slot, "org.whirlstand.esc", kFirstNode + motor_)),
         due_(slot.rack().events(), [this] { publish(); }) {
     node_.on<io::dronecan::RawCommand>(
         [this](const auto& command, Nanoseconds begun, Nanoseconds now) {
@@ -94,14 +89,10 @@ class CanEscDevice final : public RackDevice {
 }  // namespace
 
 DeviceType esc_dronecan_type() {
-  DeviceKey node{.path = "params.node", .about = "its node id", .kind = KeyKind::whole};
-  node.limits = {1, 125};
-  return {
-      "esc_dronecan",
-      "speed controller on CAN, by DroneCAN",
-      {bus_key("can", "the bus").need(), motor_key().need(), node.with_text("40 + motor"),
-       quantity_key("params.rate", Dimension::frequency, "kHz", {10e3, 1e6}, "of bits").with(1e6)},
-      make_device<CanEscDevice>};
+  std::vector<DeviceKey> keys = can_node_keys("40 + motor");
+  keys.insert(keys.begin() + 1, motor_key().need());
+  return {"esc_dronecan", "speed controller on CAN, by DroneCAN", std::move(keys),
+          make_device<CanEscDevice>};
 }
 
 }  // namespace whirl::rack

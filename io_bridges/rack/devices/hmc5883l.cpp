@@ -1,4 +1,4 @@
-// Honeywell HMC5883L on I2C: the part register by register (io_bridges/devices), the field at the
+// Honeywell HMC5883L on I2C, or in a DroneCAN node: the part register by register (io_bridges/devices), the field at the
 // vehicle and what the frame adds to it, soldered as the board file's `axes` say.
 //
 //   Currents  what each motor's bus current and the pack's add, per ampere, means over a millisecond
@@ -6,8 +6,8 @@
 //   Soft iron what the frame makes of the earth's field: (1 + E) x field, E symmetric, in the body's axes. It
 //             bends neither the currents' fields nor its own hard iron
 //   Left out  the currents' ripple
-#include "io_bridges/devices/hmc5883l.hpp"
-
+#include "io_bridges/devices/field_node.hpp"
+#include "io_bridges/rack/devices/can_node_keys.hpp"
 #include "io_bridges/rack/devices/table.hpp"
 #include "io_bridges/rack/models/inertial_sensor.hpp"
 #include "plant/sensors/magnetometer.hpp"
@@ -34,7 +34,8 @@ io::Hmc5883l::Params part_of(DeviceSlot& slot) {
   params.seed = slot.rack().seed();
   params.noise_T = slot.quantity("params.noise");
   params.bus = slot.bus_number();
-  params.device = io::Hmc5883l::kI2c_address;
+  const bool on_i2c = slot.text("bus").starts_with("i2c");
+  params.device = on_i2c ? io::Hmc5883l::kI2c_address : slot.number();
   return params;
 }
 
@@ -47,21 +48,48 @@ Eigen::Matrix3d soft_iron_of(DeviceSlot& slot) {
   return soft;
 }
 
-class Hmc5883lDevice final : public RackDevice {
+// The field where the part is, as it is soldered.
+class SensedField {
  public:
-  explicit Hmc5883lDevice(DeviceSlot& slot)
+  explicit SensedField(DeviceSlot& slot)
       : mounting_(mounting_of(slot.axes("axes"))),
         hard_iron_B_T_(slot.triple("params.hard_iron").data()),
         pack_per_ampere_T_(slot.triple("params.pack_field").data()),
-        soft_iron_(soft_iron_of(slot)),
-        part_(
-            slot.rack().events(), part_of(slot),
-            [this](Nanoseconds) { return turned(mounting_, field_B_T_ + hard_iron_B_T_); },
-            slot.given("drdy") ? &slot.pin("drdy") : nullptr, &slot.rack().faults(),
-            slot.rack().finding()) {
+        soft_iron_(soft_iron_of(slot)) {
     for (std::size_t i = 0; i < per_ampere_T_.size(); ++i) {
       per_ampere_T_[i] = Eigen::Vector3d(slot.triple(motor_field(i + 1)).data());
     }
+  }
+
+  void set(const io::BodyMotion& motion) {
+    field_B_T_ = soft_iron_ * Eigen::Vector3d(motion.magnetic_field_B_T) +
+                 pack_per_ampere_T_ * motion.battery_current_A;
+    for (std::size_t i = 0; i < per_ampere_T_.size(); ++i) {
+      field_B_T_ += per_ampere_T_[i] * motion.rotor_bus_current_A[i];
+    }
+  }
+  std::array<double, 3> along_part_T() const {
+    return turned(mounting_, field_B_T_ + hard_iron_B_T_);
+  }
+  const Mounting& mounting() const { return mounting_; }
+
+ private:
+  Mounting mounting_;
+  Eigen::Vector3d hard_iron_B_T_, pack_per_ampere_T_;
+  Eigen::Matrix3d soft_iron_;
+  std::array<Eigen::Vector3d, io::kMostMotors> per_ampere_T_;  // index: motor number - 1
+  Eigen::Vector3d field_B_T_ = Eigen::Vector3d::Zero();
+};
+
+class Hmc5883lDevice final : public RackDevice {
+ public:
+  explicit Hmc5883lDevice(DeviceSlot& slot)
+      : field_(slot),
+        part_(
+            slot.rack().events(), part_of(slot),
+            [this](Nanoseconds) { return field_.along_part_T(); },
+            slot.given("drdy") ? &slot.pin("drdy") : nullptr, &slot.rack().faults(),
+            slot.rack().finding()) {
     slot.join_i2c(part_);
     if (!slot.given("drdy")) return;
     slot.pin("drdy").watch(
@@ -71,48 +99,53 @@ class Hmc5883lDevice final : public RackDevice {
   }
 
   std::vector<Intake> intakes() const override { return {{io::Kind::body_motion}}; }
-  void on_message(const io::Reader& message) override {
-    const auto motion = message.as<io::BodyMotion>();
-    field_B_T_ = soft_iron_ * Eigen::Vector3d(motion.magnetic_field_B_T) +
-                 pack_per_ampere_T_ * motion.battery_current_A;
-    for (std::size_t i = 0; i < per_ampere_T_.size(); ++i) {
-      field_B_T_ += per_ampere_T_[i] * motion.rotor_bus_current_A[i];
-    }
-  }
+  void on_message(const io::Reader& message) override { field_.set(message.as<io::BodyMotion>()); }
 
  private:
-  Mounting mounting_;
-  Eigen::Vector3d hard_iron_B_T_, pack_per_ampere_T_;
-  Eigen::Matrix3d soft_iron_;
-  std::array<Eigen::Vector3d, io::kMostMotors> per_ampere_T_;  // index: motor number - 1
-  Eigen::Vector3d field_B_T_ = Eigen::Vector3d::Zero();
+  SensedField field_;
   io::Hmc5883l part_;
 };
 
-}  // namespace
+class FieldNodeDevice final : public RackDevice {
+ public:
+  explicit FieldNodeDevice(DeviceSlot& slot)
+      : field_(slot),
+        node_(
+            slot.rack().events(), slot.can(),
+            {.node = can_node_of(slot, "org.whirlstand.field", kNode),
+             .part = part_of(slot),
+             .to_body =
+                 [this](const auto& in_part) { return turned_back(field_.mounting(), in_part); }},
+            [this](Nanoseconds) { return field_.along_part_T(); }, &slot.rack().faults(),
+            slot.rack().finding()) {}
 
-DeviceType hmc5883l_type() {
-  DeviceKey address = address_key();
-  address.limits = {io::Hmc5883l::kI2c_address, io::Hmc5883l::kI2c_address};
-  std::vector<DeviceKey> keys = {
-      bus_key("i2c", "the bus").need(),
-      address.need(),
-      pin_key("drdy", "data ready output, low for 5 us"),
-      axes_key("axes", "where its x, y, z point in the body").need(),
-      quantity_key("params.noise", Dimension::magnetic_field, "uT", {0.0, kMost_T},
-                   "RMS of one measurement")
-          .with(io::Hmc5883l::Params{}.noise_T),
-      triple_key("params.hard_iron", Dimension::magnetic_field, "uT", {-kMost_T, kMost_T},
-                 "that the frame adds, along x, y, z of the body")
-          .with(std::vector<double>{0.0, 0.0, 0.0}),
+  std::vector<Intake> intakes() const override { return {{io::Kind::body_motion}}; }
+  void on_message(const io::Reader& message) override { field_.set(message.as<io::BodyMotion>()); }
+
+ private:
+  static constexpr int kNode = 52;
+  SensedField field_;
+  io::FieldNode node_;
+};
+
+void add_physics(std::vector<DeviceKey>& keys) {
+  keys.push_back(axes_key("axes", "where its x, y, z point in the body").need());
+  keys.push_back(quantity_key("params.noise", Dimension::magnetic_field, "uT", {0.0, kMost_T},
+                              "RMS of one measurement")
+                     .with(io::Hmc5883l::Params{}.noise_T));
+  keys.push_back(triple_key("params.hard_iron", Dimension::magnetic_field, "uT",
+                            {-kMost_T, kMost_T}, "that the frame adds, along x, y, z of the body")
+                     .with(std::vector<double>{0.0, 0.0, 0.0}));
+  keys.push_back(
       triple_key("params.soft_iron", Dimension::ratio, "%", {-kMost_soft, kMost_soft},
                  "of the earth's field, that the frame adds to its part along x, y, z of the body")
-          .with(std::vector<double>{0.0, 0.0, 0.0}),
-      triple_key("params.soft_iron_cross", Dimension::ratio, "%", {-kMost_soft, kMost_soft},
-                 "that it turns from x to y and back, x to z, y to z")
-          .with(std::vector<double>{0.0, 0.0, 0.0}),
-      per_ampere_key("params.pack_field", Eigen::Vector3d::Zero(),
-                     "that each ampere out of the pack adds")};
+          .with(std::vector<double>{0.0, 0.0, 0.0}));
+  keys.push_back(triple_key("params.soft_iron_cross", Dimension::ratio, "%",
+                            {-kMost_soft, kMost_soft},
+                            "that it turns from x to y and back, x to z, y to z")
+                     .with(std::vector<double>{0.0, 0.0, 0.0}));
+  keys.push_back(per_ampere_key("params.pack_field", Eigen::Vector3d::Zero(),
+                                "that each ampere out of the pack adds"));
   const auto usual = plant::MagnetometerParams{}.per_ampere_T;
   for (std::size_t motor = 1; motor <= io::kMostMotors; ++motor) {
     const Eigen::Vector3d field_T =
@@ -120,10 +153,31 @@ DeviceType hmc5883l_type() {
     keys.push_back(
         per_ampere_key(motor_field(motor), field_T, "that each ampere of this motor's adds"));
   }
+}
+
+}  // namespace
+
+DeviceType hmc5883l_type() {
+  DeviceKey address = address_key();
+  address.limits = {io::Hmc5883l::kI2c_address, io::Hmc5883l::kI2c_address};
+  std::vector<DeviceKey> keys = {bus_key("i2c", "the bus").need(), address.need(),
+                                 pin_key("drdy", "data ready output, low for 5 us")};
+  add_physics(keys);
   return {"hmc5883l",
           "magnetometer on I2C",
           std::move(keys),
           make_device<Hmc5883lDevice>,
+          {},
+          {"field_x", "field_y", "field_z"}};
+}
+
+DeviceType hmc5883l_dronecan_type() {
+  std::vector<DeviceKey> keys = can_node_keys("52");
+  add_physics(keys);
+  return {"hmc5883l_dronecan",
+          "magnetometer on CAN, by DroneCAN",
+          std::move(keys),
+          make_device<FieldNodeDevice>,
           {},
           {"field_x", "field_y", "field_z"}};
 }

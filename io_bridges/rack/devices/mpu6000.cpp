@@ -1,7 +1,7 @@
-// InvenSense MPU-6000 on SPI: the part register by register (io_bridges/devices), what it senses by
-// the plant's IMU, soldered as the board file's `axes` say.
-#include "io_bridges/devices/mpu6000.hpp"
-
+// InvenSense MPU-6000 on SPI, or in a DroneCAN node: the part register by register (io_bridges/devices),
+// what it senses by the plant's IMU, soldered as the board file's `axes` say.
+#include "io_bridges/devices/imu_node.hpp"
+#include "io_bridges/rack/devices/can_node_keys.hpp"
 #include "io_bridges/rack/devices/table.hpp"
 #include "io_bridges/rack/models/inertial_sensor.hpp"
 
@@ -67,10 +67,42 @@ class Mpu6000Device final : public RackDevice {
   io::Mpu6000 part_;
 };
 
+constexpr int kNode = 50;
+
+class ImuNodeDevice final : public RackDevice {
+ public:
+  ImuNodeDevice(DeviceSlot& slot, const plant::ImuParams& physics)
+      : mounting_(mounting_of(slot.axes("axes"))),
+        sensor_(physics, mounting_, slot.rack().seed(), slot.name()),
+        node_(
+            slot.rack().events(), slot.can(),
+            {.node = can_node_of(slot, "org.whirlstand.imu", kNode),
+             .part = part_of(slot),
+             .full_width = slot.text("params.message") == "imu16",
+             .to_body = [this](const auto& in_part) { return turned_back(mounting_, in_part); },
+             .on_ready =
+                 [&happened = slot.rack().happened(), number = slot.number()](Nanoseconds now) {
+                   happened.add(io::Kind::data_ready, number, now, nullptr, 0);
+                 }},
+            [this](Nanoseconds now) { return sensor_.sample(now); }, &slot.rack().faults(),
+            slot.rack().finding()) {}
+
+  std::vector<Intake> intakes() const override { return {{io::Kind::body_motion}}; }
+  void on_message(const io::Reader& message) override {
+    sensor_.set_motion(message.as<io::BodyMotion>(), message.header().t_ns);
+  }
+
+ private:
+  Mounting mounting_;
+  InertialSensor sensor_;
+  io::ImuNode node_;
+};
+
+template <typename Device>
 std::unique_ptr<RackDevice> make(DeviceSlot& slot) {
   const plant::ImuParams physics = physics_of(slot);
   if (slot.failed(plant::validate(physics, slot.place()))) return nullptr;
-  return std::make_unique<Mpu6000Device>(slot, physics);
+  return std::make_unique<Device>(slot, physics);
 }
 
 void add_triad(std::vector<DeviceKey>& keys, const std::string& group, const std::string& unit,
@@ -96,21 +128,17 @@ void add_triad(std::vector<DeviceKey>& keys, const std::string& group, const std
                      .with(usual.vibration_per_radps2));
 }
 
-}  // namespace
-
-DeviceType mpu6000_type() {
+void add_physics(std::vector<DeviceKey>& keys) {
   const plant::ImuParams usual = plant::mpu6000_physics();
-  std::vector<DeviceKey> keys = {
-      bus_key("spi", "the bus").need(),
-      pin_key("cs", "chip select, active low").need(),
-      pin_key("int", "interrupt output"),
+  keys.push_back(
       axes_key("axes", "where its x, y, z point in the body (x forward, y right, z down)")
-          .with(std::vector<std::string>{"+x", "-y", "-z"}),
+          .with(std::vector<std::string>{"+x", "-y", "-z"}));
+  keys.push_back(
       triple_key("params.place", Dimension::length, "m", {-5.0, 5.0}, "from the centre of mass")
-          .with(std::vector<double>{0.0, 0.0, 0.0}),
+          .with(std::vector<double>{0.0, 0.0, 0.0}));
+  keys.push_back(
       triple_key("params.misalignment", Dimension::angle, "deg", {-0.5, 0.5}, "a small turn")
-          .with(std::vector<double>{0.0, 0.0, 0.0}),
-  };
+          .with(std::vector<double>{0.0, 0.0, 0.0}));
   add_triad(keys, "accelerometer", "m/s2", Dimension::acceleration, usual.accelerometer);
   add_triad(keys, "gyroscope", "rad/s", Dimension::angular_rate, usual.gyroscope);
   const auto share = [](const char* path, const char* about) {
@@ -126,12 +154,33 @@ DeviceType mpu6000_type() {
       quantity_key("params.blade_count", Dimension::none, "", {1.0, 12.0}, "of a propeller");
   blade_count.kind = KeyKind::whole;
   keys.push_back(blade_count.with(static_cast<double>(usual.blade_count)));
-  return {"mpu6000",
-          "accelerometer and gyroscope on SPI",
+}
+
+const std::vector<std::string> kSenses = {"accel_x", "accel_y", "accel_z",
+                                          "gyro_x",  "gyro_y",  "gyro_z"};
+
+}  // namespace
+
+DeviceType mpu6000_type() {
+  std::vector<DeviceKey> keys = {bus_key("spi", "the bus").need(),
+                                 pin_key("cs", "chip select, active low").need(),
+                                 pin_key("int", "interrupt output")};
+  add_physics(keys);
+  return {"mpu6000", "accelerometer and gyroscope on SPI", std::move(keys), make<Mpu6000Device>, {},
+          kSenses};
+}
+
+DeviceType mpu6000_dronecan_type() {
+  std::vector<DeviceKey> keys = can_node_keys("50");
+  keys.push_back(word_key("params.message", "imu14 or imu16", "of two frames or of three")
+                     .with(std::string("imu14")));
+  add_physics(keys);
+  return {"mpu6000_dronecan",
+          "accelerometer and gyroscope on CAN, by DroneCAN",
           std::move(keys),
-          make,
+          make<ImuNodeDevice>,
           {},
-          {"accel_x", "accel_y", "accel_z", "gyro_x", "gyro_y", "gyro_z"}};
+          kSenses};
 }
 
 }  // namespace whirl::rack

@@ -1,13 +1,13 @@
-// MEAS MS5611 on I2C or SPI: the part command by command (io_bridges/devices), what it senses by the
-// plant's barometer. Its white noise is the part's own, by oversampling.
+// MEAS MS5611 on I2C or SPI, or in a DroneCAN node: the part command by command (io_bridges/devices), what
+// it senses by the plant's barometer. Its white noise is the part's own, by oversampling.
 //
 //   Rotors    their thrust over the area of their discs, of which the frame feels rotor_share: a step
 //             when they start (plant/sensors/barometer.hpp)
 //   Left out  self-heating: the part is as warm as the air
-#include "io_bridges/devices/ms5611.hpp"
-
 #include <algorithm>
 
+#include "io_bridges/devices/air_node.hpp"
+#include "io_bridges/rack/devices/can_node_keys.hpp"
 #include "io_bridges/rack/devices/table.hpp"
 #include "plant/sensors/barometer.hpp"
 
@@ -64,13 +64,41 @@ io::Ms5611::Params part_of(DeviceSlot& slot) {
   return params;
 }
 
+// The air about the part and what the part makes of it.
+class SensedAir {
+ public:
+  explicit SensedAir(DeviceSlot& slot)
+      : barometer_(physics_of(slot), slot.rack().seed(), slot.name()) {}
+
+  void set(const io::BodyMotion& motion) {
+    temperature_K_ = motion.air_temperature_K;
+    truth_.static_pressure_Pa = motion.static_pressure_Pa;
+    truth_.air_density_kgpm3 = motion.static_pressure_Pa / (kDryAir_JpkgK * temperature_K_);
+    for (int i = 0; i < 3; ++i) truth_.v_AB_B_mps[i] = motion.v_AB_B_mps[i];
+    std::copy(std::begin(motion.rotor_thrust_N), std::end(motion.rotor_thrust_N),
+              truth_.thrust_N.begin());
+  }
+  io::Ms5611::Truth sense(Nanoseconds now) {
+    const double dt_s = static_cast<double>(now - sensed_ns_) * 1e-9;
+    sensed_ns_ = now;
+    return {barometer_.sample_Pa(dt_s, truth_), temperature_K_};
+  }
+
+ private:
+  plant::Barometer barometer_;
+  plant::Truth truth_;
+  double temperature_K_ = io::BodyMotion{}.air_temperature_K;
+  Nanoseconds sensed_ns_ = 0;
+};
+
 class Ms5611Device final : public RackDevice {
  public:
   explicit Ms5611Device(DeviceSlot& slot)
-      : barometer_(physics_of(slot), slot.rack().seed(), slot.name()),
+      : air_(slot),
         part_(
-            slot.rack().events(), part_of(slot), [this](Nanoseconds now) { return sense(now); },
-            &slot.rack().faults(), slot.rack().finding()) {
+            slot.rack().events(), part_of(slot),
+            [this](Nanoseconds now) { return air_.sense(now); }, &slot.rack().faults(),
+            slot.rack().finding()) {
     if (on_i2c(slot)) {
       slot.join_i2c(part_);
     } else {
@@ -79,28 +107,29 @@ class Ms5611Device final : public RackDevice {
   }
 
   std::vector<Intake> intakes() const override { return {{io::Kind::body_motion}}; }
-  void on_message(const io::Reader& message) override {
-    const auto motion = message.as<io::BodyMotion>();
-    temperature_K_ = motion.air_temperature_K;
-    truth_.static_pressure_Pa = motion.static_pressure_Pa;
-    truth_.air_density_kgpm3 = motion.static_pressure_Pa / (kDryAir_JpkgK * temperature_K_);
-    for (int i = 0; i < 3; ++i) truth_.v_AB_B_mps[i] = motion.v_AB_B_mps[i];
-    std::copy(std::begin(motion.rotor_thrust_N), std::end(motion.rotor_thrust_N),
-              truth_.thrust_N.begin());
-  }
+  void on_message(const io::Reader& message) override { air_.set(message.as<io::BodyMotion>()); }
 
  private:
-  io::Ms5611::Truth sense(Nanoseconds now) {
-    const double dt_s = static_cast<double>(now - sensed_ns_) * 1e-9;
-    sensed_ns_ = now;
-    return {barometer_.sample_Pa(dt_s, truth_), temperature_K_};
-  }
-
-  plant::Barometer barometer_;
-  plant::Truth truth_;
-  double temperature_K_ = io::BodyMotion{}.air_temperature_K;
-  Nanoseconds sensed_ns_ = 0;
+  SensedAir air_;
   io::Ms5611 part_;
+};
+
+class AirNodeDevice final : public RackDevice {
+ public:
+  explicit AirNodeDevice(DeviceSlot& slot)
+      : air_(slot),
+        node_(
+            slot.rack().events(), slot.can(), can_node_of(slot, "org.whirlstand.air", kNode),
+            part_of(slot), [this](Nanoseconds now) { return air_.sense(now); },
+            &slot.rack().faults(), slot.rack().finding()) {}
+
+  std::vector<Intake> intakes() const override { return {{io::Kind::body_motion}}; }
+  void on_message(const io::Reader& message) override { air_.set(message.as<io::BodyMotion>()); }
+
+ private:
+  static constexpr int kNode = 51;
+  SensedAir air_;
+  io::AirNode node_;
 };
 
 DeviceKey number_key(const char* path, Limits limits, const char* about) {
@@ -159,6 +188,18 @@ DeviceType ms5611_type() {
   add_physics(keys);
   return {"ms5611", "barometer on I2C or SPI",  std::move(keys), make_device<Ms5611Device>,
           {},       {"pressure", "temperature"}};
+}
+
+DeviceType ms5611_dronecan_type() {
+  std::vector<DeviceKey> keys = can_node_keys("51");
+  add_part(keys);
+  add_physics(keys);
+  return {"ms5611_dronecan",
+          "barometer on CAN, by DroneCAN",
+          std::move(keys),
+          make_device<AirNodeDevice>,
+          {},
+          {"pressure", "temperature"}};
 }
 
 }  // namespace whirl::rack

@@ -15,6 +15,11 @@
   TYPE(current_sense)            \
   TYPE(esc_i2c)                  \
   TYPE(esc_dronecan)             \
+  TYPE(mpu6000_dronecan)         \
+  TYPE(ms5611_dronecan)          \
+  TYPE(hmc5883l_dronecan)        \
+  TYPE(ublox_m8_dronecan)        \
+  TYPE(battery_dronecan)         \
   TYPE(ublox_6)                  \
   TYPE(ublox_m8)                 \
   TYPE(cppm)                     \

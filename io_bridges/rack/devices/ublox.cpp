@@ -1,9 +1,9 @@
-// u-blox receivers on a UART: the part message by message (io_bridges/devices), its errors by the
+// u-blox receivers on a UART, or in a DroneCAN node: the part message by message (io_bridges/devices), its errors by the
 // plant's GPS. The plan's world lies flat on the ellipsoid at a place of the board file's choice.
-#include "io_bridges/devices/ublox.hpp"
-
 #include <cmath>
 
+#include "io_bridges/devices/gnss_node.hpp"
+#include "io_bridges/rack/devices/can_node_keys.hpp"
 #include "io_bridges/rack/devices/table.hpp"
 #include "plant/sensors/gps.hpp"
 
@@ -24,11 +24,11 @@ Nanoseconds time_ns(const DeviceSlot& slot, const char* path) {
   return std::llround(slot.quantity(path) * 1e9);
 }
 
-io::Ublox::Params part_of(DeviceSlot& slot, io::UbloxModel model) {
+io::Ublox::Params part_of(DeviceSlot& slot, io::UbloxModel model, double baud) {
   io::Ublox::Params params;
   params.name = slot.name();
   params.model = model;
-  params.baud = static_cast<std::uint32_t>(std::lround(slot.quantity("baud")));
+  params.baud = static_cast<std::uint32_t>(std::lround(baud));
   params.first_fix_ns = time_ns(slot, "params.first_fix");
   params.latency_ns = time_ns(slot, "params.latency");
   params.satellites = slot.whole("params.satellites");
@@ -39,33 +39,23 @@ io::Ublox::Params part_of(DeviceSlot& slot, io::UbloxModel model) {
   return params;
 }
 
-template <io::UbloxModel kModel>
-class UbloxDevice final : public RackDevice {
+// What the receiver finds, by the plant's errors.
+class SensedPlace {
  public:
-  explicit UbloxDevice(DeviceSlot& slot)
+  explicit SensedPlace(DeviceSlot& slot)
       : gps_(physics_of(slot), slot.rack().seed(), slot.name()),
         origin_{slot.quantity("params.latitude"), slot.quantity("params.longitude"),
                 slot.quantity("params.height")},
         geoid_m_(slot.quantity("params.geoid")),
         happened_(slot.rack().happened()),
-        number_(slot.number()),
-        part_(
-            slot.rack().events(), part_of(slot, kModel),
-            [this](const io::Ublox::Query& query) { return fix(query); }, &slot.rack().faults(),
-            slot.rack().finding()) {
-    slot.join_uart(part_);
-  }
+        number_(slot.number()) {}
 
-  std::vector<Intake> intakes() const override { return {{io::Kind::body_motion}}; }
-  void on_message(const io::Reader& message) override {
-    const auto motion = message.as<io::BodyMotion>();
+  void set(const io::BodyMotion& motion) {
     for (int i = 0; i < 3; ++i) {
       truth_.p_WB_W_m[i] = motion.p_WB_W_m[i];
       truth_.v_WB_W_mps[i] = motion.v_WB_W_mps[i];
     }
   }
-
- private:
   io::GnssFix fix(const io::Ublox::Query& query) {
     const plant::GpsFix seen =
         gps_.measure(static_cast<double>(query.now) * 1e-9, truth_, query.error_scale);
@@ -84,6 +74,7 @@ class UbloxDevice final : public RackDevice {
     return out;
   }
 
+ private:
   void tell(Nanoseconds now, const io::GnssFix& fix, const std::array<double, 3>& p_m) {
     io::GnssSolution told{.latitude_rad = fix.place.latitude_rad,
                           .longitude_rad = fix.place.longitude_rad,
@@ -102,7 +93,45 @@ class UbloxDevice final : public RackDevice {
   double geoid_m_;
   io::Batch& happened_;
   std::uint16_t number_;
+};
+
+template <io::UbloxModel kModel>
+class UbloxDevice final : public RackDevice {
+ public:
+  explicit UbloxDevice(DeviceSlot& slot)
+      : place_(slot),
+        part_(
+            slot.rack().events(), part_of(slot, kModel, slot.quantity("baud")),
+            [this](const io::Ublox::Query& query) { return place_.fix(query); },
+            &slot.rack().faults(), slot.rack().finding()) {
+    slot.join_uart(part_);
+  }
+
+  std::vector<Intake> intakes() const override { return {{io::Kind::body_motion}}; }
+  void on_message(const io::Reader& message) override { place_.set(message.as<io::BodyMotion>()); }
+
+ private:
+  SensedPlace place_;
   io::Ublox part_;
+};
+
+class GnssNodeDevice final : public RackDevice {
+ public:
+  explicit GnssNodeDevice(DeviceSlot& slot)
+      : place_(slot),
+        node_(
+            slot.rack().events(), slot.can(), can_node_of(slot, "org.whirlstand.gnss", kNode),
+            part_of(slot, io::UbloxModel::m8, io::GnssNode::kBaud),
+            [this](const io::Ublox::Query& query) { return place_.fix(query); },
+            &slot.rack().faults(), slot.rack().finding()) {}
+
+  std::vector<Intake> intakes() const override { return {{io::Kind::body_motion}}; }
+  void on_message(const io::Reader& message) override { place_.set(message.as<io::BodyMotion>()); }
+
+ private:
+  static constexpr int kNode = 53;
+  SensedPlace place_;
+  io::GnssNode node_;
 };
 
 void add_place(std::vector<DeviceKey>& keys) {
@@ -140,7 +169,7 @@ void add_physics(std::vector<DeviceKey>& keys) {
   keys.push_back(speed("params.velocity_noise_down", "and down").with(usual.velocity_down_mps));
 }
 
-std::vector<DeviceKey> keys_of_part() {
+void add_part(std::vector<DeviceKey>& keys) {
   const io::Ublox::Params usual;
   DeviceKey satellites = quantity_key("params.satellites", Dimension::none, "", {4.0, 12.0},
                                       "that it tracks once it has settled");
@@ -149,31 +178,29 @@ std::vector<DeviceKey> keys_of_part() {
   const auto time = [](const char* path, const char* unit, double most_s, const char* about) {
     return quantity_key(path, Dimension::time, unit, {0.0, most_s}, about);
   };
-  std::vector<DeviceKey> keys = {
-      bus_key("usart", "the UART").need().own(),
-      quantity_key("baud", Dimension::baud, "baud", {4800.0, 460800.0}, "as saved in the part")
-          .with(static_cast<double>(usual.baud)),
-      time("params.first_fix", "s", 3600.0, "from power-up, cold")
-          .with(static_cast<double>(usual.first_fix_ns) * 1e-9),
-      time("params.latency", "ms", 10.0, "from a measurement to its first bit")
-          .with(static_cast<double>(usual.latency_ns) * 1e-9),
-      satellites,
-      quantity_key("params.dropout", Dimension::ratio, "%", {0.0, 1.0},
-                   "share of the solutions that do not come out")
-          .with(0.0)};
+  keys.push_back(time("params.first_fix", "s", 3600.0, "from power-up, cold")
+                     .with(static_cast<double>(usual.first_fix_ns) * 1e-9));
+  keys.push_back(time("params.latency", "ms", 10.0, "from a measurement to its first bit")
+                     .with(static_cast<double>(usual.latency_ns) * 1e-9));
+  keys.push_back(satellites);
+  keys.push_back(quantity_key("params.dropout", Dimension::ratio, "%", {0.0, 1.0},
+                              "share of the solutions that do not come out")
+                     .with(0.0));
   add_place(keys);
   add_physics(keys);
-  return keys;
 }
+
+const std::vector<std::string> kSenses = {"north",          "east",          "down",
+                                          "velocity_north", "velocity_east", "velocity_down"};
 
 template <io::UbloxModel kModel>
 DeviceType type_of(const char* name, const char* about) {
-  return {name,
-          about,
-          keys_of_part(),
-          make_device<UbloxDevice<kModel>>,
-          {},
-          {"north", "east", "down", "velocity_north", "velocity_east", "velocity_down"}};
+  std::vector<DeviceKey> keys = {
+      bus_key("usart", "the UART").need().own(),
+      quantity_key("baud", Dimension::baud, "baud", {4800.0, 460800.0}, "as saved in the part")
+          .with(static_cast<double>(io::Ublox::Params{}.baud))};
+  add_part(keys);
+  return {name, about, std::move(keys), make_device<UbloxDevice<kModel>>, {}, kSenses};
 }
 
 }  // namespace
@@ -184,6 +211,17 @@ DeviceType ublox_6_type() {
 
 DeviceType ublox_m8_type() {
   return type_of<io::UbloxModel::m8>("ublox_m8", "GPS receiver NEO-M8 on a UART");
+}
+
+DeviceType ublox_m8_dronecan_type() {
+  std::vector<DeviceKey> keys = can_node_keys("53");
+  add_part(keys);
+  return {"ublox_m8_dronecan",
+          "GPS receiver NEO-M8 on CAN, by DroneCAN",
+          std::move(keys),
+          make_device<GnssNodeDevice>,
+          {},
+          kSenses};
 }
 
 }  // namespace whirl::rack

@@ -29,6 +29,14 @@ std::array<double, 3> turned(const Mounting& mounting, const Eigen::Vector3d& in
   return out;
 }
 
+std::array<double, 3> turned_back(const Mounting& mounting, const std::array<double, 3>& in_part) {
+  std::array<double, 3> out{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    out[mounting.axis[i]] = mounting.sign[i] > 0 ? in_part[i] : -in_part[i];
+  }
+  return out;
+}
+
 io::Mpu6000::Truth InertialSensor::sample(Nanoseconds now) {
   const double dt_s = static_cast<double>(now - motion_ns_) * 1e-9;
   plant::ImuMotion motion;

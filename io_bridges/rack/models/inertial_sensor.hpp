@@ -25,6 +25,8 @@ struct Mounting {
 Mounting mounting_of(const std::vector<std::string>& axes);  // {"+x", "-y", "-z"}
 // A vector of the body in the part's axes.
 std::array<double, 3> turned(const Mounting& mounting, const Eigen::Vector3d& in_B);
+// And back.
+std::array<double, 3> turned_back(const Mounting& mounting, const std::array<double, 3>& in_part);
 
 class InertialSensor {
  public:

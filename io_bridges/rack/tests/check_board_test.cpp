@@ -31,7 +31,9 @@ TEST(CheckBoard, WhatIsWrongWithADeviceIsSaidWithWhatThereIs) {
   EXPECT_EQ(
       of({{.name = "x", .type = "toaster"}}),
       "type: unknown type 'toaster' (use one of mpu6000, ms5611, hmc5883l, sd_card, eeprom_24xx, "
-      "battery_sense, current_sense, esc_i2c, esc_dronecan, ublox_6, ublox_m8, cppm, sbus, "
+      "battery_sense, current_sense, esc_i2c, esc_dronecan, mpu6000_dronecan, "
+      "ms5611_dronecan, hmc5883l_dronecan, ublox_m8_dronecan, battery_dronecan, ublox_6, ublox_m8, "
+      "cppm, sbus, "
       "mavlink_link, serial, "
       "i2c_master, can_port, pod_replay, power_stage, pulse_source, volts, jumper)");
   BoardDevice device = serial("t", "usart1");

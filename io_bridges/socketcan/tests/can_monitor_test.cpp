@@ -30,6 +30,15 @@ TEST(CanMonitor, TheLoadLiesBetweenNoStuffBitsAndTheMost) {
   EXPECT_TRUE(near(monitor.fullest_second().least, 0.262, round_off(8, 1.0)));
 }
 
+// A remote frame asks for eight bytes and carries none: 67 bits without stuff bits.
+TEST(CanMonitor, ARemoteFrameLoadsTheBusWithoutData) {
+  CanMonitor monitor(1'000'000);
+  CanArrival asked = sent(0);
+  asked.frame.remote = true;
+  monitor.on_arrival(asked);
+  EXPECT_TRUE(near(monitor.load_between(0, 1'000'000).least, 0.067, round_off(8, 1.0)));
+}
+
 TEST(CanMonitor, AVirtualBusHasNoLoad) {
   CanMonitor monitor(0);
   monitor.on_arrival(sent(0));

@@ -28,6 +28,7 @@ std::shared_ptr<const KnownBlades> known() {
 PropellerDescription slow_flyer() {
   PropellerDescription d;
   d.place = d.name = "slow flyer";
+  d.make = "APC";
   d.diameter_m = 0.254;
   d.mass_kg = 0.009;
   const double rows[][3] = {{0.15, 0.109, 21.11}, {0.30, 0.173, 23.49}, {0.45, 0.217, 17.33},
@@ -113,6 +114,56 @@ TEST(BladeFit, StaticRowsNarrowTheBand) {
   };
   EXPECT_LT(width(seeing), 0.8 * width(blind));
   EXPECT_FALSE(blind.doubts.empty());
+}
+
+TEST(BladeFit, ARowInFlightNarrowsTheBandAndIsDoubtedWhereNoBladeGivesIt) {
+  PropellerDescription d = slow_flyer();
+  d.static_points = rows_of(d, usual());
+  const auto width = [](const FittedBlade& f) {
+    return predict(f.axial, f.belief, {{500.0, 0.45, 0.0, 0.0}}).front().deviation.CT;
+  };
+  const auto alone = fit_blade(d).value();
+  const auto k = axial_coefficients(alone.axial, usual(), 500.0, 0.4);
+  d.flight_points = {{500.0, 0.4, k.CT, k.CP}};
+  const auto flown = fit_blade(d).value();
+  EXPECT_LT(width(flown), 0.8 * width(alone));
+  EXPECT_TRUE(flown.doubts.empty()) << flown.doubts.front();
+  d.flight_points.front().thrust_coefficient *= 2.0;  // a J of half the diameter's
+  const auto wrong = fit_blade(d);
+  ASSERT_TRUE(wrong.ok()) << wrong.error().message();
+  ASSERT_FALSE(wrong.value().doubts.empty());
+  EXPECT_NE(wrong.value().doubts.front().find("in flight"), std::string::npos)
+      << wrong.value().doubts.front();
+}
+
+TEST(BladeFit, AMakeThatNobodyMeasuredHasAWiderBandAndSaysSo) {
+  PropellerDescription d = slow_flyer();
+  d.static_points = rows_of(d, usual());
+  const auto band = [](const FittedBlade& f) {
+    return predict(f.axial, f.belief, {{500.0, 0.3, 0.0, 0.0}}).front().deviation;
+  };
+  const auto known_make = fit_blade(d).value();
+  EXPECT_TRUE(known_make.doubts.empty()) << known_make.doubts.front();
+  for (const char* make : {"", "Nobody"}) {
+    d.make = make;
+    const auto strange = fit_blade(d).value();
+    EXPECT_TRUE(near(band(strange).CT, kStrange_thrust * band(known_make).CT, round_off(4, 0.1)));
+    EXPECT_TRUE(near(band(strange).CP, kStrange_power * band(known_make).CP, round_off(4, 0.1)));
+    ASSERT_FALSE(strange.doubts.empty());
+    EXPECT_NE(strange.doubts.back().find("make"), std::string::npos);
+  }
+}
+
+// A stand's power in the wrong unit or of the ESC's input: drag alone would swallow it.
+TEST(BladeFit, RowsThatBladesOfTheShapeDoNotGiveAreDoubted) {
+  PropellerDescription d = slow_flyer();
+  d.static_points = rows_of(d, usual());
+  for (StaticPoint& p : d.static_points) p.power_coefficient *= 1.45;
+  const auto fit = fit_blade(d);
+  ASSERT_TRUE(fit.ok()) << fit.error().message();
+  ASSERT_FALSE(fit.value().doubts.empty());
+  EXPECT_NE(fit.value().doubts.back().find("power is +"), std::string::npos)
+      << fit.value().doubts.back();
 }
 
 TEST(BladeFit, WhatNoBladeOfTheShapeGivesIsRefused) {

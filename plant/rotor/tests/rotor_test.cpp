@@ -156,6 +156,40 @@ TEST(Rotor, FlapsBackInForwardFlight) {
   }
 }
 
+Eigen::Vector3d flap_rad(int spin, const Eigen::Vector3d& v_mps, const Eigen::Vector3d& w_radps) {
+  RotorConditions c = hover(4500.0);
+  c.v_AP_P_mps = v_mps;
+  c.w_WP_P_radps = w_radps;
+  return Rotor(hobbyking(), spin).steady(c).flap_rad;
+}
+
+// A stiff blade answers in phase: it stands highest where it meets the most air. From ahead a rotor that turns
+// counter-clockwise meets it on its right.
+TEST(Rotor, FlapsUpOnItsAdvancingSide) {
+  for (const int spin : {1, -1}) EXPECT_GT(spin * flap_rad(spin, {5, 0, 0}, {0, 0, 0}).z(), 1e-4);
+}
+
+// Blown from the right it does to the right what it did ahead: forward, right, backward are one cycle.
+TEST(Rotor, FlapsAsTheWindTurns) {
+  for (const int spin : {1, -1}) {
+    const Eigen::Vector3d ahead = flap_rad(spin, {5, 0, 0}, {0, 0, 0});
+    const Eigen::Vector3d right = flap_rad(spin, {0, 5, 0}, {0, 0, 0});
+    const Tolerance solver = stated(1e-6, "solver");
+    EXPECT_TRUE(near(right.x(), ahead.x(), solver));
+    EXPECT_TRUE(near(right.y(), -ahead.z(), solver));
+    EXPECT_TRUE(near(right.z(), ahead.y(), solver));
+  }
+}
+
+// Rolled to the right, a counter-clockwise rotor dips ahead, pitched up it dips on the right: each blade
+// lags behind the plane that is turned under it. Clockwise it is the other way about.
+TEST(Rotor, FlapsAgainstTheTurningOfItsPlane) {
+  for (const int spin : {1, -1}) {
+    EXPECT_LT(spin * flap_rad(spin, {0, 0, 0}, {3, 0, 0}).y(), -1e-5);
+    EXPECT_LT(spin * flap_rad(spin, {0, 0, 0}, {0, 3, 0}).z(), -1e-5);
+  }
+}
+
 TEST(Rotor, AtRestInStillAirNothingPulls) {
   const RotorLoads loads = Rotor(hobbyking(), 1).steady(RotorConditions{});
   EXPECT_EQ(loads.f_P_N.norm(), 0.0);

@@ -19,6 +19,8 @@ struct Played {  // what a link was told, and what it shall say
   std::optional<Error> fails, refuses;
   int made_safe = 0, opened = 0, closed = 0;
   bool silent_loop = false;
+  BenchTime time;
+  std::vector<std::int64_t> served_virtual_ns;  // by that
 };
 
 class PlayedLink final : public Link {
@@ -30,6 +32,7 @@ class PlayedLink final : public Link {
     if (p_.refuses) return *p_.refuses;
     return Done{};
   }
+  void keep_time(BenchTime time) override { p_.time = std::move(time); }
   bool take(const io::Reader& order, std::int64_t due_host_ns) override {
     if (order.header().kind != io::Kind::uart_frame) return false;
     p_.taken_due_ns.push_back(due_host_ns);
@@ -37,6 +40,7 @@ class PlayedLink final : public Link {
   }
   Result<Done> serve(std::int64_t now_host_ns, Arrivals& arrivals) override {
     p_.served_ns.push_back(now_host_ns);
+    p_.served_virtual_ns.push_back(p_.time.virtual_ns(now_host_ns));
     while (!p_.says.empty() && p_.says.front().host_ns <= now_host_ns) {
       arrivals.push_back(p_.says.front());
       p_.says.erase(p_.says.begin());
@@ -101,6 +105,17 @@ TEST(BenchTarget, AStepTakesItsTimeOfTheHostWhateverThePace) {
     EXPECT_EQ(rig.target->held_pace()->lateness_s.size(), 10u);
     EXPECT_EQ(rig.target->held_pace()->late_steps, 0);
   }
+}
+
+TEST(BenchTarget, ALinksTimeIsVirtualAndNeverBeyondTheStepAtHand) {
+  Rig rig(0.5);
+  ASSERT_TRUE(rig.target->start().ok());
+  for (int k = 0; k < 5; ++k) ASSERT_TRUE(rig.step().ok());
+  EXPECT_EQ(rig.played[0].served_virtual_ns.back(), 5 * kMs);
+  EXPECT_EQ(rig.played[0].time.due_host_ns(7 * kMs), rig.begin_ns + 14 * kMs);
+  rig.clock.t_ns += 50 * kMs;  // a host that is late
+  ASSERT_TRUE(rig.step().ok());
+  EXPECT_EQ(rig.played[0].served_virtual_ns.back(), 6 * kMs);
 }
 
 TEST(BenchTarget, OrdersAreDueWhenTheirVirtualTimeIs) {

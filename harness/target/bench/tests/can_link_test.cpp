@@ -123,6 +123,32 @@ TEST(CanLink, AnEmergencySendsZeroAtOnceAheadOfWhatWaits) {
   EXPECT_LT(rig.bus.seen()[5].first - before_ns, 20 * kMillisecond);
 }
 
+// An ESC that was commanded by speeds listens to those.
+TEST(CanLink, TheZerosAreOfBothKindsOfCommandForAllEscs) {
+  Rig rig;
+  rig.link.make_safe();
+  dc::Assembler assembler(dc::known_type);
+  int raw = 0, speeds = 0;
+  for (const auto& [t_ns, frame] : rig.bus.seen()) {
+    const auto* transfer = assembler.take(frame, t_ns);
+    if (transfer == nullptr) continue;
+    const auto all_zero = [](const auto& list) {
+      return list.size == 4 && std::all_of(list.items.begin(), list.items.begin() + 4,
+                                           [](auto count) { return count == 0; });
+    };
+    if (const auto r = dc::decode<dc::RawCommand>(transfer->payload);
+        r && transfer->header.type_id == dc::RawCommand::kType.id) {
+      raw += all_zero(r->commands) ? 1 : 0;
+    }
+    if (const auto r = dc::decode<dc::RpmCommand>(transfer->payload);
+        r && transfer->header.type_id == dc::RpmCommand::kType.id) {
+      speeds += all_zero(r->speeds_rpm) ? 1 : 0;
+    }
+  }
+  EXPECT_GE(raw, 1);
+  EXPECT_GE(speeds, 1);
+}
+
 TEST(CanLink, ALostHeartbeatSendsZerosByItself) {
   Rig rig(30 * kMillisecond);
   rig.order(raw_command(4000, 0));

@@ -299,6 +299,42 @@ TEST(I2cMaster, AByteEndsNoEarlierThanTheHeldClockRises) {
   EXPECT_EQ(bench.file.byte_at.size(), 1u);
 }
 
+// A slave that holds the clock after its address is still looking for its byte.
+TEST(I2cMaster, AHeldClockDelaysTheByteAndWhatIsInIt) {
+  I2cBench bench;
+  bench.point_at(0x31);
+  bench.clear_bits(kCr1, ACK);
+  bench.start_and_address(0xA1);
+  bench.wait(kSr1, ADDR, ADDR);
+  bench.bus().scl().force(io::Drive::low, bench.now());
+  bench.clear_addr();
+  bench.set_bits(kCr1, STOP);
+  bench.run(100'000);
+  EXPECT_TRUE(bench.file.fetched_at.empty());
+  bench.file.bytes[0x31] = 0x77;
+  const Nanoseconds released = bench.now();
+  bench.bus().scl().force(io::Drive::none, released);
+  EXPECT_EQ(bench.received(), 0x77);
+  ASSERT_EQ(bench.file.fetched_at.size(), 1u);
+  EXPECT_EQ(bench.file.fetched_at[0], released);
+}
+
+// A clock that stops in the middle of a byte delays it, and asks for no other one.
+TEST(I2cMaster, AClockHeldWithinAByteAsksForItOnce) {
+  I2cBench bench;
+  bench.point_at(0x31);
+  bench.clear_bits(kCr1, ACK);
+  bench.start_and_address(0xA1);
+  bench.clear_addr();
+  bench.set_bits(kCr1, STOP);
+  bench.run(4 * kBit_ns);
+  bench.bus().scl().force(io::Drive::low, bench.now());
+  bench.run(100'000);
+  bench.bus().scl().force(io::Drive::none, bench.now());
+  EXPECT_EQ(bench.received(), 0x31);
+  EXPECT_EQ(bench.file.fetched_at.size(), 1u);
+}
+
 TEST(I2cMaster, SwrstAndPeOffLetGoOfTheBus) {
   for (const std::uint32_t way : {0x8000u, 0u}) {
     I2cBench bench;

@@ -1,5 +1,5 @@
 // Oracle: data made from known constants and known noise; textbook values of Student's t.
-#include "harness/calibrate/regression.hpp"
+#include "harness/regression/regression.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include "base/near.hpp"
 #include "base/random.hpp"
 
-namespace whirl::calibrate {
+namespace whirl::regression {
 namespace {
 
 constexpr double kSlope = 3.0e-5, kOffset = 0.4, kNoise = 0.02;
@@ -126,4 +126,4 @@ TEST(Regression, StudentsTIsTheTextbooks) {
 }
 
 }  // namespace
-}  // namespace whirl::calibrate
+}  // namespace whirl::regression

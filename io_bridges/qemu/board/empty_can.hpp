@@ -1,14 +1,11 @@
-// Every frame on a CAN bus becomes a message, good or not.
+// A CAN bus on which the board has no device, and firmware that sends on it.
 #pragma once
 #include <functional>
 
-#include "io_bridges/devices/can_bus.hpp"
-#include "io_bridges/messages/messages.hpp"
+#include "io_bridges/devices/bus.hpp"
 #include "io_bridges/qemu/stm32/chip_model.hpp"
 
 namespace whirl::board {
-
-void log_can(io::CanBus& bus, int number, io::Batch& happened);
 
 // The first frame that firmware sends on a CAN bus with no device at all is a finding: nobody
 // acknowledges it, and it leaves no other trace.

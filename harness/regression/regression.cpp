@@ -1,4 +1,4 @@
-#include "harness/calibrate/regression.hpp"
+#include "harness/regression/regression.hpp"
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -6,7 +6,7 @@
 
 #include "base/check.hpp"
 
-namespace whirl::calibrate {
+namespace whirl::regression {
 namespace {
 
 using Eigen::MatrixXd;
@@ -163,4 +163,4 @@ Result<Fit> solve(const Problem& p) {
   return fit;
 }
 
-}  // namespace whirl::calibrate
+}  // namespace whirl::regression

@@ -11,7 +11,7 @@
 
 #include "base/result.hpp"
 
-namespace whirl::calibrate {
+namespace whirl::regression {
 
 struct Column {
   std::string name, unit;
@@ -61,4 +61,4 @@ Result<Fit> solve(const Problem& problem);
 
 double student_t95(double degrees_of_freedom);  // two-sided
 
-}  // namespace whirl::calibrate
+}  // namespace whirl::regression

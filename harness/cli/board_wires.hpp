@@ -1,0 +1,24 @@
+// The wires of a plan that join boards: is each end there, does nobody lead in a circle, and what does
+// each board's target get of them.
+#pragma once
+#include <vector>
+
+#include "base/result.hpp"
+#include "harness/board/node.hpp"
+#include "harness/cli/composition.hpp"
+#include "harness/plan/plan_file.hpp"
+#include "harness/target/node_set.hpp"
+
+namespace whirl::cli {
+
+// Errors  bad_input: a device that is not there, or no I2C device; one that two boards take the place of; a board
+//         that two others lead; leads that come back to where they began (each would wait for the other)
+Result<Done> check_board_wires(const plan::Plan& plan, const std::vector<Node>& nodes);
+
+// Makes the wires and gives each setup its ends, and that of the leader what its far boards are. The links have to
+// outlive the targets' start. Pre: checked.
+Result<std::vector<BoardWireLink>> join_boards(const plan::Plan& plan,
+                                               const std::vector<Node>& nodes,
+                                               std::vector<Setup>& setups);
+
+}  // namespace whirl::cli

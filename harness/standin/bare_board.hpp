@@ -1,0 +1,13 @@
+// A board as metal lies on a bench: without the parts that the bench plays to it.
+//
+//   Nodes on CAN  of the world are left out; in their place the bus has a can_port
+//   Radio         its UART ends at a serial line, bytes as they are
+//   The rest      (memories, receivers, what is on other buses) stays on the board
+#pragma once
+#include "io_bridges/board_description/board_description.hpp"
+
+namespace whirl {
+
+BoardDescription bare_board(BoardDescription board);
+
+}  // namespace whirl

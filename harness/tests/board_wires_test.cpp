@@ -1,0 +1,84 @@
+// Boards in the place of other boards' devices: which wires a plan may have.
+#include "harness/cli/board_wires.hpp"
+
+#include <gtest/gtest.h>
+
+namespace whirl::cli {
+namespace {
+
+// Each has an ESC on its bus, a second one, and a sensor on another kind of bus.
+struct Rig {
+  plan::Plan plan = plan::plan_of_one_board("rig", "rig.lua:3");
+  std::vector<Node> nodes;
+
+  explicit Rig(std::size_t boards) {
+    for (std::size_t i = 0; i < boards; ++i) {
+      BoardDescription board;
+      board.name = "board";
+      board.devices = {
+          {.name = "esc1", .type = "esc_i2c", .bus = "i2c3", .address = 0x29, .motor = 1},
+          {.name = "esc2", .type = "esc_i2c", .bus = "i2c3", .address = 0x2A, .motor = 2},
+          {.name = "imu", .type = "mpu6000", .bus = "spi1"}};
+      nodes.push_back({std::string(1, static_cast<char>('a' + i)), board});
+    }
+  }
+  Rig& wire(std::size_t leader, const std::string& device, std::size_t follower) {
+    plan.board_wires.push_back({leader, device, follower, "i2c2"});
+    return *this;
+  }
+  std::string refused() const {
+    const auto checked = check_board_wires(plan, nodes);
+    return checked ? "" : checked.error().what;
+  }
+};
+
+TEST(BoardWires, AChainAndAStarAreTaken) {
+  EXPECT_EQ(Rig(3).wire(0, "esc1", 1).wire(0, "esc2", 2).refused(), "");
+  EXPECT_EQ(Rig(3).wire(0, "esc1", 1).wire(1, "esc1", 2).refused(), "");
+}
+
+TEST(BoardWires, BoardsThatLeadEachOtherInACircleAreRefused) {
+  EXPECT_EQ(Rig(2).wire(0, "esc1", 1).wire(1, "esc1", 0).refused(),
+            "wires: boards lead each other in a circle: a -> b -> a");
+  const std::string three =
+      Rig(4).wire(1, "esc1", 2).wire(2, "esc1", 3).wire(3, "esc1", 1).wire(1, "esc2", 0).refused();
+  EXPECT_NE(three.find("in a circle: "), std::string::npos) << three;
+}
+
+TEST(BoardWires, ABoardHasOneMasterAndADeviceOneBoardInItsPlace) {
+  EXPECT_EQ(Rig(3).wire(0, "esc1", 2).wire(1, "esc1", 2).refused(),
+            "wires: c takes the place of two devices");
+  EXPECT_EQ(Rig(3).wire(0, "esc1", 1).wire(0, "esc1", 2).refused(),
+            "wires: two boards take the place of a.esc1");
+}
+
+TEST(BoardWires, OnlyATargetOnAnI2cBusHasAPlaceForABoard) {
+  EXPECT_EQ(Rig(2).wire(0, "imu", 1).refused(), "wires: a.imu is no target on an I2C bus");
+  EXPECT_EQ(Rig(2).wire(0, "esc7", 1).refused(), "wires: board has no device 'esc7'");
+}
+
+TEST(BoardWires, EachBoardGetsItsEndOfOneMemory) {
+  Rig rig(3);
+  rig.wire(0, "esc2", 2);
+  std::vector<cli::Setup> setups;
+  for (std::size_t i = 0; i < 3; ++i) {
+    setups.push_back({rig.plan, i, rig.nodes[i].board, "", "", ""});
+  }
+  const auto links = join_boards(rig.plan, rig.nodes, setups);
+  ASSERT_TRUE(links) << links.error().message();
+  ASSERT_EQ(links.value().size(), 1u);
+  ASSERT_EQ(setups[0].wires.size(), 1u);
+  ASSERT_EQ(setups[2].wires.size(), 1u);
+  EXPECT_TRUE(setups[1].wires.empty());
+  EXPECT_EQ(setups[0].wires[0].device, "esc2");
+  EXPECT_EQ(setups[2].wires[0].device, "");
+  EXPECT_EQ(setups[2].wires[0].bus, "i2c2");
+  EXPECT_EQ(setups[0].wires[0].fd, setups[2].wires[0].fd);
+  EXPECT_EQ(setups[2].motor, 2);
+  ASSERT_EQ(setups[0].far.size(), 1u);
+  EXPECT_EQ(setups[0].far[0].node, 2u);
+  EXPECT_EQ(setups[0].far[0].motor, 2);
+}
+
+}  // namespace
+}  // namespace whirl::cli

@@ -1,0 +1,45 @@
+// A stand-in at work in a thread of its own, until it is stopped.
+#pragma once
+#include <gtest/gtest.h>
+
+#include <thread>
+
+#include "harness/pacing/host_clock.hpp"
+#include "harness/standin/stand_in.hpp"
+#include "harness/target/virtual_board.hpp"
+
+namespace whirl {
+
+class RunningStandIn {
+ public:
+  RunningStandIn(World& world, BoardDescription board, const std::string& image,
+                 StandInOptions wires)
+      : target_(options_of(std::move(board), image)),
+        stand_in_(world, target_, clock_, std::move(wires)),
+        thread_([this] {
+          const auto ran = stand_in_.run();
+          EXPECT_TRUE(ran.ok()) << ran.error().message();
+        }) {}
+  ~RunningStandIn() { stop(); }
+  void stop() {
+    if (!thread_.joinable()) return;
+    stand_in_.end();
+    thread_.join();
+  }
+  StandIn& operator*() { return stand_in_; }
+  StandIn* operator->() { return &stand_in_; }
+
+ private:
+  static VirtualBoardOptions options_of(BoardDescription board, const std::string& image) {
+    VirtualBoardOptions options;
+    options.board = {std::move(board), {.image = image, .seed = 1}};
+    return options;
+  }
+
+  pacing::MonotonicClock clock_;
+  VirtualBoard target_;
+  StandIn stand_in_;
+  std::thread thread_;
+};
+
+}  // namespace whirl

@@ -1,0 +1,84 @@
+// A wire between two boards' processes: one page of shared memory, a ring of messages down, one answer up.
+// The bus master's board leads, the slave's board follows behind it in virtual time.
+//
+//   Order     messages carry the leader's virtual time, which never falls. Every read blocks and none
+//             polls, so what happens depends on the messages and not on who was faster
+//   Waiting   as long as a core is free for it, then a futex: long turns where there are more cores than
+//             boards, few where looking would take the core from the one that is waited for
+//   Ends      close() wakes both sides, whatever they wait for: their calls then say that it is closed
+//   Life      it ends with the last process that has it open
+#pragma once
+#include <atomic>
+#include <cstdint>
+#include <optional>
+
+#include "base/result.hpp"
+
+namespace whirl::io {
+
+enum class WireAct : std::uint8_t {
+  to_boundary,  // nothing more comes before the next boundary. No answer
+  start,        // no answer; also of transactions for others
+  stop,         // likewise
+  address,      // flag: a read. Answer: ACK
+  write,        // answer: ACK
+  fetch,        // answer: the byte
+  acked,        // flag: the master's acknowledge; with it an answer: the next byte, else none
+  still_held,   // after an answer that the clock is held. Answer: of the act that it was for
+};
+
+struct WireMessage {
+  std::int64_t t_ns = 0;
+  WireAct act = WireAct::start;
+  std::uint8_t byte = 0, flag = 0;
+};
+
+struct WireAnswer {
+  enum class Clock : std::uint8_t {
+    released,          // at t_ns
+    held,              // still at t_ns: ask again then
+    held_to_boundary,  // ask again after it
+  };
+  std::int64_t t_ns = 0;
+  Clock clock = Clock::released;
+  std::uint8_t ack = 0, byte = 0;
+  bool has_byte = false;
+};
+
+class BoardWire {
+ public:
+  // boards: how many processes of the run want a core of their own.
+  static Result<BoardWire> create(int boards);
+  static Result<BoardWire> attach(int fd);
+  BoardWire(BoardWire&& other) noexcept;
+  BoardWire& operator=(BoardWire&&) = delete;
+  ~BoardWire();
+
+  int fd() const { return fd_; }  // inherited by both boards
+
+  // Leader. False, nothing: the wire is closed.
+  bool post(const WireMessage& message);  // waits for room, and never for long: the follower drains
+  std::optional<WireAnswer> ask(const WireMessage& message);
+
+  // Follower.
+  const WireMessage* front();  // waits for one; null: closed
+  void pop();
+  void answer(const WireAnswer& answer);
+
+  // The harness, when one of the two is gone or the run has ended otherwise.
+  void close();
+  bool leader_waits() const;
+  bool follower_waits() const;
+
+ private:
+  struct Page;
+  BoardWire(int fd, void* memory);
+  template <typename Ready>
+  bool await(std::atomic<std::uint32_t>& word, std::atomic<std::uint32_t>& sleeps, Ready ready);
+
+  int fd_ = -1;
+  Page* page_ = nullptr;
+  int turns_ = 0;
+};
+
+}  // namespace whirl::io
