@@ -99,7 +99,8 @@ void Estimator::correct_velocity(const CaptureFix& fix, float since_last_s) {
 
 void Estimator::on_gps(const GpsSolution& solution) {
   gps_ = solution;
-  if (fix_fresh() || !solution.good()) return;
+  const bool stuck = gps_guard_.stuck(solution) && situation_.airborne;
+  if (fix_fresh() || stuck || !solution.good()) return;
   if (!gps_frame_.known()) {
     // A vehicle that capture has placed goes on in the capture's frame.
     if (situation_.resting && fix_age_ms_ >= kNever) gps_frame_.learn(solution);
