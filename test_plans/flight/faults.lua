@@ -141,3 +141,10 @@ flight_plan("one radio byte in a hundred lost is flown through", function(t)
   t:wait "1 s"
   flies_on(t)
 end)
+
+flight_plan("one radio byte in a hundred with a flipped bit is flown through", function(t)
+  hover(t)
+  t:fault { kind = "uart_flip", device = "radio", duration = "1 s", value = 0.01 }
+  t:wait "1 s"
+  flies_on(t)
+end)
