@@ -165,6 +165,17 @@ TEST(Flight, LosesTheCaptureAndLandsBlind) {
   EXPECT_LT(hover.vehicle.tilt_rad(), 0.1);
 }
 
+// The cameras' computer goes on sending the last pose that it had.
+TEST(Flight, LandsWhenTheCaptureStaysTheSame) {
+  Hovering hover({});
+  hover.vehicle.wind_W_ = {0, 1.0, 0};
+  hover.vehicle.capture_stuck_ = true;
+  hover.vehicle.run(hover.flight, 1.0);
+  EXPECT_EQ(hover.flight.last_reason(), Reason::no_position);
+  hover.vehicle.run(hover.flight, 12.0);
+  EXPECT_EQ(hover.flight.state(), FlightState::disarmed);
+}
+
 TEST(Flight, CutsTheMotorsWithinATenthOfASecondOfAnEscThatSaysItsMotorStands) {
   Hovering hover({});
   hover.vehicle.esc_on_[2] = false;
