@@ -68,6 +68,7 @@ bool Estimator::converged() const {
 void Estimator::on_fix(const CaptureFix& fix) {
   // Who flies by GPS comes into a room in another frame: not before it has landed.
   if (situation_.in_flight && gps_frame_.known()) return;
+  if (is_stuck(fix) && situation_.airborne) return;
   const bool first = fix_age_ms_ >= kFixLost_ms && !situation_.in_flight;
   const float since_last_s = seconds(fix_age_ms_);
   if (!fix_fresh()) calibration_.restart();  // a window by gravity is none by capture
@@ -88,6 +89,15 @@ void Estimator::on_fix(const CaptureFix& fix) {
   still_fixes_ = position_.innovation_W_m().norm() < 0.03f ? still_fixes_ + 1 : 0;
 }
 
+// Cameras measure a tenth of a millimetre: a pose that repeats to the last bit is the newest that somebody
+// still has, and not one of now. Some come twice.
+bool Estimator::is_stuck(const CaptureFix& fix) {
+  constexpr unsigned kMostSame = 8;  // 0.2 s
+  const bool same = fix.p_WB_W_m == fix_.p_WB_W_m && fix.yaw_rad == fix_.yaw_rad;
+  same_fixes_ = same ? std::min(same_fixes_ + 1, kMostSame) : 0;
+  return same_fixes_ == kMostSame;
+}
+
 // v = 0.5 V + 0.5 dp/dt [Bangura 2017, 6.9, 6.10]. After a gap the difference is too old a velocity.
 void Estimator::correct_velocity(const CaptureFix& fix, float since_last_s) {
   constexpr float kLongest_s = 0.2f;
@@ -99,7 +109,8 @@ void Estimator::correct_velocity(const CaptureFix& fix, float since_last_s) {
 
 void Estimator::on_gps(const GpsSolution& solution) {
   gps_ = solution;
-  if (fix_fresh() || !solution.good()) return;
+  const bool stuck = gps_guard_.stuck(solution) && situation_.airborne;
+  if (fix_fresh() || stuck || !solution.good()) return;
   if (!gps_frame_.known()) {
     // A vehicle that capture has placed goes on in the capture's frame.
     if (situation_.resting && fix_age_ms_ >= kNever) gps_frame_.learn(solution);

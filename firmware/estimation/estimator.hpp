@@ -136,6 +136,7 @@ class Estimator {
   VelocitySource find_velocity_source() const;
   Vector3 velocity_by_drag_W() const;
   Vector3 velocity_measured_B() const;
+  bool is_stuck(const CaptureFix& fix);
   void correct_velocity(const CaptureFix& fix, float since_last_s);
 
   AttitudeFilter explicit_;
@@ -159,6 +160,7 @@ class Estimator {
   enum class Zeros : std::uint8_t { unknown, by_gravity, by_capture } zeros_ = Zeros::unknown;
 
   CaptureFix fix_;
+  unsigned same_fixes_ = 0;  // as the one before, in a row
   std::uint32_t fix_age_ms_ = kNever, still_fixes_ = 0;
   Vector3 capture_v_W_mps_ = Vector3::Zero();
   GpsFrame gps_frame_;

@@ -5,12 +5,17 @@
 //            than kGate_mps, is not used: it stays out however long it lasts, until it comes back or the
 //            vehicle rests
 //   Fresh    believed within the last second
-//   Notices  a jump, a jammed receiver, a false velocity above the gate
+//   Stuck    in the air, the same place and velocity to the last digit kMostSame times in a row is no
+//            measurement: it has a centimetre's resolution, and noise of decimetres. On the ground a receiver may
+//            hold them
+//   Notices  a jump, a jammed receiver, a false velocity above the gate, one that has stopped measuring
 //   Blind    to a place that drifts away together with its velocity, below the gate: no sensor on board tells
 //            that from wind
 #pragma once
+#include <algorithm>
 #include <cstdint>
 
+#include "firmware/estimation/gps_frame.hpp"
 #include "firmware/math.hpp"
 
 namespace fw {
@@ -20,10 +25,21 @@ class GpsGuard {
   static constexpr std::uint32_t kLost_ms = 1000, kNever = 1'000'000;
   static constexpr float kGate_m = 3.0f, kGate_mps = 2.0f;
 
+  static constexpr unsigned kMostSame = 3;  // 0.6 s at 5 Hz
+
   void tick() { ++believed_ms_; }
   void forget() {
     believed_ms_ = kNever;
     in_row_ = 0;
+  }
+  // Asked of each solution once. True: it is as those before it.
+  bool stuck(const GpsSolution& solution) {
+    const bool same = solution.latitude_e7_deg == last_.latitude_e7_deg &&
+                      solution.longitude_e7_deg == last_.longitude_e7_deg &&
+                      solution.height_mm == last_.height_mm && solution.v_W_mps == last_.v_W_mps;
+    same_ = same ? std::min(same_ + 1, kMostSame) : 0;
+    last_ = solution;
+    return same_ == kMostSame;
   }
   // The innovations of a solution. False: not to be used.
   bool believe(const Vector3& p_W_m, const Vector3& v_W_mps) {
@@ -42,6 +58,8 @@ class GpsGuard {
 
  private:
   std::uint32_t believed_ms_ = kNever, in_row_ = 0;
+  GpsSolution last_;
+  unsigned same_ = 0;
 };
 
 }  // namespace fw

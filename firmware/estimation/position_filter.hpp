@@ -4,6 +4,8 @@
 //           error in W (tilt, bias) as a slow state. Fixes correct all three: a Luenberger observer,
 //           with capture of a triple pole
 //   Fixes   are late (capture, radio): each is compared with where the filter was kFixDelay_s ago
+//   Left    what the cameras and their computer take is told by nobody, and not made up for: where that is
+//           8 ms, place is 7 ms behind (flown along the figure 8, both periods)
 //   GPS     place and velocity as they were delay_s ago. The place counts 5 /s, so at 5 Hz in full: the
 //           vehicle goes where its receiver's error goes; 4 /s2 of it go to the velocity, which the
 //           receiver's own draws by 3 /s. A place that leaps by 20 cm a solution costs 7 degrees of tilt.

@@ -43,9 +43,15 @@ struct Bench {
       estimator.on_field((q_WB.conjugate() * Vector3d(23.0, 0.0, 53.0)).cast<float>());
     }
     if (ms % 25 == 0 && capture) {
-      estimator.on_fix({.p_WB_W_m = ago(10).p_W.cast<float>(), .yaw_rad = float(yaw_rad)});
+      // Cameras' last digit is never still, either.
+      const Vector3d seen_W = ago(10).p_W + Vector3d(0, 0, 1e-4 * (ms / 25 % 2));
+      estimator.on_fix({.p_WB_W_m = seen_W.cast<float>(), .yaw_rad = float(yaw_rad)});
     }
-    if (ms % 200 == 0 && gps) estimator.on_gps(solution_at(ago(110).p_W, ago(110).v_W));
+    if (ms % 200 == 0 && gps) {
+      GpsSolution solution = solution_at(ago(110).p_W, ago(110).v_W);
+      solution.height_mm += ms / 200 % 2;  // a receiver's last digit is never still
+      estimator.on_gps(solution);
+    }
     if (ms % 5 == 4) estimator.step(situation);
     ++ms;
   }

@@ -28,6 +28,8 @@ struct Outdoors {
       GpsSolution s = solution_at(vehicle.p_W_ + p_error_m, vehicle.v_W_ + v_error_mps);
       s.fix_type = fix_type;
       s.level_accuracy_m = accuracy_m;
+      if (stuck) s = last;
+      last = s;
       on_the_way.push_back({ms + 110, s});
     }
     p_error_m += 1e-3 * drift_mps;
@@ -51,7 +53,8 @@ struct Outdoors {
   Flight flight;
   VehicleModel vehicle;
   Eigen::Vector3d p_error_m{0, 0, 0}, v_error_mps{0, 0, 0}, drift_mps{0, 0, 0};
-  bool gps_on = true;
+  bool gps_on = true, stuck = false;
+  GpsSolution last;
   std::uint8_t fix_type = 3;
   float accuracy_m = 3.0f;
   std::deque<Due> on_the_way;
@@ -162,6 +165,24 @@ TEST(GpsFlight, ASilentOrJammedReceiverIsNoPositionAfterASecond) {
     EXPECT_EQ(out.flight.last_reason(), Reason::no_position);
     EXPECT_EQ(out.flight.state(), FlightState::failsafe);
   }
+}
+
+// What it told last was a metre a second: half a second of that, and a second until it counts as lost.
+TEST(GpsFlight, AReceiverThatTellsTheSameForEverIsNoPositionAfterTwoSeconds) {
+  Outdoors out;
+  out.hover();
+  out.v_error_mps.x() = 1.0;
+  out.run(0.2);
+  const Eigen::Vector3d before_m = out.vehicle.p_W_;
+  out.stuck = true;
+  out.run(2.0);
+  EXPECT_FALSE(out.flight.estimator().position_known());
+  EXPECT_EQ(out.flight.last_reason(), Reason::no_position);
+  EXPECT_LT((out.vehicle.p_W_ - before_m).head<2>().norm(), 3.0);
+  out.stuck = false;
+  out.v_error_mps.setZero();
+  out.run(3.0);
+  EXPECT_TRUE(out.flight.estimator().position_known());
 }
 
 TEST(GpsFlight, AJumpOrAFalseVelocityIsNotFollowed) {

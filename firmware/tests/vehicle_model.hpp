@@ -40,7 +40,8 @@ class VehicleModel {
 
   Eigen::Vector3d p_W_{0, 0, -kFoot_m}, v_W_{0, 0, 0}, w_B_{0, 0, 0}, wind_W_{0, 0, 0};
   Eigen::Quaterniond q_WB_{1, 0, 0, 0};
-  bool capture_on_ = true, imu_on_ = true, pressure_on_ = true, field_on_ = true;
+  bool capture_on_ = true, capture_stuck_ = false, imu_on_ = true, pressure_on_ = true,
+       field_on_ = true;
   double battery_V_ = 16.4;
   std::array<bool, 4> esc_on_{true, true, true, true};
   double tilt_rad() const { return std::acos((q_WB_ * Eigen::Vector3d::UnitZ()).z()); }
@@ -70,6 +71,7 @@ class VehicleModel {
   std::array<bool, 4> armed_{};
   std::deque<ImuSample> imu_line_;
   std::deque<Fix> fix_line_;
+  CaptureFix newest_;
   int ms_ = 0;
 };
 
@@ -121,10 +123,11 @@ inline void VehicleModel::sense(Flight& flight) {
   if (ms_ % 25 == 7 && luck(random_) > scenario_.capture_loss && capture_on_) {
     const Eigen::Matrix3d R = q_WB_.toRotationMatrix();
     const Eigen::Vector3d p = p_W_ + noise(0.0005);
-    fix_line_.push_back({ms_ + 10,
-                         {p.cast<float>(), static_cast<float>(std::atan2(R(2, 1), R(2, 2))),
+    const CaptureFix seen{p.cast<float>(), static_cast<float>(std::atan2(R(2, 1), R(2, 2))),
                           static_cast<float>(-std::asin(R(2, 0))),
-                          static_cast<float>(std::atan2(R(1, 0), R(0, 0)))}});
+                          static_cast<float>(std::atan2(R(1, 0), R(0, 0)))};
+    if (!capture_stuck_) newest_ = seen;
+    fix_line_.push_back({ms_ + 10, newest_});
   }
   if (!fix_line_.empty() && fix_line_.front().due_ms <= ms_) {
     flight.on_fix(fix_line_.front().fix);

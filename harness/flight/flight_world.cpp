@@ -14,7 +14,7 @@ namespace {
 constexpr float kForce = 21196.0f;  // of MAV_CMD_COMPONENT_ARM_DISARM
 constexpr std::uint16_t kArmDisarm = 400, kLand = 21, kTakeoff = 22;  // MAV_CMD
 constexpr const char *kEsc_stopped = "esc_stopped", *kSupply_dip = "supply_dip",
-                     *kCapture_lost = "capture_lost";
+                     *kCapture_lost = "capture_lost", *kCapture_frozen = "capture_frozen";
 constexpr double kStep_s = 1e-3;
 constexpr std::int64_t kStep_ns = 1'000'000;
 
@@ -173,8 +173,19 @@ void FlightWorld::send(std::int64_t t_ns, io::Batch& sensed) {
   guest_.send(kRadioPort, t_ns, sensed);
   const plant::Truth seen{.p_WB_W_m = s.p_WB_W_m, .v_WB_W_mps = s.v_WB_W_mps, .q_WB = s.q_WB};
   const auto hidden = [&] { return faults_.any(kCapture_lost, t_ns); };
-  if (const auto pose = capture_.look(t_ns, seen, hidden)) station_.send_pose(*pose, send);
+  if (const auto pose = capture_.look(t_ns, seen, hidden)) {
+    station_.send_pose(frozen_or(*pose, t_ns), send);
+  }
   station_.step(t_ns, send);
+}
+
+// The stamp of time goes on.
+CapturedPose FlightWorld::frozen_or(CapturedPose pose, std::int64_t t_ns) {
+  const std::optional<CapturedPose>& last = station_.last_pose();
+  if (!last || !faults_.any(kCapture_frozen, t_ns)) return pose;
+  pose.p_WB_W_m = last->p_WB_W_m;
+  pose.roll_pitch_yaw_rad = last->roll_pitch_yaw_rad;
+  return pose;
 }
 
 // ---- What a plan may ask
@@ -359,7 +370,7 @@ Result<bool> FlightWorld::take_fault(const FaultSpec& fault) {
     if (auto good = must_be_of_all(fault); !good) return good.error();
     const double start_s = static_cast<double>(fault.start_ns) * 1e-9;
     vehicle_.dip_supply(fault.value, start_s, static_cast<double>(fault.end_ns) * 1e-9 - start_s);
-  } else if (fault.kind == kCapture_lost) {
+  } else if (fault.kind == kCapture_lost || fault.kind == kCapture_frozen) {
     if (auto good = must_be_of_all(fault); !good) return good.error();
   } else {
     return false;

@@ -9,7 +9,7 @@
 //            arming, a take-off or a landing of the other one ours ends its own set-points until it is commanded anew
 //   Begins   standing at W's origin, or as the plan's `start` says (surroundings.hpp)
 //   Disturbed by Wind with a duration, Jet, Magnet; held and turned by Hold until Release (flight_hand.cpp)
-//   Faults   capture_lost; supply_dip (value: volts below); esc_stopped (of a motor, or of the device that is its ESC)
+//   Faults   capture_lost; capture_frozen (the pose that was sent last goes on); supply_dip (value: volts below); esc_stopped (of a motor, or of the device that is its ESC)
 #pragma once
 #include <functional>
 #include <memory>
@@ -85,6 +85,7 @@ class FlightWorld : public World {
   void take_off(const request::TakeOff& command);
   void go_to(const request::GoTo& command);
   void land();
+  CapturedPose frozen_or(CapturedPose pose, std::int64_t t_ns);
   void fly_figure_8(const request::Figure8& figure);
   void cruise(const request::Cruise& command);
   void hold_attitude(const request::HoldAttitude& command);

@@ -51,6 +51,7 @@ constexpr KindName kNames[] = {
     {FaultKind::can_cut, "can_cut"},
     {FaultKind::can_stuck_dominant, "can_stuck_dominant"},
     {FaultKind::can_babble, "can_babble"},
+    {FaultKind::capture_frozen, "capture_frozen"},
 };
 
 bool matches(int wanted, int here) {

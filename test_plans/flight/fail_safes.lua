@@ -56,6 +56,12 @@ fail_safe("the capture is lost", {}, function(t)
   lands(t, "no position", 4)
 end)
 
+-- It sends on, but what it sent last: in a room without wind, too, the vehicle does not stay there by itself.
+fail_safe("the capture stays the same", {}, function(t)
+  t:fault { kind = "capture_frozen" }
+  lands(t, "no position", 4)
+end)
+
 fail_safe("the capture and the barometer are lost", {}, function(t)
   t:fault { kind = "capture_lost" }
   t:fault { kind = "i2c_nack", device = "baro" }

@@ -135,9 +135,11 @@ flight_plan("an IMU of another make is never armed", function(t)
   armed:stop()
 end)
 
-flight_plan("one radio byte in a hundred lost is flown through", function(t)
-  hover(t)
-  t:fault { kind = "uart_loss", device = "radio", duration = "1 s", value = 0.01 }
-  t:wait "1 s"
-  flies_on(t)
-end)
+for _, f in ipairs { { is = "lost", kind = "uart_loss" }, { is = "with a flipped bit", kind = "uart_flip" } } do
+  flight_plan("one radio byte in a hundred " .. f.is .. " is flown through", function(t)
+    hover(t)
+    t:fault { kind = f.kind, device = "radio", duration = "1 s", value = 0.01 }
+    t:wait "1 s"
+    flies_on(t)
+  end)
+end

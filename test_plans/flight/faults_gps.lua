@@ -39,6 +39,27 @@ gps_plan("gps: one solution in three lost is flown through", function(t)
   t:expect(r:rms_error { receiver_north = "0 m", receiver_east = "0 m" }, "RMS distance, by its receiver"):at_most "0.8 m"
 end)
 
+-- Of the line from the receiver: what fails its checksum is no solution.
+for _, f in ipairs {
+  { name = "gps: one byte in two thousand lost is flown through", kind = "uart_loss", device = "gps", value = 0.0005 },
+  { name = "gps: one byte in two thousand with a flipped bit is flown through", kind = "uart_flip", device = "gps", value = 0.0005 },
+  { name = "gps: solutions that come 100 ms later are flown through", kind = "sensor_late", device = "gps", value = "100 ms" },
+} do
+  gps_plan(f.name, function(t)
+    hover_by_gps(t)
+    t:fault { kind = f.kind, device = f.device, value = f.value, duration = "20 s" }
+    local r = t:record({ "receiver_north", "receiver_east", "told_state" }, "20 s")
+    t:expect(r:max "told_state", "it flies on"):at_most(2)
+    t:expect(r:rms_error { receiver_north = "0 m", receiver_east = "0 m" }, "RMS distance, by its receiver"):at_most "0.8 m"
+  end)
+end
+
+gps_plan("gps: a receiver that is not heard any more ends the flight", function(t)
+  hover_by_gps(t)
+  t:fault { kind = "uart_silence", device = "gps" }
+  comes_down(t)
+end)
+
 gps_plan("gps: no solutions any more end the flight", function(t)
   hover_by_gps(t)
   t:fault { kind = "gnss_dropout", device = "gps", value = 1 }
@@ -72,6 +93,14 @@ gps_plan("gps: a place that drifts at 0.3 m/s carries the vehicle along", functi
   local r = t:record({ "receiver_north", "receiver_east", "told_state" }, "20 s")
   t:expect(r:max "told_state", "it flies on"):at_most(2)
   t:expect(r:rms_error { receiver_north = "0 m", receiver_east = "0 m" }, "RMS distance, by its receiver"):at_most "0.8 m"
+end)
+
+-- The same place and velocity again and again: believed it would be hovered by, and the wind take the vehicle along.
+gps_plan("gps: a receiver that has stopped measuring ends the flight", function(t)
+  hover_by_gps(t)
+  t:fault { kind = "sensor_frozen", device = "gps" }
+  stays_near(t, "3 m", "2 s")
+  comes_down(t)
 end)
 
 -- It begins anew at 9600 baud with NMEA at 1 Hz: the driver finds it, sets it up, and the estimate has it back.

@@ -139,11 +139,11 @@ end)
 
 -- The card says that it has not written, or that what came was spoiled on the wire, for a second: what was in
 -- hand is written again or owned up to, and nothing else is lost.
-for _, kind in ipairs { "memory_write_error", "memory_crc_error" } do
-  log_plan("a card whose blocks fail for a second is written on: " .. kind, { "flight", "log" }, function(t)
+for _, f in ipairs { { kind = "memory_write_error", device = "card" }, { kind = "memory_crc_error", device = "card" } } do
+  log_plan("a card whose blocks fail for a second is written on: " .. f.kind, { "flight", "log" }, function(t)
     hover(t)
     undisturbed(t, "8 s")
-    t:fault { kind = kind, device = "card", start = "1 s", duration = "1 s" }
+    t:fault { kind = f.kind, device = f.device, start = "1 s", duration = "1 s" }
     steady(t, "6 s")
     land(t)
     t:expect(t:value "told_logging", "it is well again"):equal "1"

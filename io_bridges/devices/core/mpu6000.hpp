@@ -11,7 +11,48 @@
 //   Source   PS-MPU-6000A-00 rev 3.4, RM-MPU-6000A-00 rev 4.2; PRODUCT_ID from Betaflight's driver
 //   Unknown  how long the registers are dead in reset: no figure is published; a parameter
 //   Left out auxiliary I2C master, DMP, self test, motion interrupts, cycle mode, standby per axis,
-//            FSYNC, external clocks: stored, and an oddity when asked for
+//            FSYNC, external clocks: as the table says. "Stored" reads back and does nothing; writing
+//            anything but the reset value there is a finding
+//
+//   | register               | bits | here                                                          |
+//   | 0x0C PRODUCT_ID        |      | modelled. Write: refused, a finding                           |
+//   | 0x0D..0x10 SELF_TEST   |      | stored                                                        |
+//   | 0x19 SMPLRT_DIV        |      | modelled                                                      |
+//   | 0x1A CONFIG            | 5..3 | EXT_SYNC_SET stored                                           |
+//   |                        | 2..0 | DLPF_CFG modelled; 7 counts as 0, a finding                   |
+//   | 0x1B GYRO_CONFIG       | 7..5 | self test stored                                              |
+//   |                        | 4..3 | FS_SEL modelled                                               |
+//   | 0x1C ACCEL_CONFIG      | 7..5 | self test stored                                              |
+//   |                        | 4..3 | AFS_SEL modelled                                              |
+//   |                        | 2..0 | stored                                                        |
+//   | 0x1F MOT_THR           |      | stored                                                        |
+//   | 0x23 FIFO_EN           | 7..3 | TEMP, XG, YG, ZG, ACCEL modelled                              |
+//   |                        | 2..0 | slaves: stored                                                |
+//   | 0x24..0x34 I2C_MST, SLV|      | stored                                                        |
+//   | 0x35, 0x36             |      | read as 0. Write: refused, a finding                          |
+//   | 0x37 INT_PIN_CFG       | 7..4 | LEVEL, OPEN, LATCH_INT_EN, INT_RD_CLEAR modelled              |
+//   |                        | 3..0 | FSYNC, bypass, clock output: stored                           |
+//   | 0x38 INT_ENABLE        | 4, 0 | FIFO_OFLOW_EN, DATA_RDY_EN modelled                           |
+//   |                        | other| stored                                                        |
+//   | 0x3A INT_STATUS        | 4, 0 | FIFO_OFLOW_INT, DATA_RDY_INT modelled; others 0. Write:       |
+//   |                        |      | refused, a finding                                            |
+//   | 0x3B..0x48 OUT         |      | modelled: a burst is of one sample. Write: refused, a finding |
+//   | 0x49..0x60 EXT_SENS    |      | read as 0: no auxiliary bus. Write: refused, a finding        |
+//   | 0x63..0x67, 0x69       |      | stored                                                        |
+//   | 0x68 SIGNAL_PATH_RESET |      | any write unsettles the filters; reads 0                      |
+//   | 0x6A USER_CTRL         | 7, 5 | DMP_EN, I2C_MST_EN stored                                     |
+//   |                        | 6    | FIFO_EN modelled                                              |
+//   |                        | 4    | I2C_IF_DIS modelled                                           |
+//   |                        | 3, 1 | DMP_RESET, I2C_MST_RESET clear themselves                     |
+//   |                        | 2, 0 | FIFO_RESET, SIG_COND_RESET modelled, clear themselves         |
+//   | 0x6B PWR_MGMT_1        | 7, 6 | DEVICE_RESET, SLEEP modelled                                  |
+//   |                        | 5, 3 | CYCLE, TEMP_DIS stored                                        |
+//   |                        | 2..0 | CLKSEL 0..3 modelled; others stop the clock, a finding        |
+//   | 0x6C PWR_MGMT_2        |      | stored                                                        |
+//   | 0x72, 0x73 FIFO_COUNT  |      | modelled: reading H latches both. Write: refused, a finding   |
+//   | 0x74 FIFO_R_W          |      | modelled; out of reach while FIFO_EN is 0, a finding          |
+//   | 0x75 WHO_AM_I          |      | modelled. Write: refused, a finding                           |
+//   | any other              |      | refused: reads 0, writes are ignored, a finding               |
 #pragma once
 #include <array>
 #include <cstdint>

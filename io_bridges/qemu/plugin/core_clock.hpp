@@ -33,6 +33,8 @@ class CoreClock {
   virtual std::vector<std::int64_t> translated(qemu_plugin_tb* block,
                                                const std::vector<std::uint32_t>& sites) = 0;
   virtual void code_thrown_away() = 0;
+  // Asked when a block is translated: may it be a part of one, which the clock wanted done by itself?
+  virtual bool asked_for_part() { return false; }
   // Before that instruction, in the middle of translated code.
   virtual Moment at(std::int64_t site) const = 0;
 

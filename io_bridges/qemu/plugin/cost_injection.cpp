@@ -383,6 +383,7 @@ void CostInjection::too_short(const Block& block) {
   const std::int64_t left = had <= 0 ? 0 : (had + kUnits_per_ns - 1) >> kUnit_shift;
   count_.set_left_ns(left);
   state_.debt = (left << kUnit_shift) - had;
+  asked_for_part_ = fit > 0;
   if (fit > 0) count_.limit_next_block(flags | static_cast<std::uint32_t>(fit));
   api_.cpu_loop_exit_noexc(cpu);
 }

@@ -26,6 +26,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "io_bridges/qemu/cycles/fetch_model.hpp"
@@ -75,6 +76,7 @@ class CostInjection {
   // What has been counted at instruction `n` of such a block, less what those before it cost.
   static std::int64_t ahead_at(const BlockCost& cost, std::size_t n);
   void code_thrown_away() { blocks_.clear(); }
+  bool asked_for_part() { return std::exchange(asked_for_part_, false); }
   void forget_code_lines() { state_.code.forget(); }
   void forget_data_lines() { state_.data.forget(); }
 
@@ -107,6 +109,7 @@ class CostInjection {
   InstructionCount count_;
   State state_;
   std::vector<std::unique_ptr<Block>> blocks_;  // translated code points at them
+  bool asked_for_part_ = false;                 // since the last block was translated
 };
 
 }  // namespace whirl::qemu

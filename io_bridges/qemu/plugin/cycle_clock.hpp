@@ -37,6 +37,7 @@ class CycleClock final : public CoreClock {
   std::vector<std::int64_t> translated(qemu_plugin_tb* block,
                                        const std::vector<std::uint32_t>& sites) override;
   void code_thrown_away() override { code_.code_thrown_away(); }
+  bool asked_for_part() override { return code_.asked_for_part(); }
   bool reached_register(std::uint32_t pc) override { return register_sites_.reached(pc); }
   Moment at(std::int64_t site) const override;
   void settle() override { code_.settle(); }

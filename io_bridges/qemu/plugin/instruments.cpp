@@ -72,6 +72,7 @@ void Instruments::translated(qemu_plugin_tb* block) {
     found_[n].time = times[n];
     put(qemu_plugin_tb_get_insn(block, found_[n].place), found_[n]);
   }
+  machine_.keep_room_for_code(length);
 }
 
 // CCM hangs on the data bus alone (RM0090 2.3.1): on the part this fetch is a bus fault. QEMU takes code

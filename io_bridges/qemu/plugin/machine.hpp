@@ -64,8 +64,10 @@ class Machine final : public board::Emulator {
     throws_code_away_ = true;
     api_.tb_flush(cpu_);
   }
-  // So QEMU has, for us or because its buffer was full. That is a finding: time is not proven to stay
-  // exact then (a second of flight is the same, a hover of 35 s with a buffer of 1 MiB is not).
+  // A block of so many instructions has been translated.
+  void keep_room_for_code(std::size_t instructions);
+  // So QEMU has, for us or because its buffer was full: then time may be another from there on, and that is
+  // a finding (keep_room_for_code()).
   void code_thrown_away();
   // Only the blocks with that instruction. Also from within one: it runs to its end.
   void forget_code_at(std::uint32_t address) {

@@ -126,6 +126,18 @@ void Machine::code_thrown_away() {
                   "proven to be exact, and another run may differ"});
 }
 
+// When its buffer is full QEMU throws all code away in the midst of making a block, and with it what it was
+// to make (tb_gen_code(), accel/tcg/translate-all.c: the flags of the next block are used up by then). Where
+// one instruction was to be done again by itself, the whole block from there on is begun instead, and left
+// again: it has paid for lines of flash by then that are paid otherwise in the block ahead of it, which has
+// had the time to fetch them. So code is thrown away while there is room, where QEMU makes a whole block:
+// it leaves that at its start, before anything is paid. Not at one instruction: nobody tells why it is one.
+void Machine::keep_room_for_code(std::size_t instructions) {
+  const bool part = clock_->asked_for_part() || instructions == 1;
+  if (part || throws_code_away_) return;
+  if (api_.tcg_code_size() > api_.tcg_code_capacity() / 4 * 3) throw_code_away();
+}
+
 void Machine::code_translated(std::uint32_t from, std::uint32_t to) {
   const board::MemoryBlock& block = board_.part().sram;
   for (std::uint32_t at = from & ~(kCode_page - 1); at < to; at += kCode_page) {

@@ -142,6 +142,8 @@ constexpr unsigned kWord = 2;     // MO_32, little endian
   F(object_get_typename, const char*, (const void*))                                               \
   F(object_type_get_instance_size, std::size_t, (const char*))                                     \
   F(tb_flush, void, (Cpu*))                                                                        \
+  F(tcg_code_size, std::size_t, (void))                                                            \
+  F(tcg_code_capacity, std::size_t, (void))                                                        \
   F(tb_invalidate_phys_addr, void, (AddressSpace*, hwaddr, Attributes))                            \
   F(curr_cflags, std::uint32_t, (Cpu*))                                                            \
   F(cpu_loop_exit_noexc, void, (Cpu*))                                                             \
