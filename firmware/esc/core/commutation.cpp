@@ -103,6 +103,12 @@ bool Commutation::back_emf_fits() {
   return fits;
 }
 
+// The ordered commutation will not come into this sample, which learning makes a long one.
+bool Commutation::commutates_later(Ticks now) const {
+  const int due = sector_ / 2 - share_of(sector_, config_.advance_share);
+  return since(now, crossed_at_) + kLearning < due;
+}
+
 // Of the crossing before the last, which has two neighbours now. The sample after a crossing has time for it.
 void Commutation::learn(int bus_counts) {
   const int more = longer_;
@@ -163,10 +169,10 @@ Commutation::Order Commutation::on_sample(Ticks now, int floating_counts, int bu
   const int off = (seen & 1) != 0 ? -doubled : doubled;
   // At a rail a diode still carries the old current: that says nothing about the rotor. At low duty
   // this outlasts the blank time, for the current dies slowly while the PWM is off.
-  const int rail = bus_counts / 64;
+  const int rail = bus_counts >> 6;
   const bool at_rail = floating_counts <= rail || floating_counts >= bus_counts - rail;
   if (ordered_) {
-    if (longer_ != 0) learn(bus_counts);
+    if (longer_ != 0 && commutates_later(now)) learn(bus_counts);
     if (!at_rail && -off > highest_counts_) highest_counts_ = -off;
     return overtaken(now, off, bus_counts);
   }

@@ -91,7 +91,8 @@ class Commutation {
   std::uint32_t bad_detections() const { return bad_detections_; }
 
  private:
-  static constexpr int kInARow = 6;  // crossings that make a start, or their lack a loss
+  static constexpr int kInARow = 6;     // crossings that make a start, or their lack a loss
+  static constexpr int kLearning = 30;  // ticks that a sample which learns takes, and some: 15 us
 
   static std::uint8_t previous_of(std::uint8_t step) {
     return static_cast<std::uint8_t>(step == 0 ? 5 : step - 1);
@@ -99,6 +100,7 @@ class Commutation {
   std::uint8_t previous_step() const { return previous_of(step_); }
   Order overtaken(Ticks now, int side, int bus_counts);
   Order crossed(Ticks at, bool measured);
+  bool commutates_later(Ticks now) const;
   __attribute__((noinline)) void learn(int bus_counts);  // not on every sample's way
   void lose();
   void note_sector(Ticks length);

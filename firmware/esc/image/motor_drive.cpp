@@ -25,7 +25,7 @@ void MotorDrive::go_off() {
   bridge::acknowledge_interrupt();  // none that is due may meet the next start
   commutation_.stop();
   phase_ = Phase::off;
-  sampling::select_floating(2);
+  sampling::watch_floating(2);
 }
 
 // With all switches off no current can build up, whatever the rotor does.
@@ -50,7 +50,7 @@ void MotorDrive::look_for_rotor() {
       phase_ms_ = 0;
       align_ms_ = catching_.backward() ? kAlign_ms + kBrake_ms : kAlign_ms;
       bridge::apply(0);
-      sampling::select_floating(bridge::floating_phase(0));
+      sampling::watch_floating(bridge::floating_phase(0));
       break;
     case Catching::Found::turning: {
       phase_ = Phase::turning;
@@ -62,7 +62,7 @@ void MotorDrive::look_for_rotor() {
       wanted_duty_ = bridge::kPeriod * emf_counts / static_cast<std::uint32_t>(phases.bus + 1);
       bridge::set_duty(wanted_duty_);
       bridge::apply(commutation_.step());
-      sampling::select_floating(bridge::floating_phase(commutation_.step()));
+      sampling::watch_floating(bridge::floating_phase(commutation_.step()));
       break;
     }
   }
@@ -113,7 +113,7 @@ void MotorDrive::on_sample() {
     zero_counts_ += (64 * sample.shunt - zero_counts_) / 64;
     return;
   }
-  watch_current(sample.shunt - zero_counts_ / 64, sample.bus);
+  watch_current(sample.shunt - (zero_counts_ >> 6), sample.bus);
   if (phase_ == Phase::turning) commutate_by(sample.floating, sample.bus);
 }
 

@@ -43,15 +43,18 @@ void start() {
   power_up<ADC2>();
   ADC1::CR1::write(ADC1::SCAN | ADC1::JEOCIE | ADC1::DUALMOD_INJECTED);
   ADC2::CR1::write(ADC2::SCAN);
-  ADC2::JSQR::write(sequence(kShuntChannel, kShuntChannel));
   ADC2::CR2::set(ADC2::JEXTTRIG | ADC2::JEXTSEL_JSWSTART);  // follows ADC1
-  select_floating(2);
+  watch_floating(2);
   ADC1::CR2::set(ADC1::JEXTTRIG | ADC1::JEXTSEL_TIM4_TRGO);
   Nvic<Irq::ADC1_2>::enable(kPrioritySampling);
 }
 
 void select_floating(std::uint8_t phase) {
   ADC1::JSQR::write(sequence(kPhaseChannel + phase, kBusChannel));
+}
+
+void watch_floating(std::uint8_t phase) {
+  select_floating(phase);
   ADC2::JSQR::write(sequence(kShuntChannel, kShuntChannel));
 }
 

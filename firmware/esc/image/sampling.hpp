@@ -16,8 +16,10 @@ struct Phases {
 };
 
 void start();
-void select_floating(std::uint8_t phase);  // for the next trigger
-void watch_phases();                       // all three of them instead, from the next trigger
+// From the next trigger: one phase with bus and shunt, or all three phases with the bus.
+void watch_floating(std::uint8_t phase);
+void watch_phases();
+void select_floating(std::uint8_t phase);  // another one, while one is watched
 Sample read();                             // in the interrupt: reads and clears
 Phases take_phases();                      // what watch_phases() asked for
 
