@@ -103,9 +103,28 @@ void PowerStage::hold_or_turn() {
   motor_.set_load({.quadratic_Nm_s2 = load_.torque_Nm_s2, .constant_Nm = constant_Nm});
 }
 
+// The capacitor between supply and bridge, exactly for a bridge that draws the same current all the time.
+PowerStage::Feed PowerStage::feed(double bridge_A, double dt_s) const {
+  const double R = load_.source_ohm, RC = R * params_.bus_capacitance_F;
+  if (R <= 0.0) return {bus_V_, bus_V_, 0.0, 0.0};  // nothing feeds it yet
+  const double gone = -std::expm1(-dt_s / RC);      // of the way to where it settles
+  const double settled_V = load_.source_V - R * bridge_A;
+  const double more_A = (settled_V - bus_V_) / R;  // than the bridge draws, at first
+  return {.end_V = bus_V_ + (settled_V - bus_V_) * gone,
+          .mean_V = settled_V - (settled_V - bus_V_) * gone * RC / dt_s,
+          .charge_C = bridge_A * dt_s + more_A * RC * gone,
+          .heat_J = R * (bridge_A * bridge_A * dt_s + 2.0 * bridge_A * more_A * RC * gone +
+                         0.5 * more_A * more_A * RC * gone * (2.0 - gone))};
+}
+
+// The motor is fed by the mean of the capacitor's voltage, as its current is foreseen; what it took by more or less
+// than by the mean as it has come to be (0.04 % of a hover) is the capacitor's. With the voltage at the step's start
+// 0.2 % of a hover's energy came from nowhere.
 void PowerStage::run(double dt_s) {
   hold_or_turn();
   motor_.set_bus(bus_V_);
+  const double fed_V = feed(motor_.coming_bus_current_A(dt_s), dt_s).mean_V;
+  motor_.set_bus(fed_V);
   const plant::MotorBooks books = motor_.run(dt_s);
   const double bridge_A = books.bus_charge_C / dt_s;
   shunt_.flow(bridge_A, dt_s);
@@ -113,12 +132,15 @@ void PowerStage::run(double dt_s) {
   sum.air_torque_Nm *= dt_s;  // a mean; here its integral is kept
   books_ += sum;
 
-  // The capacitor between supply and bridge, implicit in its own voltage.
-  const double C = params_.bus_capacitance_F, R = load_.source_ohm;
-  if (R > 0.0) {
-    bus_V_ = (bus_V_ + dt_s / C * (load_.source_V / R - bridge_A)) / (1.0 + dt_s / (R * C));
-    source_charge_C_ += (load_.source_V - bus_V_) / R * dt_s;
-  }
+  const double C = params_.bus_capacitance_F;
+  const Feed fed = feed(bridge_A, dt_s);
+  const double owed_J = (fed.mean_V - fed_V) * books.bus_charge_C;
+  const double end_V = std::sqrt(std::max(0.0, fed.end_V * fed.end_V + 2.0 * owed_J / C));
+  source_charge_C_ += fed.charge_C;
+  state_.source_J += load_.source_V * fed.charge_C;
+  state_.feed_J += fed.heat_J;
+  state_.capacitor_J += 0.5 * C * (end_V * end_V - bus_V_ * bus_V_);
+  bus_V_ = end_V;
   state_.bus_highest_V = std::max(state_.bus_highest_V, bus_V_);
   state_.bus_lowest_V = std::min(state_.bus_lowest_V, bus_V_);
   window_charge_C_ += books.bus_charge_C;
