@@ -43,6 +43,7 @@ struct EnergyBooks {  // of one step: what the pack gave is the sum of the rest
   double avionics_J = 0.0;
   double copper_J = 0.0, diode_J = 0.0, no_load_J = 0.0;
   double magnetic_J = 0.0, kinetic_J = 0.0;  // what the windings and the shafts store
+  double capacitor_J = 0.0;                  // and the capacitors of remote shafts' bridges
   double air_J = 0.0;                        // work of the shafts on the air
   double exchange_J = 0.0;  // between the pack and remote shafts, see remote_powertrain.hpp
 };

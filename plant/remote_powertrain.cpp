@@ -45,7 +45,8 @@ RemoteShaftLoad RemotePowertrain::load(std::size_t motor) const {
 void RemotePowertrain::receive(std::size_t motor, const RemoteShaftState& state) {
   const double all = state.speed_radps + state.source_current_A + state.winding_peak_A +
                      state.electrical_in_J + state.copper_J + state.diode_J + state.no_load_J +
-                     state.magnetic_J + state.kinetic_J + state.air_J;
+                     state.magnetic_J + state.kinetic_J + state.air_J + state.source_J +
+                     state.feed_J + state.capacitor_J;
   WHIRL_CHECK(std::isfinite(all), motor);
   WHIRL_CHECK(!received_.at(motor).has_value(), motor);
   received_[motor] = state;
@@ -90,10 +91,14 @@ void RemotePowertrain::step(double dt_s, PowertrainState& state) {
   e = {.chemical_J = pack.chemical_J,
        .battery_J = pack.series_J + pack.relaxation_J + pack.dip_J,
        .avionics_J = state.bus_voltage_V * avionics_current_A_ * dt_s};
-  e.exchange_J = e.chemical_J - e.battery_J - e.avionics_J;
+  const double own_ohm = share_ * battery_.series_resistance_ohm();
   for (std::size_t i = 0; i < count(); ++i) {
     const RemoteShaftState& shaft = shafts_[i];
-    e.exchange_J -= shaft.electrical_in_J;
+    const double mean_heat_J = own_ohm * shaft.source_current_A * shaft.source_current_A * dt_s;
+    e.exchange_J +=
+        state.bus_voltage_V * shaft.source_current_A * dt_s - (shaft.source_J - mean_heat_J);
+    e.battery_J += shaft.feed_J - mean_heat_J;
+    e.capacitor_J += shaft.capacitor_J;
     e.copper_J += shaft.copper_J;
     e.diode_J += shaft.diode_J;
     e.no_load_J += shaft.no_load_J;
@@ -106,6 +111,33 @@ void RemotePowertrain::step(double dt_s, PowertrainState& state) {
     m.bus_current_A = shaft.source_current_A;
     m.blocked = brake_Nm_[i] > 0.0;
   }
+  count_bound(dt_s);
+}
+
+double RemotePowertrain::end_J(const Past& past, double dt_s) const {
+  double sum_A = 0.0, squares_A2 = 0.0;
+  for (const double i_A : past.currents_A) sum_A += i_A, squares_A2 += i_A * i_A;
+  return 0.5 * battery_.series_resistance_ohm() * dt_s *
+         std::abs(share_ * squares_A2 - sum_A * sum_A);
+}
+
+void RemotePowertrain::count_bound(double dt_s) {
+  Past now{{}, battery_.source_V()};
+  for (const RemoteShaftState& shaft : shafts_) now.currents_A.push_back(shaft.source_current_A);
+  while (past_.size() < age_) past_.push_front({std::vector<double>(count(), 0.0), now.source_V});
+  const Past& then = past_.front();
+  double sum_A = 0.0, squared_jumps_A2 = 0.0;
+  for (std::size_t i = 0; i < count(); ++i) {
+    const double jump_A = now.currents_A[i] - then.currents_A[i];
+    squared_jumps_A2 += jump_A * jump_A;
+    sum_A += now.currents_A[i];
+  }
+  jumps_J_ += 0.5 * share_ * battery_.series_resistance_ohm() * dt_s * squared_jumps_A2;
+  source_drift_J_ += std::abs(sum_A * (now.source_V - then.source_V)) * dt_s;
+  past_.pop_front();
+  past_.push_back(std::move(now));
+  ends_J_ = 0.0;
+  for (const Past& past : past_) ends_J_ += end_J(past, dt_s);
 }
 
 }  // namespace whirl::plant

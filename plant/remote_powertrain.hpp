@@ -14,17 +14,21 @@
 //            k = 1 twelve shafts at full duty on 30 mohm swing from boundary to boundary.
 //   Error    In a step in which currents change by d, a shaft is fed k R d(own) - R d(sum) too little
 //            voltage, and the pack gives that x own current x dt too much: none while currents
-//            are steady. Over one rise (and fall) from rest the sum is at most R dt x the larger of I^2 (I:
-//            largest sum of currents) and k x the sum of each shaft's own largest squared; where all
-//            change alike, half of R dt I^2. Besides, currents that jump by d from step to step
-//            cost k R dt d^2 / 2 each time. EnergyBooks::exchange_J has all of it, and with it what
-//            bus capacitors store and the heat of ripple in k R. Against the averaged powertrain, dt 1 ms,
+//            are steady. EnergyBooks::exchange_J has that and nothing else, bound_J() what the currents make it
+//            at most. i (i - i') = (i^2 - i'^2) / 2 + (i - i')^2 / 2, with i' the current that the load was made
+//            of, one step before or two (its age). The first half telescopes: |k x sum of i^2 - (sum of i)^2| R dt / 2
+//            for each step of age, nothing once all are at rest again. The second is at most k R dt d^2 / 2 for
+//            each shaft and step, as k >= N/2. So a jump by D costs at most k R dt D^2 / 2 x age, and its decay
+//            with the shaft's time constant T (inertia x resistance / torque constant^2) a share dt / T of
+//            that. What ripple within a step heats k R by is battery_J's. Against the averaged powertrain, dt 1 ms,
 //            four motors on 30 mohm (tests/remote_powertrain_test.cpp): hover 1e-8 of the energy,
 //            duty 0.3 to 0.6 at once 31 mJ of 162 J (bound 66 mJ) and 0.2 % of speed at worst, a
 //            flight with a push 3e-5
 //   Left out the capacitors of the other shafts' boards; warm windings (a board's own matter)
 #pragma once
+#include <deque>
 #include <optional>
+#include <vector>
 
 #include "plant/battery/battery.hpp"
 #include "plant/powertrain.hpp"
@@ -45,6 +49,9 @@ struct RemoteShaftState {  // since the last boundary; speed at this one
   double electrical_in_J = 0.0;   // into the bridge, and where it went:
   double copper_J = 0.0, diode_J = 0.0, no_load_J = 0.0;
   double magnetic_J = 0.0, kinetic_J = 0.0, air_J = 0.0;
+  double source_J = 0.0;     // what feeds it has given; of that
+  double feed_J = 0.0;       // heat of its resistance, and
+  double capacitor_J = 0.0;  // into a capacitor before the bridge
 };
 
 class RemotePowertrain final : public Powertrain {
@@ -70,8 +77,20 @@ class RemotePowertrain final : public Powertrain {
   void set_dip(double below_V) override { battery_.set_dip(below_V); }
   void step(double dt_s, PowertrainState& state) override;
 
+  // Of the sum of exchange_J since all stood.
+  double bound_J() const { return ends_J_ + jumps_J_ + source_drift_J_; }
+  // How many steps old are the currents that made the load under which a shaft did what is received: 1, or
+  // 2 where the shafts run while the vehicle takes the same step.
+  void set_age(std::size_t steps) { age_ = steps; }
+
  private:
+  struct Past {
+    std::vector<double> currents_A;
+    double source_V = 0.0;
+  };
   double total_current_A() const;  // of the last step
+  void count_bound(double dt_s);
+  double end_J(const Past& past, double dt_s) const;
 
   Battery battery_;
   double avionics_current_A_, inertia_kgm2_;
@@ -80,6 +99,10 @@ class RemotePowertrain final : public Powertrain {
   std::vector<RemoteShaftState> shafts_;
   std::vector<std::optional<RemoteShaftState>> received_;  // of the step to come
   std::vector<double> torque_Nm_s2_, brake_Nm_;
+  // For the bound:
+  std::size_t age_ = 1;
+  std::deque<Past> past_;  // the latest last
+  double jumps_J_ = 0.0, source_drift_J_ = 0.0, ends_J_ = 0.0;
 };
 
 }  // namespace whirl::plant

@@ -8,7 +8,9 @@ namespace whirl::flight {
 
 FarShafts::FarShafts(std::vector<FarShaft> shafts, plant::RemotePowertrain& powertrain)
     : shafts_(std::move(shafts)), powertrain_(powertrain), states_(shafts_.size()) {
+  constexpr std::size_t kAge_steps = 2;
   WHIRL_CHECK(shafts_.size() == powertrain.count(), shafts_.size(), powertrain.count());
+  powertrain_.set_age(kAge_steps);
 }
 
 bool FarShafts::hears(const io::Header& head) const {
@@ -33,15 +35,18 @@ void FarShafts::on_message(const io::Reader& message) {
                   .no_load_J = told.no_load_J,
                   .magnetic_J = told.magnetic_J,
                   .kinetic_J = told.kinetic_J,
-                  .air_J = told.air_J};
+                  .air_J = told.air_J,
+                  .source_J = told.source_J,
+                  .feed_J = told.feed_J,
+                  .capacitor_J = told.capacitor_J};
   }
 }
 
 void FarShafts::before_step() {
   for (std::size_t i = 0; i < states_.size(); ++i) {
     const plant::RemoteShaftState& s = states_[i];
-    gap_J_ += s.electrical_in_J - s.copper_J - s.diode_J - s.no_load_J - s.magnetic_J -
-              s.kinetic_J - s.air_J;
+    gap_J_ += s.source_J - s.feed_J - s.capacitor_J - s.copper_J - s.diode_J - s.no_load_J -
+              s.magnetic_J - s.kinetic_J - s.air_J;
     powertrain_.receive(i, s);
     states_[i] = {.speed_radps = s.speed_radps};  // each is of one step
   }
@@ -63,6 +68,11 @@ void FarShafts::send(std::int64_t t_ns, io::Batch& sensed) const {
 
 double FarShafts::exchange_share() const {
   return chemical_J_ > 0.0 ? std::abs(exchange_J_) / chemical_J_ : 0.0;
+}
+
+double FarShafts::exchange_of_bound() const {
+  const double bound_J = powertrain_.bound_J();
+  return bound_J > 0.0 ? std::abs(exchange_J_) / bound_J : 0.0;
 }
 
 double FarShafts::gap_share() const {

@@ -3,8 +3,8 @@
 //
 //   Late     the boards run while the world takes the same step, so a shaft's state is that of the step
 //            before: load() of t acts in the board from t to t + 1 ms, and comes back into the step from t + 1 ms on
-//   Bound    with that, what one rise of currents costs is 2 R dt x the square of their largest sum, twice
-//            that of remote_powertrain.hpp (tests/far_shafts_test.cpp); exchange() is what it has come to
+//   Bound    so the age of remote_powertrain.hpp is two steps. exchange_share() is what it has come to, and
+//            exchange_of_bound() that beside what the currents allow: above 1 the books are wrong
 //   First    nothing has been told in the first step: the shafts stand
 #pragma once
 #include <vector>
@@ -28,7 +28,8 @@ class FarShafts {
 
   // So far, as shares of what the pack has given:
   double exchange_share() const;  // between pack and shafts
-  double gap_share() const;       // of what the boards took in: what their own books do not name
+  double gap_share() const;  // of what the supply gave the boards: what their books do not name
+  double exchange_of_bound() const;  // no share of the pack's: of RemotePowertrain::bound_J()
 
  private:
   std::vector<FarShaft> shafts_;

@@ -125,6 +125,9 @@ void FlightWorld::name_exchange_signals() {
   add_signal("exchange_share", Dimension::ratio,
              "of the pack's energy so far: lost or gained between it and the boards' power stages",
              [this] { return far_->exchange_share(); });
+  add_signal("exchange_of_bound", Dimension::ratio,
+             "the same, of what the currents' changes from step to step can make it at most",
+             [this] { return far_->exchange_of_bound(); });
   add_signal("stage_gap_share", Dimension::ratio,
              "of the pack's energy so far: what the power stages' own books do not name",
              [this] { return far_->gap_share(); });

@@ -40,7 +40,7 @@ bool I2cBus::address(std::uint8_t address_7bit, bool read, Nanoseconds now) {
     if (target->start(address_7bit, read, now)) addressed_.push_back(target);
   }
   if (!addressed_.empty() && faults_ != nullptr) {
-    released_ns_ = now + faults_->stretch(address_7bit, now);
+    hold_until(now + faults_->stretch(address_7bit, now));
   }
   current_.address_acked = !addressed_.empty() || !sda_.level();
   return current_.address_acked;

@@ -7,8 +7,11 @@
 //   says (nine is usual). While SDA is held low, every bit reads 0: bytes are 0x00 and every
 //   acknowledge slot looks like an ACK.
 //   Stretching: a target that needs time (an MCU) drives scl() low itself; the controller begins no
-//   byte and ends none while SCL is low.
+//   byte and ends none while SCL is low. Of a hold whose end is known beforehand only that is said,
+//   hold_until(): an event at that time would stop the controller's core there, in the middle of what it
+//   does, and its time by cycles would then differ.
 #pragma once
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -57,8 +60,9 @@ class I2cBus {
   const std::string& name() const { return name_; }
   bool idle() const { return !busy_ && sda_.level() && scl_.level(); }
   bool busy() const { return busy_; }
-  // A target holds SCL low until then: the controller clocks its next bit no earlier.
+  // A target holds SCL low until then: the controller clocks its next bit or condition no earlier.
   Nanoseconds released_ns() const { return released_ns_; }
+  void hold_until(Nanoseconds time) { released_ns_ = std::max(released_ns_, time); }
 
   // Controller side. start() opens a transaction, or ends the running one by a repeated START.
   void start(Nanoseconds now);

@@ -60,10 +60,11 @@ void I2cMaster::clock_may_run() {
   if (!waits_ || !may_run()) return;
   waits_ = false;
   timeout_.cancel();
-  if (owns_) reply_.stretched_ns = std::max(reply_.stretched_ns, now - waits_since_);
+  const Nanoseconds from = std::max(now, bus_.released_ns());
+  if (owns_) reply_.stretched_ns = std::max(reply_.stretched_ns, from - waits_since_);
   if (phase_ == Phase::reading && !resumes_) reply_.bytes.push_back(bus_.fetch(now));
   resumes_ = false;
-  step_.at(std::max(now, bus_.released_ns()) + std::llround(count_ * bit_ns_));
+  step_.at(from + std::llround(count_ * bit_ns_));
 }
 
 void I2cMaster::step() {

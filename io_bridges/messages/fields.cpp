@@ -146,6 +146,9 @@ constexpr Field kShaftState[] = {
     WHIRL_FIELD(ShaftState, magnetic_J),
     WHIRL_FIELD(ShaftState, kinetic_J),
     WHIRL_FIELD(ShaftState, air_J),
+    WHIRL_FIELD(ShaftState, source_J),
+    WHIRL_FIELD(ShaftState, feed_J),
+    WHIRL_FIELD(ShaftState, capacitor_J),
 };
 constexpr Field kI2cReplyHead[] = {
     WHIRL_FIELD(I2cReplyHead, number),

@@ -212,6 +212,8 @@ struct ShaftState {  // means and sums of the time since the last boundary, stat
   double bus_highest_V = 0.0, bus_lowest_V = 0.0;
   double electrical_in_J = 0.0, copper_J = 0.0, diode_J = 0.0, no_load_J = 0.0;
   double magnetic_J = 0.0, kinetic_J = 0.0, air_J = 0.0;
+  // What the supply gave, of that the heat of its resistance, and into the capacitor before the bridge.
+  double source_J = 0.0, feed_J = 0.0, capacitor_J = 0.0;
 };
 
 struct I2cOrder {

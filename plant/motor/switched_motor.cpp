@@ -232,6 +232,23 @@ std::array<double, 3> SwitchedMotor::phase_voltages() const {
   return circuit(angle_, speed_).terminal_V;
 }
 
+double SwitchedMotor::coming_bus_current_A(double dt_s) const {
+  const Circuit c = circuit(angle_, speed_);
+  const double half_R = 0.5 * params_.resistance_ohm, tau = 0.5 * params_.inductance_H / half_R;
+  if (c.count < 2) return 0.0;
+  double charge = 0.0;
+  for (int k = 0; k < 3; ++k) {
+    if (!c.tied[k] || !c.to_bus[k]) continue;
+    const double end = (c.terminal_V[k] - c.star_V - c.emf_V[k]) / (half_R * impedance(k));
+    const double gap = current_[k] - end;
+    double h = dt_s;
+    if (c.diode[k] && end * current_[k] < 0.0)
+      h = std::min(h, tau * std::log1p(-current_[k] / end));
+    charge += end * h - gap * tau * std::expm1(-h / tau);
+  }
+  return charge / dt_s;
+}
+
 double SwitchedMotor::bus_current_A() const {
   const Circuit c = circuit(angle_, speed_);
   double sum = 0.0;

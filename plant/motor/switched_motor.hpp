@@ -52,6 +52,8 @@ class SwitchedMotor {
   std::array<double, 3> phase_voltages() const;  // terminals against the bus's negative, V
   const std::array<double, 3>& phase_currents_A() const { return current_; }  // into the motor
   double bus_current_A() const;                                               // at this instant
+  // Its mean over the time to come, as far as can be said before it is run: the rotor does not turn meanwhile.
+  double coming_bus_current_A(double dt_s) const;
   double peak_current_A() const { return peak_A_; }  // largest phase current since the last clear
   void clear_peak() { peak_A_ = 0.0; }
   double speed_radps() const { return speed_; }

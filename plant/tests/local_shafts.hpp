@@ -36,9 +36,11 @@ class LocalShafts {
     for (int k = 0; k < kSubSteps; ++k) {
       if (load.brake_Nm > 0.0 && motors_[i].speed_radps() < 5.0) motors_[i].block();
       const ShaftLoad shaft{load.torque_Nm_s2, load.brake_Nm};
-      charge_C += step_bus({&motors_[i], 1}, {&drives_[i], 1}, {&shaft, 1}, 0.0, feed,
-                           dt_s / kSubSteps, {&books, 1})
-                      .charge_C;
+      const BusDraw draw = step_bus({&motors_[i], 1}, {&drives_[i], 1}, {&shaft, 1}, 0.0, feed,
+                                    dt_s / kSubSteps, {&books, 1});
+      charge_C += draw.charge_C;
+      state.source_J += draw.battery.chemical_J;
+      state.feed_J += draw.battery.series_J;
       state.winding_peak_A = std::max(state.winding_peak_A, std::abs(motors_[i].current_A()));
       state.electrical_in_J += books.electrical_in_J;
       state.copper_J += books.copper_J;

@@ -49,6 +49,7 @@ struct Exchange {
       io::ShaftState told{.speed_radps = s.speed_radps, .source_current_A = s.source_current_A};
       told.electrical_in_J = s.electrical_in_J, told.copper_J = s.copper_J;
       told.diode_J = s.diode_J, told.no_load_J = s.no_load_J;
+      told.source_J = s.source_J, told.feed_J = s.feed_J;
       told.magnetic_J = s.magnetic_J, told.kinetic_J = s.kinetic_J, told.air_J = s.air_J;
       io::Header head{0, io::Kind::shaft_state, r.header().board, r.header().port, 0};
       next.add(head, {{reinterpret_cast<const std::uint8_t*>(&told), sizeof told}});
@@ -89,6 +90,8 @@ TEST(FarShafts, AStepOfAllMotorsKeepsItsEnergyToTwiceTheBoundOfAnExchangeAtOnce)
   EXPECT_TRUE(near(run.exchange_J, 0.0, stated(bound_J, "R dt I^2")));
   EXPECT_TRUE(std::isfinite(before_J));
   EXPECT_LT(run.far.exchange_share(), 1e-3);
+  EXPECT_LT(run.far.exchange_of_bound(), 1.0);
+  EXPECT_GT(run.far.exchange_of_bound(), 0.01);  // and the bound is no wide one
   EXPECT_LT(run.far.gap_share(), 1e-9);
 }
 
@@ -137,7 +140,7 @@ TEST(FarShafts, EnergyThatAStagesBooksDoNotNameIsAGap) {
   run.run(10);
   io::Batch lost;
   io::ShaftState told{.speed_radps = kHover_radps};
-  told.electrical_in_J = 1.0;
+  told.source_J = 1.0;
   lost.add({0, io::Kind::shaft_state, 1, 1, 0},
            {{reinterpret_cast<const std::uint8_t*>(&told), sizeof told}});
   run.happened.add(lost);

@@ -19,7 +19,6 @@ LeaderEnd::LeaderEnd(const WireSite& site, io::I2cBus& bus, std::unique_ptr<io::
       ear_(std::move(ear)),
       address_(address),
       wire_(std::move(wire)),
-      release_(site.events, [this] { hold(false); }),
       again_(
           site.events,
           [this] {
@@ -46,10 +45,9 @@ WireAnswer LeaderEnd::ask(const WireMessage& message) {
   far_at_boundary_ = answer->clock == Clock::held_to_boundary;
   has_next_ = answer->has_byte;
   next_ = answer->byte;
-  const bool low = held_ || answer->t_ns > site_.events.now();
-  hold(low);
+  if (!held_) bus_.hold_until(answer->t_ns);
+  hold(held_);
   if (answer->clock == Clock::held) again_.at(answer->t_ns);
-  if (low && !held_) release_.at(answer->t_ns);
   return *answer;
 }
 
@@ -67,7 +65,6 @@ void LeaderEnd::began(Nanoseconds now) {
 void LeaderEnd::ended(Nanoseconds now) {
   held_ = has_next_ = false;
   again_.cancel();
-  release_.cancel();
   hold(false);
   ear_->stop(now);
   post({now, WireAct::stop});

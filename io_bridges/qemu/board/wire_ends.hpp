@@ -8,7 +8,7 @@
 //   Ahead     while it holds the clock a follower runs on, at most kHeld_ns beyond what the leader knows.
 //             A master that gives up meanwhile has its STOP seen by so much too late: counted, a finding
 //   Events    only where something passes the wire: an event that says no more than "nothing came" would let a board's
-//             execution pause there, and by cycles its time then differs
+//             execution pause there, and by cycles its time then differs: so nor is there one for the end of a hold
 //   Faults    of the leader's bus act between master and slave; so both see what they spoil
 //   Findings  late messages; a START by the follower; an address at which no far board ever answered
 //   Left out  a low SDA on one side as seen from the other: a stuck line is the side's where it is injected, and a
@@ -68,7 +68,7 @@ class LeaderEnd final : io::I2cTarget {
   std::unique_ptr<io::I2cBus> ear_;
   std::uint8_t address_;
   io::BoardWire wire_;
-  io::Event release_, again_;
+  io::Event again_;
   int handle_;
   bool held_ = false;
   bool far_at_boundary_ = false;  // and so was nothing more before it

@@ -26,7 +26,12 @@ void I2c::act() {
   if ((cr1_ & STOP) != 0) return begin_stop();
   if ((cr1_ & START) == 0 || (sr1_ & SB) != 0) return;
   phase_ = Phase::starting;
-  step_.in(std::llround(bit_ns_));
+  after_bits(1);
+}
+
+void I2c::after_bits(int bits) {
+  const Nanoseconds from = std::max(chip_.events.now(), bus_.released_ns());
+  step_.at(from + std::llround(bits * bit_ns_));
 }
 
 void I2c::begin_bits(Phase phase, int bits) {
@@ -37,8 +42,7 @@ void I2c::begin_bits(Phase phase, int bits) {
   }
   if (fetch_due_) shift_ = bus_.fetch(chip_.events.now());
   fetch_due_ = false;
-  const Nanoseconds from = std::max(chip_.events.now(), bus_.released_ns());
-  step_.at(from + std::llround(bits * bit_ns_));
+  after_bits(bits);
 }
 
 void I2c::step() {
@@ -178,7 +182,7 @@ void I2c::next_or_hold(bool more) {
 
 void I2c::begin_stop() {
   phase_ = Phase::stopping;
-  step_.in(std::llround(bit_ns_));
+  after_bits(1);
 }
 
 void I2c::stopped() {

@@ -5,7 +5,8 @@
 //            pulled low; analog inputs PA1, PA2, PA3 phases and PA4 bus through 1.5/11.5 dividers,
 //            PA5 shunt 0.5 mohm x 50.9
 //   Method   lazy: the motor runs up to each edge of a switch and each sampling instant
-//            (plant/motor/switched_motor.hpp); the supply feeds a capacitor through its resistance
+//            (plant/motor/switched_motor.hpp); the supply feeds a capacitor through its resistance, in
+//            closed form for the mean current of a step
 //   Shoot    both switches of a leg on for any time at all: told, with leg and duration; the leg
 //            conducts to ground meanwhile, the short circuit itself is not computed
 //   Converter  each channel as its pin shows it: divider of real resistors, then gain, offset and noise
@@ -83,9 +84,13 @@ class PowerStage {
 
  private:
   double at_pin(std::size_t pin, double volts, double nominal);
-  double feed(double bridge_A, double dt_s);    // the bus; returns the charge out of the source
   std::size_t phase_at(std::size_t leg) const;  // the motor's phase on that leg
   void advance(Nanoseconds now);
+  struct Feed {  // of a step
+    double end_V, mean_V, charge_C, heat_J;
+  };
+  Feed feed(double bridge_A, double dt_s) const;
+  double seen_V() const;
   void run(double dt_s);
   void watch_direction(double speed_radps, Nanoseconds now);
   void hold_or_turn();

@@ -94,8 +94,7 @@ class Master {
     side.bus.scl().watch([this](bool level, Nanoseconds now) {
       if (!level || !waits_) return;
       waits_ = false;
-      rose_at.push_back(now);
-      next_.in(kByte_ns);
+      go_on(now, true);
     });
   }
   void at(Nanoseconds start, bool read, std::vector<std::uint8_t> bytes, Nanoseconds give_up = 0) {
@@ -126,11 +125,18 @@ class Master {
     }
     ++place_;
     if (place_ == static_cast<int>(bytes_.size())) return finish();
-    if (bus.scl().level()) return next_.in(kByte_ns);
+    if (bus.scl().level()) return go_on(now, bus.released_ns() > now);
     waits_ = true;
     if (give_up_ != 0) next_.at(now + give_up_);
   }
+  void go_on(Nanoseconds now, bool held) {
+    const Nanoseconds from = std::max(now, side_.bus.released_ns());
+    if (held) rose_at.push_back(from);
+    next_.at(from + kByte_ns);
+  }
   void finish() {
+    const Nanoseconds now = side_.events.now();
+    if (side_.bus.released_ns() > now && side_.bus.scl().level()) return go_on(now, true);
     if (side_.bus.scl().level()) return stop();
     waits_ = true;
     next_.in(give_up_ != 0 ? give_up_ : 10 * kGrain_ns);
@@ -183,6 +189,17 @@ TEST_F(FarBus, AWriteArrivesToTheNanosecondAndItsAcknowledgesComeBack) {
   EXPECT_EQ(slave_->at, (std::vector<Nanoseconds>{122'500, 145'000, 167'500, 190'000, 190'000}));
   EXPECT_EQ(master_.stopped_at, 190'000);
   EXPECT_FALSE(there_.bus.busy());
+}
+
+// The master's core may compute then, and stops for no event but its bus's own.
+TEST_F(FarBus, AHoldWhoseEndIsKnownNeitherMovesTheMastersClockLineNorSetsAnEvent) {
+  join(7'000);
+  int edges = 0;
+  here_.bus.scl().watch([&](bool, Nanoseconds) { ++edges; });
+  master_.at(100'000, false, {1, 2});
+  run(2);
+  EXPECT_EQ(master_.rose_at, (std::vector<Nanoseconds>{129'500, 159'000, 188'500}));
+  EXPECT_EQ(edges, 0);
 }
 
 TEST_F(FarBus, AReadHasTheBytesThatWereReadyWhenTheClockRose) {

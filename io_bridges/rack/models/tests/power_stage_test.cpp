@@ -177,6 +177,9 @@ TEST(PowerStage, BooksBalanceAndTheRotorFindsItsSpeed) {
       sum.copper_J + sum.diode_J + sum.no_load_J + sum.magnetic_J + sum.kinetic_J + sum.air_J;
   EXPECT_TRUE(near(sum.electrical_in_J, spent_J,
                    stated(1e-3 * spent_J, "the switched motor's own balance is 1e-4")));
+  EXPECT_TRUE(near(
+      sum.source_J, sum.feed_J + sum.capacitor_J + sum.electrical_in_J,
+      stated(1e-9 * sum.source_J, "closed by construction; with the step's first voltage 5e-3")));
   s.spin(0.4, 4'000);
   const io::ShaftState now = s.stage.report(s.now);
   EXPECT_GT(now.speed_radps, 0.8 * 0.4 * 16.0 / 0.01005 * 0.8);  // within the drop of R i
