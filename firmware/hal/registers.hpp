@@ -27,10 +27,10 @@ struct RCC {
   static constexpr std::uint32_t PPRE1_DIV4 = 5u << 10, PPRE2_DIV2 = 4u << 13;
   static constexpr std::uint32_t GPIOAEN = bit(0), GPIOBEN = bit(1), GPIOCEN = bit(2),
                                  CCMDATARAMEN = bit(20), DMA1EN = bit(21), DMA2EN = bit(22);
-  static constexpr std::uint32_t TIM2EN = bit(0), TIM4EN = bit(2), TIM5EN = bit(3), TIM6EN = bit(4), TIM7EN = bit(5),
-                                 SPI3EN = bit(15), USART2EN = bit(17), I2C1EN = bit(21),
-                                 I2C2EN = bit(22), I2C3EN = bit(23), CAN1EN = bit(25),
-                                 CAN2EN = bit(26), PWREN = bit(28);
+  static constexpr std::uint32_t TIM2EN = bit(0), TIM4EN = bit(2), TIM5EN = bit(3), TIM6EN = bit(4),
+                                 TIM7EN = bit(5), SPI3EN = bit(15), USART2EN = bit(17),
+                                 I2C1EN = bit(21), I2C2EN = bit(22), I2C3EN = bit(23),
+                                 CAN1EN = bit(25), CAN2EN = bit(26), PWREN = bit(28);
   static constexpr std::uint32_t TIM1EN = bit(0), USART1EN = bit(4), USART6EN = bit(5),
                                  ADC1EN = bit(8), SPI1EN = bit(12), SYSCFGEN = bit(14);
   static constexpr std::uint32_t SPI1RST = bit(12);
@@ -186,7 +186,7 @@ struct TIM1 : Timer<0x4001'0000> {  // 16 bits
                                  CC3OF = bit(11), CC3S_TI3 = 1u, IC3F_LONGEST = 15u << 4,
                                  CC3E = bit(8);
 };
-using TIM2 = Timer<0x4000'0000>;  // 32 bits
+using TIM2 = Timer<0x4000'0000>;    // 32 bits
 struct TIM4 : Timer<0x4000'0800> {  // 16 bits
   using CCMR1 = Reg32<0x4000'0800 + 0x18>;
   using CCER = Reg32<0x4000'0800 + 0x20>;

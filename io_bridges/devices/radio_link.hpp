@@ -22,7 +22,7 @@ enum class Failsafe : std::uint8_t { stop, hold, fixed };  // what the receiver 
 class RadioLink {
  public:
   struct Params {
-    Nanoseconds latency_ns = 22'000'000;     // of the radio: one frame
+    Nanoseconds latency_ns = 22'000'000;  // of the radio: one frame
     Nanoseconds lost_after_ns = core::receiver::kLost_after_ns;
     Nanoseconds failsafe_after_ns = core::receiver::kFailsafe_after_ns;
     Failsafe failsafe = Failsafe::hold;

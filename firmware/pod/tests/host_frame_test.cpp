@@ -8,7 +8,7 @@
 
 #include "firmware/pod/can_sample.hpp"
 #include "firmware/pod/sample_watch.hpp"
-#include "io_bridges/protocols/pod_link.hpp"
+#include "io_bridges/protocols/dronecan/pod_link.hpp"
 
 namespace fw::pod {
 namespace {

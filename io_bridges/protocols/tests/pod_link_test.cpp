@@ -1,5 +1,5 @@
 // Frames typed from the layout; their checksums from the catalogue's definition of CRC-16/MCRF4XX.
-#include "io_bridges/protocols/pod_link.hpp"
+#include "io_bridges/protocols/dronecan/pod_link.hpp"
 
 #include <gtest/gtest.h>
 

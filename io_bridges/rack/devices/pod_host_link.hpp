@@ -5,7 +5,7 @@
 
 #include "io_bridges/devices/dronecan_node.hpp"
 #include "io_bridges/devices/uart_transmitter.hpp"
-#include "io_bridges/protocols/pod_link.hpp"
+#include "io_bridges/protocols/dronecan/pod_link.hpp"
 #include "io_bridges/rack/device_type.hpp"
 
 namespace whirl::rack {

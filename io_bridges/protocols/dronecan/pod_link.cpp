@@ -1,4 +1,4 @@
-#include "io_bridges/protocols/pod_link.hpp"
+#include "io_bridges/protocols/dronecan/pod_link.hpp"
 
 #include <algorithm>
 
@@ -10,8 +10,8 @@ namespace {
 
 constexpr std::uint8_t kStart = 0xA5, kSample = 0x01, kFaults = 0x02, kBarometer = 0x03,
                        kProm = 0x04, kMagnetometer = 0x05, kEsc = 0x06, kGps = 0x07,
-                       kGpsBaud = 0x08, kSbus = 0x09, kCppm = 0x0A, kStatus = 0x81, kSetpoint = 0x82,
-                       kGpsWritten = 0x83;
+                       kGpsBaud = 0x08, kSbus = 0x09, kCppm = 0x0A, kStatus = 0x81,
+                       kSetpoint = 0x82, kGpsWritten = 0x83;
 constexpr std::size_t kHead = 4, kTail = 2, kStatusBytes = 52, kSetpointBytes = 4;
 constexpr std::uint8_t kSilent = 0x80;  // of SBUS's flags
 
@@ -60,9 +60,8 @@ PodStatus pod_status(std::span<const std::uint8_t> payload) {
                       &status.overlaps, &status.late_rearm}) {
     *field = walk.half();
   }
-  for (auto* field :
-       {&status.transfers, &status.bursts, &status.samples, &status.longest_turn_us,
-        &status.now_us}) {
+  for (auto* field : {&status.transfers, &status.bursts, &status.samples, &status.longest_turn_us,
+                      &status.now_us}) {
     *field = walk.next(4);
   }
   status.gps_dropped = walk.half();

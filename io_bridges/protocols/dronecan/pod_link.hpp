@@ -86,8 +86,8 @@ class PodLinkReader {
   void on_gps_written(std::function<void(const PodGpsWritten&)> sink) {
     on_gps_written_ = std::move(sink);
   }
-  void add(std::uint8_t byte);                     // of the UART
-  void add(const dronecan::PodFrame& message);     // of CAN
+  void add(std::uint8_t byte);                  // of the UART
+  void add(const dronecan::PodFrame& message);  // of CAN
   void add(const dronecan::PodSetpoint& message);
   std::uint64_t damaged() const { return damaged_; }
 
