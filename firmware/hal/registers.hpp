@@ -27,10 +27,10 @@ struct RCC {
   static constexpr std::uint32_t PPRE1_DIV4 = 5u << 10, PPRE2_DIV2 = 4u << 13;
   static constexpr std::uint32_t GPIOAEN = bit(0), GPIOBEN = bit(1), GPIOCEN = bit(2),
                                  CCMDATARAMEN = bit(20), DMA1EN = bit(21), DMA2EN = bit(22);
-  static constexpr std::uint32_t TIM2EN = bit(0), TIM5EN = bit(3), TIM6EN = bit(4), TIM7EN = bit(5),
-                                 SPI3EN = bit(15), USART2EN = bit(17), I2C1EN = bit(21),
-                                 I2C2EN = bit(22), I2C3EN = bit(23), CAN1EN = bit(25),
-                                 CAN2EN = bit(26), PWREN = bit(28);
+  static constexpr std::uint32_t TIM2EN = bit(0), TIM4EN = bit(2), TIM5EN = bit(3), TIM6EN = bit(4),
+                                 TIM7EN = bit(5), SPI3EN = bit(15), USART2EN = bit(17),
+                                 I2C1EN = bit(21), I2C2EN = bit(22), I2C3EN = bit(23),
+                                 CAN1EN = bit(25), CAN2EN = bit(26), PWREN = bit(28);
   static constexpr std::uint32_t TIM1EN = bit(0), USART1EN = bit(4), USART6EN = bit(5),
                                  ADC1EN = bit(8), SPI1EN = bit(12), SYSCFGEN = bit(14);
   static constexpr std::uint32_t SPI1RST = bit(12);
@@ -152,8 +152,10 @@ struct Usart {
   using DR = Reg32<base + 0x04>;
   using BRR = Reg32<base + 0x08>;
   using CR1 = Reg32<base + 0x0C>;
+  using CR2 = Reg32<base + 0x10>;
   using CR3 = Reg32<base + 0x14>;
-  static constexpr std::uint32_t RE = bit(2), TE = bit(3), UE = bit(13);
+  static constexpr std::uint32_t RE = bit(2), TE = bit(3), PCE = bit(10), M = bit(12), UE = bit(13);
+  static constexpr std::uint32_t STOP_2 = 2u << 12;  // of CR2
   static constexpr std::uint32_t DMAR = bit(6), DMAT = bit(7);
 };
 using USART1 = Usart<0x4001'1000>;
@@ -184,7 +186,13 @@ struct TIM1 : Timer<0x4001'0000> {  // 16 bits
                                  CC3OF = bit(11), CC3S_TI3 = 1u, IC3F_LONGEST = 15u << 4,
                                  CC3E = bit(8);
 };
-using TIM2 = Timer<0x4000'0000>;  // 32 bits
+using TIM2 = Timer<0x4000'0000>;    // 32 bits
+struct TIM4 : Timer<0x4000'0800> {  // 16 bits
+  using CCMR1 = Reg32<0x4000'0800 + 0x18>;
+  using CCER = Reg32<0x4000'0800 + 0x20>;
+  using CCR1 = Reg32<0x4000'0800 + 0x34>;
+  static constexpr std::uint32_t ARPE = bit(7), OC1M_PWM1 = 6u << 4, OC1PE = bit(3), CC1E = bit(0);
+};
 using TIM5 = Timer<0x4000'0C00>;  // 32 bits
 using TIM6 = Timer<0x4000'1000>;  // 16 bits
 using TIM7 = Timer<0x4000'1400>;  // 16 bits
@@ -227,6 +235,7 @@ enum class Irq : std::uint8_t {
   DMA1_Stream3 = 14,
   DMA1_Stream6 = 17,
   TIM1_CC = 27,
+  TIM4_Global = 30,
   I2C1_EV = 31,
   I2C1_ER = 32,
   I2C2_EV = 33,

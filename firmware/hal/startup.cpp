@@ -11,6 +11,7 @@ FW_WEAK void dma1_stream2_handler();
 FW_WEAK void dma1_stream3_handler();
 FW_WEAK void dma1_stream6_handler();
 FW_WEAK void tim1_cc_handler();
+FW_WEAK void tim4_handler();
 FW_WEAK void i2c1_ev_handler();
 FW_WEAK void i2c1_er_handler();
 FW_WEAK void i2c2_ev_handler();
@@ -44,6 +45,7 @@ constexpr auto make_vectors() {
   on(Irq::DMA1_Stream3, dma1_stream3_handler);
   on(Irq::DMA1_Stream6, dma1_stream6_handler);
   on(Irq::TIM1_CC, tim1_cc_handler);
+  on(Irq::TIM4_Global, tim4_handler);
   on(Irq::I2C1_EV, i2c1_ev_handler);
   on(Irq::I2C1_ER, i2c1_er_handler);
   on(Irq::I2C2_EV, i2c2_ev_handler);

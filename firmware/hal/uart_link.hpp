@@ -23,6 +23,8 @@ class UartLink {
   std::size_t read(std::span<std::uint8_t> out);
   Status send(std::span<const std::uint8_t> frame);  // all of it, or busy: no room
 
+  std::size_t waiting() const { return tx_count_; }  // not yet with the UART
+
   void piece_sent();  // from the DMA's interrupt
 
  private:

@@ -1,11 +1,13 @@
-// The pod: a second STM32F405 that plays an MPU-6000 on SPI, an MS5611, an HMC5883L and
-// four ESCs on I2C to a flight controller, by what the host says.
+// The pod: a second STM32F405 that plays an MPU-6000 on SPI, an MS5611, an HMC5883L and four ESCs on I2C, a GPS
+// and a radio-control receiver to a flight controller, by what the host says.
 #include "firmware/hal/clock.hpp"
 #include "firmware/pod/escs.hpp"
+#include "firmware/pod/gps_out.hpp"
 #include "firmware/pod/host_link.hpp"
 #include "firmware/pod/imu.hpp"
 #include "firmware/pod/pod_time.hpp"
 #include "firmware/pod/ram_vectors.hpp"
+#include "firmware/pod/receiver_out.hpp"
 #include "firmware/pod/sensors.hpp"
 
 namespace fw::pod {
@@ -24,11 +26,16 @@ extern "C" void fw_main() {
   pod::host_link.start();
   pod::start_sensors();
   pod::start_escs();
+  pod::gps_out.start();
+  pod::sbus_out.start();
+  pod::cppm_out.start();
   pod::imu.start();
   for (;;) {
     pod::host_task();
     pod::imu.poll();
     pod::barometer.poll();
     pod::magnetometer.poll();
+    pod::gps_out.poll(pod::now_us());
+    pod::sbus_out.poll(pod::now_us());
   }
 }

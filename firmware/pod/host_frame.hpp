@@ -7,8 +7,13 @@
 //                 0x03 barometer: quantity (0 pressure, 1 temperature), counts (u32)
 //                 0x04 its PROM: 8 x u16      0x05 magnetometer: 3 x int16 (x, y, z; counts)
 //                 0x06 an ESC's status: number 0..3, current (int16, mA), speed (u16, rpm), flags
+//                 0x07 bytes of the GPS: from when on (u32, the pod's us; 0: at once), at most 44
+//                 0x08 its baud rate (u32)
+//                 0x09 SBUS: 22 bytes of channels as on the line, flags (bit 7: nothing goes out)
+//                 0x0A CPPM: at most 16 x u16, lengths in 0.5 us; none: nothing goes out
 //   Pod to host   0x81 status, see host_link.hpp
 //                 0x82 a set-point came: number 0..3, 1: valid, value (u16)
+//                 0x83 bytes that the GPS was told: when the pod tells it (u32, us), at most 44
 //   Bytes         integers low byte first
 #pragma once
 #include <array>
@@ -21,7 +26,7 @@
 namespace fw::pod {
 
 inline constexpr std::uint8_t kFrameStart = 0xA5;
-inline constexpr std::size_t kFrameHead = 4, kFrameTail = 2, kMostPayload = 48;
+inline constexpr std::size_t kFrameHead = 4, kFrameTail = 2, kMostPayload = 56;
 enum class FrameKind : std::uint8_t {
   sample = 0x01,
   faults = 0x02,
@@ -29,8 +34,13 @@ enum class FrameKind : std::uint8_t {
   prom = 0x04,
   magnetometer = 0x05,
   esc = 0x06,
+  gps = 0x07,
+  gps_baud = 0x08,
+  sbus = 0x09,
+  cppm = 0x0A,
   status = 0x81,
   setpoint = 0x82,
+  gps_written = 0x83,
 };
 
 struct Frame {
@@ -39,6 +49,13 @@ struct Frame {
   std::array<std::uint8_t, kMostPayload> payload{};
   std::int16_t word(std::size_t at) const {
     return static_cast<std::int16_t>(payload[at] | payload[at + 1] << 8);
+  }
+  std::uint16_t half(std::size_t at) const { return static_cast<std::uint16_t>(word(at)); }
+  std::uint32_t whole(std::size_t at) const {
+    return half(at) | static_cast<std::uint32_t>(half(at + 2)) << 16;
+  }
+  std::span<const std::uint8_t> bytes(std::size_t from) const {
+    return std::span(payload).first(length).subspan(from);
   }
 };
 
@@ -103,6 +120,11 @@ class FrameWriter {
   void word(std::uint32_t value) {
     half(value & 0xFFFF);
     half(value >> 16);
+  }
+  FrameKind kind() const { return static_cast<FrameKind>(bytes_[1]); }
+  std::uint8_t sequence() const { return bytes_[2]; }
+  std::span<const std::uint8_t> payload() const {
+    return std::span(bytes_).first(size_).subspan(kFrameHead);
   }
   std::span<const std::uint8_t> finish() {
     bytes_[3] = static_cast<std::uint8_t>(size_ - kFrameHead);

@@ -1,11 +1,14 @@
 #include "firmware/pod/host_link.hpp"
 
 #include <algorithm>
-#include <tuple>
+#include <array>
 
 #include "firmware/pod/escs.hpp"
+#include "firmware/pod/gps_out.hpp"
+#include "firmware/pod/host_can.hpp"
 #include "firmware/pod/host_uart.hpp"
 #include "firmware/pod/imu.hpp"
+#include "firmware/pod/receiver_out.hpp"
 #include "firmware/pod/sensors.hpp"
 
 namespace fw::pod {
@@ -13,7 +16,7 @@ namespace {
 
 namespace mpu = whirl::core::mpu;
 
-constexpr std::uint32_t kStatus_us = 10'000;
+constexpr std::uint32_t kStatus_us = 10'000, kStatus_on_can_us = 50'000;
 constexpr std::uint8_t kFrozen = 1, kNo_supply = 2;
 constexpr std::uint8_t kSample_bytes = 15, kFault_bytes = 2;
 constexpr std::uint8_t kTold[] = {mpu::PWR_MGMT_1,  mpu::CONFIG,       mpu::SMPLRT_DIV,
@@ -26,6 +29,7 @@ constinit HostLink host_link;
 
 void HostLink::start() {
   host_uart.init(kHostBaud);
+  host_can.start();
 }
 
 void HostLink::poll(std::uint32_t now_us) {
@@ -34,9 +38,17 @@ void HostLink::poll(std::uint32_t now_us) {
   std::array<std::uint8_t, 32> bytes{};
   const std::size_t n = host_uart.read(bytes);
   for (std::size_t i = 0; i < n; ++i) {
-    if (reader_.add(bytes[i])) on_frame(reader_.frame(), now_us);
+    if (!reader_.add(bytes[i])) continue;
+    over_can_ = false;
+    on_frame(reader_.frame(), now_us);
   }
+  if (Frame frame; host_can.read(frame, now_us)) {
+    over_can_ = true;
+    on_frame(frame, now_us);
+  }
+  host_can.poll(now_us);
   send_setpoints();
+  send_gps_written(now_us);
   if (static_cast<std::int32_t>(now_us - status_due_us_) >= 0) send_status(now_us);
 }
 
@@ -45,32 +57,57 @@ void HostLink::on_frame(const Frame& frame, std::uint32_t now_us) {
     std::array<std::int16_t, 7> counts{};
     for (std::size_t i = 0; i < counts.size(); ++i) counts[i] = frame.word(1 + 2 * i);
     imu.sample(counts);
-    watch_.came(frame.sequence, now_us);
+    watch_.came(frame.sequence, now_us,
+                over_can_ ? SampleWatch::kLate_on_can_us : SampleWatch::kLate_us);
   }
   if (frame.kind == FrameKind::faults && frame.length == kFault_bytes) {
     const std::uint8_t flags = frame.payload[0];
     imu.set_faults((flags & kFrozen) != 0, (flags & kNo_supply) == 0, frame.payload[1]);
   }
   on_slow_frame(frame);
+  on_output(frame, now_us);
 }
 
 // For the parts on I2C.
 void HostLink::on_slow_frame(const Frame& frame) {
-  const auto half = [&](std::size_t at) { return static_cast<std::uint16_t>(frame.word(at)); };
   if (frame.kind == FrameKind::barometer && frame.length == 5) {
-    barometer.set_counts(frame.payload[0], half(1) | static_cast<std::uint32_t>(half(3)) << 16);
+    barometer.set_counts(frame.payload[0], frame.whole(1));
   }
   if (frame.kind == FrameKind::prom && frame.length == 16) {
     whirl::core::Ms5611::Prom prom{};
-    for (std::size_t i = 0; i < prom.size(); ++i) prom[i] = half(2 * i);
+    for (std::size_t i = 0; i < prom.size(); ++i) prom[i] = frame.half(2 * i);
     barometer.set_prom(prom);
   }
   if (frame.kind == FrameKind::magnetometer && frame.length == 6) {
     magnetometer.set_counts({frame.word(0), frame.word(2), frame.word(4)});
   }
   if (frame.kind == FrameKind::esc && frame.length == 6 && frame.payload[0] < kEscs) {
-    escs[frame.payload[0]].set_status({frame.word(1), half(3), frame.payload[5]});
+    escs[frame.payload[0]].set_status({frame.word(1), frame.half(3), frame.payload[5]});
   }
+}
+
+// For the lines of GPS and receiver.
+void HostLink::on_output(const Frame& frame, std::uint32_t now_us) {
+  constexpr std::size_t kTime = 4;
+  if (frame.kind == FrameKind::gps && frame.length > kTime &&
+      frame.length <= kTime + GpsOut::kPiece) {
+    gps_out.add(frame.whole(0), frame.bytes(kTime));
+  }
+  if (frame.kind == FrameKind::gps_baud && frame.length == 4) gps_out.add_baud(frame.whole(0));
+  if (frame.kind == FrameKind::sbus && frame.length == SbusOut::kData) {
+    sbus_out.set(frame.bytes(0), now_us);
+  }
+  if (frame.kind == FrameKind::cppm && frame.length % 2 == 0) {
+    std::array<std::uint16_t, CppmOut::kMost> steps{};
+    const std::size_t n = std::min<std::size_t>(frame.length / 2, steps.size());
+    for (std::size_t i = 0; i < n; ++i) steps[i] = frame.half(2 * i);
+    cppm_out.set(std::span(steps).first(n), now_us);
+  }
+}
+
+void HostLink::send(FrameWriter& frame) {
+  const bool sent = over_can_ ? host_can.send(frame) : host_uart.send(frame.finish()) == Status::ok;
+  if (!sent) ++unsent_;
 }
 
 void HostLink::send_setpoints() {
@@ -81,12 +118,21 @@ void HostLink::send_setpoints() {
     out.byte(static_cast<std::uint32_t>(i));
     out.byte(came->valid ? 1 : 0);
     out.half(came->v);
-    std::ignore = host_uart.send(out.finish());
+    send(out);
   }
 }
 
+void HostLink::send_gps_written(std::uint32_t now_us) {
+  const std::span<const std::uint8_t> bytes = gps_out.take_written(now_us);
+  if (bytes.empty()) return;
+  FrameWriter out(FrameKind::gps_written, gps_number_++);
+  out.word(now_us);
+  for (const std::uint8_t byte : bytes) out.byte(byte);
+  send(out);
+}
+
 void HostLink::send_status(std::uint32_t now_us) {
-  status_due_us_ = now_us + kStatus_us;
+  status_due_us_ = now_us + (over_can_ ? kStatus_on_can_us : kStatus_us);
   const SpiCounters& spi = spi_counters();
   FrameWriter out(FrameKind::status, status_number_++);
   for (const std::uint8_t address : kTold) out.byte(imu.setting(address));
@@ -95,15 +141,20 @@ void HostLink::send_status(std::uint32_t now_us) {
   out.byte(watch_.overdue(now_us) ? 1 : 0);
   out.byte(0);
   out.word(watch_.flagged());
-  for (const std::uint32_t count : {watch_.lost(), watch_.late(), reader_.damaged(),
-                                    imu.oddities() + barometer.oddities() + magnetometer.oddities(),
-                                    imu.overlaps(), spi.late_rearm}) {
+  for (const std::uint32_t count :
+       {watch_.lost(), watch_.late(), reader_.damaged() + host_can.damaged(),
+        imu.oddities() + barometer.oddities() + magnetometer.oddities(), imu.overlaps(),
+        spi.late_rearm}) {
     out.half(std::min<std::uint32_t>(count, 0xFFFF));
   }
-  for (const std::uint32_t count : {spi.transfers, spi.bursts, imu.samples(), longest_turn_us_}) {
+  for (const std::uint32_t count :
+       {spi.transfers, spi.bursts, imu.samples(), longest_turn_us_, now_us}) {
     out.word(count);
   }
-  std::ignore = host_uart.send(out.finish());  // the next one tells more
+  for (const std::uint32_t count : {gps_out.dropped(), unsent_}) {
+    out.half(std::min<std::uint32_t>(count, 0xFFFF));
+  }
+  send(out);
 }
 
 }  // namespace fw::pod

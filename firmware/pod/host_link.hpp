@@ -1,11 +1,13 @@
-// The host's frames, and the status that goes back 100 times a second.
+// The host's frames, and the status that goes back: 100 times a second over the UART, 20 over CAN.
 //
+//   Ways     UART and CAN are heard alike; what the pod tells goes where the host spoke last
 //   Read     from the main loop, more often than the UART's ring of 256 bytes wraps (0.85 ms)
-//   Status   0x81, 44 bytes: PWR_MGMT_1, CONFIG, SMPLRT_DIV, GYRO_CONFIG, ACCEL_CONFIG, INT_ENABLE,
+//   Status   0x81, 52 bytes: PWR_MGMT_1, CONFIG, SMPLRT_DIV, GYRO_CONFIG, ACCEL_CONFIG, INT_ENABLE,
 //            INT_PIN_CFG, USER_CTRL; number of the newest sample, of the newest oddity, samples overdue
 //            (0, 1), a zero; then as u32 the samples' flags (bit 0: the newest; lost or late), as u16
 //            samples lost, late, damaged frames, oddities, overlaps, late re-arms, and as u32 transfers,
-//            bursts, samples taken, the longest turn of the main loop in us
+//            bursts, samples taken, the longest turn of the main loop in us, the pod's time in us, as u16 pieces
+//            of the GPS and frames of the pod's own for which there was no room
 #pragma once
 #include <cstdint>
 
@@ -22,13 +24,18 @@ class HostLink {
  private:
   void on_frame(const Frame& frame, std::uint32_t now_us);
   void on_slow_frame(const Frame& frame);
+  static void on_output(const Frame& frame, std::uint32_t now_us);
+  void send(FrameWriter& frame);
+  void send_gps_written(std::uint32_t now_us);
   void send_setpoints();
   void send_status(std::uint32_t now_us);
 
   FrameReader reader_;
   SampleWatch watch_;
   std::uint32_t status_due_us_ = 0, turned_us_ = 0, longest_turn_us_ = 0;
-  std::uint8_t status_number_ = 0, setpoint_number_ = 0;
+  std::uint8_t status_number_ = 0, setpoint_number_ = 0, gps_number_ = 0;
+  std::uint32_t unsent_ = 0;
+  bool over_can_ = false;
 };
 
 extern HostLink host_link;

@@ -16,6 +16,10 @@ using EscScl12 = hal::Pin<hw::GPIOB, 10>;  // I2C2 and I2C3, soldered together: 
 using EscSda12 = hal::Pin<hw::GPIOB, 11>;
 using EscScl34 = hal::Pin<hw::GPIOA, 8>;
 using EscSda34 = hal::Pin<hw::GPIOC, 9>;
+using GpsTx = hal::Pin<hw::GPIOC, 6>;
+using GpsRx = hal::Pin<hw::GPIOC, 7>;
+using SbusTx = hal::Pin<hw::GPIOA, 2>;  // an inverter behind it
+using CppmPin = hal::Pin<hw::GPIOB, 6>;
 using HostTx = hal::Pin<hw::GPIOA, 9>;
 using HostRx = hal::Pin<hw::GPIOA, 10>;
 

@@ -1,8 +1,9 @@
 // Which samples of the host came, which are lost and which were late: by their sequence numbers and the
 // time between them. The last 32 stand in a mask, so that the host can mark its own data.
 //
-//   Lost   its number never came. Late: more than kLate_us after the one before; one that is overtaken
-//          counts as lost
+//   Lost   its number never came; one that is overtaken counts so, too
+//   Late   more than the link's own spread after a period: over the UART 250 us; over CAN 350 us, for one
+//          frame of others may go first (160), three frames have stuff bits or not (87), and the main loop turns (60)
 #pragma once
 #include <cstdint>
 
@@ -10,9 +11,11 @@ namespace fw::pod {
 
 class SampleWatch {
  public:
-  static constexpr std::uint32_t kPeriod_us = 1000, kLate_us = kPeriod_us + 250;
+  static constexpr std::uint32_t kPeriod_us = 1000, kLate_us = kPeriod_us + 250,
+                                 kLate_on_can_us = kPeriod_us + 350;
 
-  void came(std::uint8_t sequence, std::uint32_t now_us) {
+  void came(std::uint8_t sequence, std::uint32_t now_us, std::uint32_t late_us = kLate_us) {
+    late_us_ = late_us;
     if (!begun_) {
       begun_ = true;
     } else {
@@ -20,7 +23,7 @@ class SampleWatch {
       const std::uint32_t missing = step == 0 ? 0u : step - 1u;
       lost_ += missing;
       for (std::uint32_t i = 0; i < missing && i < 32; ++i) shift(true);
-      const bool late = missing == 0 && now_us - last_us_ > kLate_us;
+      const bool late = missing == 0 && now_us - last_us_ > late_us_;
       if (late) ++late_count_;
       shift(late);
     }
@@ -31,14 +34,14 @@ class SampleWatch {
   std::uint32_t late() const { return late_count_; }
   std::uint32_t flagged() const { return mask_; }  // bit 0: the newest sample
   std::uint8_t last() const { return last_; }
-  bool overdue(std::uint32_t now_us) const { return begun_ && now_us - last_us_ > kLate_us; }
+  bool overdue(std::uint32_t now_us) const { return begun_ && now_us - last_us_ > late_us_; }
 
  private:
   void shift(bool flagged) { mask_ = mask_ << 1 | (flagged ? 1u : 0u); }
 
   bool begun_ = false;
   std::uint8_t last_ = 0;
-  std::uint32_t last_us_ = 0, lost_ = 0, late_count_ = 0, mask_ = 0;
+  std::uint32_t last_us_ = 0, late_us_ = kLate_us, lost_ = 0, late_count_ = 0, mask_ = 0;
 };
 
 }  // namespace fw::pod

@@ -81,7 +81,7 @@ flight::BoardEars ears_of(const BoardDescription& board) {
 // A pod's rig is the world around its board: the stand that a plan names stays empty.
 bool brings_its_world(const BoardDescription& board) {
   return std::any_of(board.devices.begin(), board.devices.end(),
-                     [](const BoardDevice& device) { return device.type == "pod_replay"; });
+                     [](const BoardDevice& device) { return device.type.starts_with("pod_"); });
 }
 
 // What the plan reads of the virtual stand and this bench does not measure is said before anything turns.

@@ -8,8 +8,10 @@
 namespace whirl::io {
 namespace {
 
-constexpr double kCentre_ns = 1.5e6, kTravel_ns = 0.5e6, kStep_ns = 500.0;
-constexpr double kShortest_ns = 0.9e6, kLongest_ns = 2.1e6, kShortest_gap_ns = 4e6;
+constexpr double kCentre_ns = 1.5e6, kTravel_ns = 0.5e6;
+constexpr double kStep_ns = core::receiver::kCppmStep_ns;
+constexpr double kShortest_ns = 0.9e6, kLongest_ns = 2.1e6;
+constexpr double kShortest_gap_ns = core::receiver::kCppmShortestGap_ns;
 constexpr double kNonsense_ns[2] = {0.3e6, 3e6};
 constexpr double kMost_jitter_s = 10e-6;
 constexpr Nanoseconds kJitter_room_ns = 10'000;  // an early first edge is not before its frame

@@ -27,7 +27,7 @@ class CppmReceiver {
   struct Params {
     std::string name = "receiver";
     int channels = 8;  // 4..16
-    Nanoseconds frame_ns = 22'500'000, pulse_ns = 300'000;
+    Nanoseconds frame_ns = core::receiver::kCppmFrame_ns, pulse_ns = core::receiver::kCppmPulse_ns;
     bool negative = false;
     double jitter_s = 2e-6;    // RMS
     double clock_error = 0.0;  // share by which its clock is slow: all times are longer

@@ -58,7 +58,16 @@ void DroneCanNode::sent(Nanoseconds /*now*/) {
 }
 
 void DroneCanNode::failed(CanError /*error*/, bool sending, Nanoseconds /*now*/) {
-  if (sending) on_wire_ = false;
+  if (sending) off_wire();
+}
+
+// The first waits again: behind what became due meanwhile and is more urgent.
+void DroneCanNode::off_wire() {
+  on_wire_ = false;
+  if (waiting_.empty()) return;
+  auto place = waiting_.begin();
+  while (place + 1 != waiting_.end() && (place + 1)->id < waiting_.front().id) ++place;
+  std::rotate(waiting_.begin(), waiting_.begin() + 1, place + 1);
 }
 
 void DroneCanNode::bus_off(Nanoseconds /*now*/) {

@@ -56,10 +56,11 @@ class DroneCanNode : private CanNode {
   const CanFrame* offered() override { return waiting_.empty() ? nullptr : &waiting_.front(); }
   void begun(Nanoseconds /*now*/) override { on_wire_ = true; }
   void sent(Nanoseconds now) override;
-  void lost_arbitration(Nanoseconds /*now*/) override { on_wire_ = false; }
+  void lost_arbitration(Nanoseconds /*now*/) override { off_wire(); }
   void failed(CanError error, bool sending, Nanoseconds now) override;
   void receive(const CanFrame& frame, Nanoseconds now) override;
   void bus_off(Nanoseconds now) override;
+  void off_wire();
 
   void post(dronecan::Header header, std::uint64_t signature,
             std::span<const std::uint8_t> payload);

@@ -9,6 +9,7 @@
 #include <array>
 #include <deque>
 
+#include "io_bridges/devices/core/receiver.hpp"
 #include "io_bridges/devices/faults.hpp"
 
 namespace whirl::io {
@@ -21,9 +22,9 @@ enum class Failsafe : std::uint8_t { stop, hold, fixed };  // what the receiver 
 class RadioLink {
  public:
   struct Params {
-    Nanoseconds latency_ns = 22'000'000;     // of the radio: one frame
-    Nanoseconds lost_after_ns = 60'000'000;  // three frames of 20 ms
-    Nanoseconds failsafe_after_ns = 500'000'000;
+    Nanoseconds latency_ns = 22'000'000;  // of the radio: one frame
+    Nanoseconds lost_after_ns = core::receiver::kLost_after_ns;
+    Nanoseconds failsafe_after_ns = core::receiver::kFailsafe_after_ns;
     Failsafe failsafe = Failsafe::hold;
     double failsafe_thrust = -1.2;  // channel 3 of the fixed positions; the others are centred
     int bus = kAnywhere, device = kAnywhere;  // where faults find it

@@ -5,10 +5,8 @@
 namespace whirl::io {
 namespace {
 
-constexpr Nanoseconds kSbus_boot_ns = 200'000'000;
-
 UartFormat format_of(const SbusReceiver::Params& params) {
-  return {kSbusBaud, 8, 'E', 2.0, !params.inverter};
+  return {core::receiver::kSbusBaud, 8, 'E', 2.0, !params.inverter};
 }
 
 }  // namespace
@@ -22,7 +20,7 @@ SbusReceiver::SbusReceiver(EventQueue& queue, const Params& params, FaultBook* f
                    [this](const UartByte& byte, const UartFormat& format) { send(byte, format); }),
       nonsense_(params.seed, params.name + ".nonsense"),
       frame_(queue, [this] { begin_frame(); }) {
-  frame_.in(kSbus_boot_ns);
+  frame_.in(core::receiver::kSbusBoot_ns);
 }
 
 void SbusReceiver::begin_frame() {

@@ -25,7 +25,7 @@ class SbusReceiver : public UartPeer {
  public:
   struct Params {
     std::string name = "receiver";
-    Nanoseconds period_ns = 14'000'000;
+    Nanoseconds period_ns = core::receiver::kSbusPeriod_ns;
     bool inverter = false;  // on the board
     RadioLink::Params link = {};
     std::uint64_t seed = 1;

@@ -13,7 +13,7 @@ constexpr double kLow = 172.0, kHigh = 1811.0;
 
 std::array<std::uint8_t, kSbusBytes> encode(const SbusFrame& frame) {
   std::array<std::uint8_t, kSbusBytes> bytes{};
-  bytes[0] = 0x0F;
+  bytes[0] = core::receiver::kSbusStart;
   for (unsigned channel = 0; channel < frame.channels.size(); ++channel) {
     for (unsigned bit = 0; bit < kBits; ++bit) {
       const unsigned at = channel * kBits + bit;
@@ -22,6 +22,7 @@ std::array<std::uint8_t, kSbusBytes> encode(const SbusFrame& frame) {
     }
   }
   bytes[23] = frame.flags;
+  bytes[24] = core::receiver::kSbusEnd;
   return bytes;
 }
 

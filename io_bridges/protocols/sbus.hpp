@@ -10,11 +10,11 @@
 #include <array>
 #include <cstdint>
 
+#include "io_bridges/devices/core/receiver.hpp"
+
 namespace whirl::io {
 
-inline constexpr std::size_t kSbusBytes = 25;
-inline constexpr std::uint8_t kSbusFrameLost = 0x04, kSbusFailsafe = 0x08;
-inline constexpr double kSbusBaud = 100000.0;
+using core::receiver::kSbusBytes, core::receiver::kSbusFailsafe, core::receiver::kSbusFrameLost;
 
 struct SbusFrame {
   std::array<std::uint16_t, 16> channels{};  // 0..2047

@@ -6,8 +6,9 @@
 
 #include <vector>
 
+#include "firmware/pod/can_sample.hpp"
 #include "firmware/pod/sample_watch.hpp"
-#include "io_bridges/protocols/pod_link.hpp"
+#include "io_bridges/protocols/dronecan/pod_link.hpp"
 
 namespace fw::pod {
 namespace {
@@ -60,16 +61,37 @@ TEST(HostFrame, WhatThePodWritesTheHostReads) {
   }
   out.word(0x80000001);
   for (std::uint32_t i = 1; i <= 6; ++i) out.half(i);
-  for (const std::uint32_t word : {100000u, 70000u, 70001u, 17u}) out.word(word);
+  for (const std::uint32_t word : {100000u, 70000u, 70001u, 17u, 123456u}) out.word(word);
+  out.half(2);
+  out.half(3);
   int heard = 0;
   whirl::io::PodLinkReader host([&](const whirl::io::PodStatus& s) {
     ++heard;
     EXPECT_EQ(s.late_rearm, 6);
     EXPECT_EQ(s.bursts, 70000u);
+    EXPECT_EQ(s.now_us, 123456u);
+    EXPECT_EQ(s.unsent, 3);
   });
   for (const std::uint8_t byte : out.finish()) host.add(byte);
   EXPECT_EQ(heard, 1);
   EXPECT_EQ(host.damaged(), 0u);
+}
+
+// 16 g are 32768 steps: at a range of 8 g (2) twice as many counts, and no more than there are.
+TEST(CanSample, StepsOfTheWidestRangeAreCountsOfThePartsOwn) {
+  EXPECT_EQ(part_counts(1000, 3), 1000);
+  EXPECT_EQ(part_counts(-1000, 2), -2000);
+  EXPECT_EQ(part_counts(1000, 0), 8000);
+  EXPECT_EQ(part_counts(20000, 2), 32767);
+  EXPECT_EQ(part_counts(-20000, 2), -32768);
+}
+
+TEST(CanSample, AStampNumbersItsSampleByMilliseconds) {
+  StampCounter stamps;
+  const std::uint8_t first = stamps.number(4000, 1u << 12);
+  EXPECT_EQ(stamps.number(4004, 1u << 12), first);     // once more
+  EXPECT_EQ(stamps.number(4, 1u << 12), first + 1);    // round, 0.96 ms later
+  EXPECT_EQ(stamps.number(208, 1u << 12), first + 3);  // one is missing
 }
 
 TEST(SampleWatch, ALostSampleIsFlaggedInItsPlace) {

@@ -5,6 +5,7 @@
 //   Outside  a part tells what it does to its pins, and asks for the time of its next event, through
 //            an interface of its own; whoever owns it has the clock, the wires and what is sensed
 #pragma once
+#include <cstddef>
 #include <cstdint>
 
 namespace whirl::core {

@@ -7,6 +7,7 @@
 #include "io_bridges/protocols/dronecan/gnss.hpp"
 #include "io_bridges/protocols/dronecan/imu_samples.hpp"
 #include "io_bridges/protocols/dronecan/param.hpp"
+#include "io_bridges/protocols/dronecan/pod.hpp"
 #include "io_bridges/protocols/dronecan/sensors.hpp"
 #include "io_bridges/protocols/dronecan/vehicle_state.hpp"
 
@@ -32,6 +33,9 @@ constexpr DataType kTypes[] = {
     ArmingStatus::kType,
     Imu14::kType,
     Imu16::kType,
+    PodSample::kType,
+    PodFrame::kType,
+    PodSetpoint::kType,
 };
 
 }  // namespace

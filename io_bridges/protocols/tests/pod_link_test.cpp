@@ -1,5 +1,5 @@
 // Frames typed from the layout; their checksums from the catalogue's definition of CRC-16/MCRF4XX.
-#include "io_bridges/protocols/pod_link.hpp"
+#include "io_bridges/protocols/dronecan/pod_link.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,10 +7,10 @@ namespace whirl::io {
 namespace {
 
 const std::vector<std::uint8_t> kStatusFrame{
-    0xA5, 0x81, 0x09, 0x2C, 0x01, 0x01, 0x00, 0x18, 0x18, 0x01, 0x10, 0x10, 0x07,
-    0x03, 0x01, 0x00, 0x01, 0x00, 0x00, 0x80, 0x01, 0x00, 0x02, 0x00, 0x03, 0x00,
-    0x04, 0x00, 0x05, 0x00, 0x06, 0x00, 0xA0, 0x86, 0x01, 0x00, 0x70, 0x11, 0x01,
-    0x00, 0x71, 0x11, 0x01, 0x00, 0x11, 0x00, 0x00, 0x00, 0x03, 0xEE};
+    0xA5, 0x81, 0x09, 0x34, 0x01, 0x01, 0x00, 0x18, 0x18, 0x01, 0x10, 0x10, 0x07, 0x03, 0x01,
+    0x00, 0x01, 0x00, 0x00, 0x80, 0x01, 0x00, 0x02, 0x00, 0x03, 0x00, 0x04, 0x00, 0x05, 0x00,
+    0x06, 0x00, 0xA0, 0x86, 0x01, 0x00, 0x70, 0x11, 0x01, 0x00, 0x71, 0x11, 0x01, 0x00, 0x11,
+    0x00, 0x00, 0x00, 0x04, 0x03, 0x02, 0x01, 0x07, 0x00, 0x08, 0x00, 0xA8, 0x3F};
 
 std::vector<PodStatus> read(const std::vector<std::uint8_t>& bytes, std::uint64_t damaged) {
   std::vector<PodStatus> all;
@@ -35,6 +35,54 @@ TEST(PodLink, FramesOfThePartsOnI2cStandAsTyped) {
   EXPECT_EQ(pack_pod_barometer(1, 1, 8569150),
             (std::vector<std::uint8_t>{0xA5, 0x03, 0x01, 0x05, 0x01, 0x3E, 0xC1, 0x82, 0x00, 0xC0,
                                        0x7B}));
+}
+
+TEST(PodLink, FramesOfTheLinesStandAsTyped) {
+  using Bytes = std::vector<std::uint8_t>;
+  EXPECT_EQ(pack_pod_gps(5, 0x01020304, Bytes{0xAA, 0xBB, 0xCC}),
+            (Bytes{0xA5, 0x07, 0x05, 0x07, 0x04, 0x03, 0x02, 0x01, 0xAA, 0xBB, 0xCC, 0x57, 0x71}));
+  EXPECT_EQ(pack_pod_gps_baud(6, 57600),
+            (Bytes{0xA5, 0x08, 0x06, 0x04, 0x00, 0xE1, 0x00, 0x00, 0xF4, 0xCB}));
+  EXPECT_EQ(pack_pod_cppm(7, std::array<std::uint16_t, 2>{3000, 1800}),
+            (Bytes{0xA5, 0x0A, 0x07, 0x04, 0xB8, 0x0B, 0x08, 0x07, 0x84, 0xBC}));
+}
+
+// The channels of the receiver's table: all 992.
+TEST(PodLink, SbusIsItsFrameWithoutStartAndEnd) {
+  SbusFrame frame;
+  frame.channels.fill(992);
+  frame.flags = kSbusFrameLost;
+  auto bytes = pack_pod_sbus(1, frame);
+  ASSERT_EQ(bytes.size(), 4u + 23u + 2u);
+  const std::uint8_t first[] = {0xE0, 0x03, 0x1F, 0xF8, 0xC0, 0x07, 0x3E, 0xF0, 0x81, 0x0F, 0x7C};
+  for (std::size_t i = 0; i < 22; ++i) EXPECT_EQ(bytes[4 + i], first[i % 11]) << i;
+  EXPECT_EQ(bytes[26], 0x04);
+  EXPECT_EQ(pack_pod_sbus(1, frame, true)[26], 0x84);
+}
+
+TEST(PodLink, WhatTheGpsWasToldIsRead) {
+  std::vector<std::uint8_t> told;
+  std::uint32_t t_us = 0;
+  PodLinkReader reader([](const PodStatus&) {});
+  reader.on_gps_written([&](const PodGpsWritten& written) {
+    told.assign(written.bytes.begin(), written.bytes.end());
+    t_us = written.t_us;
+  });
+  for (const int byte : {0xA5, 0x83, 0x08, 0x06, 0x40, 0x30, 0x20, 0x10, 0xB5, 0x62, 0xBD, 0xF1})
+    reader.add(static_cast<std::uint8_t>(byte));
+  EXPECT_EQ(told, (std::vector<std::uint8_t>{0xB5, 0x62}));
+  EXPECT_EQ(t_us, 0x10203040u);
+  EXPECT_EQ(reader.damaged(), 0u);
+}
+
+TEST(PodLink, OverCanAFrameIsItsKindSequenceAndPayload) {
+  const dronecan::PodFrame message = pod_message(pack_pod_gps_baud(6, 57600));
+  const auto payload = dronecan::encode(message);
+  const std::vector<std::uint8_t> want{0x08, 0x06, 0x00, 0xE1, 0x00, 0x00};
+  EXPECT_TRUE(std::equal(payload.bytes().begin(), payload.bytes().end(), want.begin(), want.end()));
+  PodLinkReader reader([](const PodStatus&) {});
+  reader.add(message);  // of no kind that a pod tells
+  EXPECT_EQ(reader.damaged(), 1u);
 }
 
 TEST(PodLink, ASetpointIsRead) {
@@ -62,6 +110,9 @@ TEST(PodLink, AStatusIsReadFieldByField) {
             (std::array<std::uint16_t, 6>{1, 2, 3, 4, 5, 6}));
   EXPECT_EQ((std::array{s.transfers, s.bursts, s.samples, s.longest_turn_us}),
             (std::array<std::uint32_t, 4>{100000, 70000, 70001, 17}));
+  EXPECT_EQ(s.now_us, 0x01020304u);
+  EXPECT_EQ(s.gps_dropped, 7);
+  EXPECT_EQ(s.unsent, 8);
 }
 
 TEST(PodLink, AFlippedBitAnywhereCostsThatFrameOnly) {

@@ -8,8 +8,8 @@
 
 #include "harness/target/virtual_board.hpp"
 #include "io_bridges/board_description/board_text.hpp"
+#include "io_bridges/protocols/dronecan/pod_link.hpp"
 #include "io_bridges/protocols/esc_codec.hpp"
-#include "io_bridges/protocols/pod_link.hpp"
 
 namespace whirl::board_test {
 namespace {

@@ -183,6 +183,39 @@ TEST(Pod, AnswersBurstsAtTwiceTheFlightImagesClock) {
   expect_right(replay(flight_traffic(), R"(,"params.burst_rate":20e6)"));
 }
 
+// The host's samples over CAN: three frames of 135 bits in the mean, behind one of others at most.
+TEST(Pod, AnswersTheSameWithItsHostOnCan) {
+  PodRun run = replay(flight_traffic(), R"(,"params.can":2)");
+  expect_right(run);
+  for (const char* count : {"no_ready", "pod_lost", "pod_late", "pod_damaged", "pod_late_rearm"}) {
+    EXPECT_EQ(run.figures[count], 0) << count;
+  }
+  EXPECT_LT(run.figures["link_most_ns"], 700'000);
+  EXPECT_LT(run.watched[0].worst_latency_ns, 200);
+}
+
+// What Imu16 can say of the flight image's part, which is set to the widest ranges: all but the temperature.
+std::string traffic_without_temperature() {
+  std::ifstream in(flight_traffic());
+  std::string out, line;
+  while (std::getline(in, line)) {
+    const std::size_t burst = line.rfind(" BB");
+    for (const std::size_t byte : {6u, 7u}) {  // pairs of MOSI and MISO, the command's first
+      if (burst != std::string::npos) line.replace(burst + 1 + 4 * (byte + 1) + 2, 2, "00");
+    }
+    out += line + "\n";
+  }
+  std::string name = file_name("no_temperature.txt");
+  std::ofstream(name) << out;
+  return name;
+}
+
+TEST(Pod, AnImusMessageOnCanIsCountsOfThePartsRanges) {
+  PodRun run = replay(traffic_without_temperature(), R"(,"params.can":2,"params.sample":"imu16")");
+  expect_right(run);
+  EXPECT_EQ(run.figures["pod_lost"] + run.figures["no_ready"], 0);
+}
+
 TEST(Pod, ASampleThatNeverCameIsNoDataReadyAndIsTold) {
   const PodRun run = replay(flight_traffic(), R"(,"params.lose_every":50)");
   ASSERT_EQ(run.error, "");

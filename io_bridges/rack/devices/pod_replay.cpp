@@ -14,8 +14,7 @@
 #include <utility>
 
 #include "io_bridges/devices/spi_master.hpp"
-#include "io_bridges/devices/uart_transmitter.hpp"
-#include "io_bridges/protocols/pod_link.hpp"
+#include "io_bridges/rack/devices/pod_host_link.hpp"
 #include "io_bridges/rack/devices/spi_traffic.hpp"
 #include "io_bridges/rack/devices/table.hpp"
 
@@ -23,9 +22,8 @@ namespace whirl::rack {
 namespace {
 
 constexpr Nanoseconds kBehind_ns = 2'000'000;        // the replay's clock after the recording's
-constexpr Nanoseconds kReadyAtMost_ns = 500'000;     // then the controller would do without
-constexpr Nanoseconds kStatusAfter_ns = 25'000'000;  // the pod tells 100 times a second
-constexpr double kBaud = 3e6;
+constexpr Nanoseconds kReadyAtMost_ns = 800'000;     // then the controller would do without
+constexpr Nanoseconds kStatusAfter_ns = 75'000'000;  // the pod tells 20 times a second at least
 constexpr std::uint8_t kBurst = 0xBB;
 
 // Of the answers of one kind.
@@ -53,42 +51,34 @@ struct Spread {
   }
 };
 
-class PodReplayDevice final : public RackDevice, io::UartPeer {
+class PodReplayDevice final : public RackDevice {
  public:
   PodReplayDevice(DeviceSlot& slot, std::vector<RecordedTransfer> traffic)
       : queue_(slot.rack().events()),
         happened_(slot.rack().happened()),
         traffic_(std::move(traffic)),
-        uart_(slot.whole("params.uart")),
         register_Hz_(slot.quantity("params.register_rate")),
         burst_Hz_(slot.quantity("params.burst_rate")),
         lose_every_(slot.whole("params.lose_every")),
         master_(queue_, slot.spi_slave(), slot.pin("cs"), 3),
-        to_pod_(
-            queue_, {.baud = kBaud},
-            [this](const io::UartByte& byte, const io::UartFormat& format) { send(byte, format); }),
         reader_([this](const io::PodStatus& status) { status_ = status; }),
+        link_(slot, reader_),
         next_(queue_, [this] { start_transfer(); }),
         sample_(queue_, [this] { send_sample(); }),
         end_(queue_, [this] { end(); }) {
-    if (!slot.rack().join_uart(uart_, *this)) return;
     slot.pin("int").watch([this](bool level, Nanoseconds now) {
       if (level) ready(now);
     });
     prepare();
   }
 
-  std::vector<Intake> intakes() const override { return {{io::Kind::uart_frame, uart_}}; }
+  std::vector<Intake> intakes() const override { return {{io::Kind::uart_frame, link_.uart()}}; }
   void on_message(const io::Reader& message) override {
     std::string line(message.payload().begin(), message.payload().end());
     line.erase(line.find_last_not_of("\r\n") + 1);
     asked_ = true;
     if (ended_ || line != "done") return answer(line);
     done_asked_ = true;
-  }
-
-  void receive(const io::UartByte& byte, const io::UartFormat&, Nanoseconds) override {
-    reader_.add(byte.value);
   }
 
  private:
@@ -117,7 +107,7 @@ class PodReplayDevice final : public RackDevice, io::UartPeer {
     ++samples_;
     const bool lost = lose_every_ != 0 && samples_ % lose_every_ == 0;
     if (lost) ++withheld_;
-    if (!lost) to_pod_.add(io::pack_pod_sample(number_, counts));
+    if (!lost) link_.send_sample(number_, counts);
     ++number_;
   }
 
@@ -212,7 +202,7 @@ class PodReplayDevice final : public RackDevice, io::UartPeer {
   }
   void say(const std::string& name, long long value) {
     const std::string line = name + " " + std::to_string(value) + "\n";
-    happened_.add(io::Kind::uart_received, uart_, queue_.now(), line.data(),
+    happened_.add(io::Kind::uart_received, link_.uart(), queue_.now(), line.data(),
                   static_cast<std::uint32_t>(line.size()));
   }
 
@@ -220,12 +210,11 @@ class PodReplayDevice final : public RackDevice, io::UartPeer {
   io::Batch& happened_;
   std::vector<RecordedTransfer> traffic_;
   std::size_t at_ = 0;
-  std::uint16_t uart_;
   double register_Hz_, burst_Hz_;  // 0: as recorded
   std::uint16_t lose_every_;
   io::SpiMaster master_;
-  io::UartTransmitter to_pod_;
   io::PodLinkReader reader_;
+  PodHostLink link_;
   io::PodStatus status_;
   io::Event next_, sample_, end_;
   Nanoseconds begun_ns_ = 0, stopped_ns_ = 0, sent_ns_ = 0, rose_ns_ = io::kNever;
@@ -250,24 +239,24 @@ std::unique_ptr<RackDevice> make(DeviceSlot& slot) {
 }  // namespace
 
 DeviceType pod_replay_type() {
-  DeviceKey uart = quantity_key("params.uart", Dimension::none, "", {1.0, 6.0}, "the host's link");
-  uart.kind = KeyKind::whole;
   DeviceKey lose = quantity_key("params.lose_every", Dimension::none, "", {0.0, 1000.0},
                                 "every so many samples the host keeps one back");
   lose.kind = KeyKind::whole;
   const auto rate = [](const char* path, const char* about) {
     return quantity_key(path, Dimension::frequency, "MHz", {0.0, 42e6}, about).with(0.0);
   };
-  return {
-      "pod_replay",
-      "the flight controller and the host of a pod, by a recording: for its proof",
-      {bus_key("spi", "of which the board is the slave").need().own(),
-       pin_key("cs", "chip select, which it drives").need(),
-       pin_key("int", "the pod's data-ready").need(), uart.with(1.0),
-       file_key("params.traffic", "the recording: io_bridges/rack/devices/spi_traffic.hpp").need(),
-       rate("params.register_rate", "of SCK where single registers pass; 0: as recorded"),
-       rate("params.burst_rate", "of SCK in bursts; 0: as recorded"), lose.with(0.0)},
-      make};
+  std::vector<DeviceKey> keys = {
+      bus_key("spi", "of which the board is the slave").need().own(),
+      pin_key("cs", "chip select, which it drives").need(),
+      pin_key("int", "the pod's data-ready").need(),
+      file_key("params.traffic", "the recording: io_bridges/rack/devices/spi_traffic.hpp").need(),
+      rate("params.register_rate", "of SCK where single registers pass; 0: as recorded"),
+      rate("params.burst_rate", "of SCK in bursts; 0: as recorded"),
+      lose.with(0.0)};
+  for (const DeviceKey& key : pod_link_keys()) keys.push_back(key);
+  return {"pod_replay",
+          "the flight controller and the host of a pod, by a recording: for its proof",
+          std::move(keys), make};
 }
 
 }  // namespace whirl::rack

@@ -29,6 +29,7 @@
   TYPE(i2c_master)               \
   TYPE(can_port)                 \
   TYPE(pod_replay)               \
+  TYPE(pod_host)                 \
   TYPE(power_stage)              \
   TYPE(pulse_source)             \
   TYPE(volts)                    \

@@ -87,6 +87,27 @@ TEST(EscOnCan, TellsItsStateTwentyTimesASecond) {
   EXPECT_EQ(b.flags.back().flags, 3u);
 }
 
+// The first of those that wait is offered until it is sent, but not at the price of a more urgent one.
+TEST(NodeOnCan, WhatLosesTheArbitrationLetsAMoreUrgentOneOfItsNodePass) {
+  Bench b;
+  io::DroneCanNode other(b.rack.queue, b.rack.can_bus, {"other", "org.test", -1, 11, 1e6});
+  std::vector<io::CanTransfer> log;
+  b.rack.can_bus.on_transfer([&log](const io::CanTransfer& t) { log.push_back(t); });
+  RawCommand command;
+  command.commands.add(1);
+  other.send(command, 10);
+  for (const std::uint8_t usual : {20, 20}) b.flight.send(command, usual);
+  b.rack.queue.run_until(b.rack.queue.now() + 20'000);  // the other's is on the wire
+  b.flight.send(command, 5);
+  b.rack.run_ms(1);
+  ASSERT_EQ(log.size(), 4u);
+  EXPECT_EQ(log[0].losers, 1);
+  const std::uint32_t priority[] = {10, 5, 20, 20};
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(log[i].frame.id >> 24, priority[i]) << i;
+  EXPECT_EQ(log[2].frame.data[2] & 0x1F, 0);  // transfers of one identifier keep their order
+  EXPECT_EQ(log[3].frame.data[2] & 0x1F, 1);
+}
+
 TEST(CanPort, SendsOrdersFromTheirTimeOnInTheirOrder) {
   BenchRack rack;
   ASSERT_NE(rack.add({.name = "port", .type = "can_port", .bus = "can1"}), nullptr) << rack.error;

@@ -1,16 +1,19 @@
-#include "io_bridges/protocols/pod_link.hpp"
+#include "io_bridges/protocols/dronecan/pod_link.hpp"
 
 #include <algorithm>
 
+#include "base/check.hpp"
 #include "io_bridges/protocols/crc.hpp"
 
 namespace whirl::io {
 namespace {
 
 constexpr std::uint8_t kStart = 0xA5, kSample = 0x01, kFaults = 0x02, kBarometer = 0x03,
-                       kProm = 0x04, kMagnetometer = 0x05, kEsc = 0x06, kStatus = 0x81,
-                       kSetpoint = 0x82;
-constexpr std::size_t kHead = 4, kTail = 2, kStatusBytes = 44, kSetpointBytes = 4;
+                       kProm = 0x04, kMagnetometer = 0x05, kEsc = 0x06, kGps = 0x07,
+                       kGpsBaud = 0x08, kSbus = 0x09, kCppm = 0x0A, kStatus = 0x81,
+                       kSetpoint = 0x82, kGpsWritten = 0x83;
+constexpr std::size_t kHead = 4, kTail = 2, kStatusBytes = 52, kSetpointBytes = 4;
+constexpr std::uint8_t kSilent = 0x80;  // of SBUS's flags
 
 std::uint16_t checksum(std::span<const std::uint8_t> bytes) {
   std::uint16_t crc = 0xFFFF;
@@ -21,6 +24,11 @@ std::uint16_t checksum(std::span<const std::uint8_t> bytes) {
 void add_half(std::vector<std::uint8_t>& bytes, std::uint16_t value) {
   bytes.push_back(static_cast<std::uint8_t>(value & 0xFF));
   bytes.push_back(static_cast<std::uint8_t>(value >> 8));
+}
+
+void add_whole(std::vector<std::uint8_t>& bytes, std::uint32_t value) {
+  add_half(bytes, static_cast<std::uint16_t>(value & 0xFFFF));
+  add_half(bytes, static_cast<std::uint16_t>(value >> 16));
 }
 
 std::vector<std::uint8_t> sealed(std::vector<std::uint8_t> frame) {
@@ -52,10 +60,12 @@ PodStatus pod_status(std::span<const std::uint8_t> payload) {
                       &status.overlaps, &status.late_rearm}) {
     *field = walk.half();
   }
-  for (auto* field :
-       {&status.transfers, &status.bursts, &status.samples, &status.longest_turn_us}) {
+  for (auto* field : {&status.transfers, &status.bursts, &status.samples, &status.longest_turn_us,
+                      &status.now_us}) {
     *field = walk.next(4);
   }
+  status.gps_dropped = walk.half();
+  status.unsent = walk.half();
   return status;
 }
 
@@ -77,8 +87,7 @@ std::vector<std::uint8_t> pack_pod_faults(std::uint8_t sequence, bool frozen, bo
 std::vector<std::uint8_t> pack_pod_barometer(std::uint8_t sequence, std::uint8_t quantity,
                                              std::uint32_t counts) {
   std::vector<std::uint8_t> frame{kStart, kBarometer, sequence, 0, quantity};
-  add_half(frame, static_cast<std::uint16_t>(counts & 0xFFFF));
-  add_half(frame, static_cast<std::uint16_t>(counts >> 16));
+  add_whole(frame, counts);
   return sealed(std::move(frame));
 }
 
@@ -106,6 +115,45 @@ std::vector<std::uint8_t> pack_pod_esc(std::uint8_t sequence, std::uint8_t esc,
   return sealed(std::move(frame));
 }
 
+std::vector<std::uint8_t> pack_pod_gps(std::uint8_t sequence, std::uint32_t at_us,
+                                       std::span<const std::uint8_t> bytes) {
+  WHIRL_CHECK(bytes.size() <= kPodGpsBytes, bytes.size());
+  std::vector<std::uint8_t> frame{kStart, kGps, sequence, 0};
+  add_whole(frame, at_us);
+  frame.insert(frame.end(), bytes.begin(), bytes.end());
+  return sealed(std::move(frame));
+}
+
+std::vector<std::uint8_t> pack_pod_gps_baud(std::uint8_t sequence, std::uint32_t baud) {
+  std::vector<std::uint8_t> frame{kStart, kGpsBaud, sequence, 0};
+  add_whole(frame, baud);
+  return sealed(std::move(frame));
+}
+
+std::vector<std::uint8_t> pack_pod_sbus(std::uint8_t sequence, const SbusFrame& frame,
+                                        bool silent) {
+  const auto on_line = encode(frame);
+  std::vector<std::uint8_t> bytes{kStart, kSbus, sequence, 0};
+  bytes.insert(bytes.end(), on_line.begin() + 1, on_line.end() - 1);
+  if (silent) bytes.back() |= kSilent;
+  return sealed(std::move(bytes));
+}
+
+std::vector<std::uint8_t> pack_pod_cppm(std::uint8_t sequence,
+                                        std::span<const std::uint16_t> steps) {
+  std::vector<std::uint8_t> frame{kStart, kCppm, sequence, 0};
+  for (const std::uint16_t step : steps) add_half(frame, step);
+  return sealed(std::move(frame));
+}
+
+dronecan::PodFrame pod_message(std::span<const std::uint8_t> frame) {
+  dronecan::PodFrame message;
+  message.kind = frame[1];
+  message.sequence = frame[2];
+  for (const std::uint8_t byte : frame.subspan(kHead, frame[3])) message.payload.add(byte);
+  return message;
+}
+
 void PodLinkReader::add(std::uint8_t byte) {
   if (bytes_.empty() && byte != kStart) return;
   bytes_.push_back(byte);
@@ -118,15 +166,34 @@ void PodLinkReader::frame() {
   const auto all = std::span<const std::uint8_t>(bytes_);
   const std::size_t end = all.size() - kTail;
   const bool good = checksum(all.subspan(1, end - 1)) == (all[end] | all[end + 1] << 8);
-  if (good && all[1] == kStatus && all[3] == kStatusBytes) {
-    return on_status_(pod_status(all.subspan(kHead, kStatusBytes)));
+  if (!good || !on_frame(all[1], all.subspan(kHead, all[3]))) ++damaged_;
+}
+
+void PodLinkReader::add(const dronecan::PodFrame& message) {
+  if (!on_frame(message.kind, message.payload.all())) ++damaged_;
+}
+
+void PodLinkReader::add(const dronecan::PodSetpoint& message) {
+  if (on_setpoint_) on_setpoint_({message.esc, message.valid != 0, message.value});
+}
+
+// False: of no kind, or not as long as its kind.
+bool PodLinkReader::on_frame(std::uint8_t kind, std::span<const std::uint8_t> payload) {
+  constexpr std::size_t kTime = 4;
+  Walk walk{payload};
+  if (kind == kStatus && payload.size() == kStatusBytes) {
+    on_status_(pod_status(payload));
+  } else if (kind == kSetpoint && payload.size() == kSetpointBytes) {
+    const auto esc = static_cast<std::uint8_t>(walk.next(1));
+    const bool valid = walk.next(1) != 0;
+    if (on_setpoint_) on_setpoint_({esc, valid, walk.half()});
+  } else if (kind == kGpsWritten && payload.size() > kTime) {
+    const std::uint32_t t_us = walk.next(kTime);
+    if (on_gps_written_) on_gps_written_({t_us, walk.bytes});
+  } else {
+    return false;
   }
-  if (good && all[1] == kSetpoint && all[3] == kSetpointBytes) {
-    const auto value = static_cast<std::uint16_t>(all[kHead + 2] | all[kHead + 3] << 8);
-    if (on_setpoint_) on_setpoint_({all[kHead], all[kHead + 1] != 0, value});
-    return;
-  }
-  ++damaged_;
+  return true;
 }
 
 }  // namespace whirl::io

@@ -1,12 +1,15 @@
 // The frames between a host and the pod on its UART: 0xA5, kind, sequence, length, payload, CRC-16/MCRF4XX
-// over kind to payload, low byte first.
+// over kind to payload, low byte first. Over CAN they are messages: dronecan/pod.hpp.
 //
 //   To the pod   0x01 sample: flags, accelerometer x y z, temperature, gyro x y z (int16, counts)
 //                0x02 faults: flags (bit 0 frozen, bit 1 no supply), identity (0: its own)
 //                0x03 barometer: quantity (0 pressure, 1 temperature), counts; 0x04 its PROM
 //                0x05 magnetometer: x, y, z; 0x06 an ESC's status: number, mA, rpm, flags
-//   From it      0x81 status (44 bytes): settings, what was lost or late, and counters
+//                0x07 bytes of the GPS, from when on by the pod's clock (us; 0: at once); 0x08 its baud rate
+//                0x09 SBUS: channels as on the line and flags; 0x0A CPPM: lengths of its channels
+//   From it      0x81 status (52 bytes): settings, what was lost or late, and counters
 //                0x82 a set-point came: number of the ESC, 1: valid, value
+//                0x83 bytes that the flight controller told the GPS, and when the pod tells it
 //   Errors       a damaged or unknown frame is skipped and counted
 #pragma once
 #include <array>
@@ -14,6 +17,9 @@
 #include <functional>
 #include <span>
 #include <vector>
+
+#include "io_bridges/protocols/dronecan/pod.hpp"
+#include "io_bridges/protocols/sbus.hpp"
 
 namespace whirl::io {
 
@@ -28,6 +34,8 @@ struct PodStatus {
   std::uint32_t flagged = 0;  // bit 0: the newest sample; set: it was lost or late
   std::uint16_t lost = 0, late = 0, damaged = 0, oddities = 0, overlaps = 0, late_rearm = 0;
   std::uint32_t transfers = 0, bursts = 0, samples = 0, longest_turn_us = 0;
+  std::uint32_t now_us = 0;  // the pod's clock
+  std::uint16_t gps_dropped = 0, unsent = 0;
 };
 
 std::vector<std::uint8_t> pack_pod_sample(std::uint8_t sequence,
@@ -45,10 +53,29 @@ std::vector<std::uint8_t> pack_pod_esc(std::uint8_t sequence, std::uint8_t esc,
                                        std::int16_t current_mA, std::uint16_t speed_rpm,
                                        std::uint8_t flags);
 
+// At most kPodGpsBytes; at_us: see above.
+inline constexpr std::size_t kPodGpsBytes = 44;
+std::vector<std::uint8_t> pack_pod_gps(std::uint8_t sequence, std::uint32_t at_us,
+                                       std::span<const std::uint8_t> bytes);
+std::vector<std::uint8_t> pack_pod_gps_baud(std::uint8_t sequence, std::uint32_t baud);
+// Of an SBUS frame the channels and flags; `silent`: nothing goes out.
+std::vector<std::uint8_t> pack_pod_sbus(std::uint8_t sequence, const SbusFrame& frame,
+                                        bool silent = false);
+// In steps of 0.5 us; none: nothing goes out.
+std::vector<std::uint8_t> pack_pod_cppm(std::uint8_t sequence,
+                                        std::span<const std::uint16_t> steps);
+// A frame of the UART as the message that carries it over CAN. Pre: whole; no sample.
+dronecan::PodFrame pod_message(std::span<const std::uint8_t> frame);
+
 struct PodSetpoint {
   std::uint8_t esc = 0;  // 0..3
   bool valid = false;
   std::uint16_t value = 0;
+};
+
+struct PodGpsWritten {
+  std::uint32_t t_us = 0;  // the pod's clock
+  std::span<const std::uint8_t> bytes;
 };
 
 class PodLinkReader {
@@ -56,14 +83,21 @@ class PodLinkReader {
   explicit PodLinkReader(std::function<void(const PodStatus&)> on_status)
       : on_status_(std::move(on_status)) {}
   void on_setpoint(std::function<void(const PodSetpoint&)> sink) { on_setpoint_ = std::move(sink); }
-  void add(std::uint8_t byte);
+  void on_gps_written(std::function<void(const PodGpsWritten&)> sink) {
+    on_gps_written_ = std::move(sink);
+  }
+  void add(std::uint8_t byte);                  // of the UART
+  void add(const dronecan::PodFrame& message);  // of CAN
+  void add(const dronecan::PodSetpoint& message);
   std::uint64_t damaged() const { return damaged_; }
 
  private:
   void frame();
+  bool on_frame(std::uint8_t kind, std::span<const std::uint8_t> payload);
 
   std::function<void(const PodStatus&)> on_status_;
   std::function<void(const PodSetpoint&)> on_setpoint_;
+  std::function<void(const PodGpsWritten&)> on_gps_written_;
   std::vector<std::uint8_t> bytes_;
   std::uint64_t damaged_ = 0;
 };

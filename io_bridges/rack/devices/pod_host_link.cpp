@@ -1,0 +1,78 @@
+#include "io_bridges/rack/devices/pod_host_link.hpp"
+
+#include "io_bridges/protocols/dronecan/imu_samples.hpp"
+#include "io_bridges/protocols/dronecan/pod.hpp"
+
+namespace whirl::rack {
+namespace {
+
+constexpr double kPod_baud = 3e6;
+constexpr std::uint8_t kUrgent = 6, kUsual = 16, kHostNode = 100;
+
+}  // namespace
+
+std::vector<DeviceKey> pod_link_keys() {
+  DeviceKey uart = quantity_key("params.uart", Dimension::none, "", {1.0, 6.0}, "the host's link");
+  DeviceKey can = quantity_key("params.can", Dimension::none, "", {0.0, 2.0},
+                               "the host's link in its place; 0: none");
+  uart.kind = can.kind = KeyKind::whole;
+  return {uart.with(1.0), can.with(0.0),
+          word_key("params.sample", "counts or imu14 or imu16",
+                   "how a sample is told; the last two over CAN only")
+              .with(std::string("counts"))};
+}
+
+PodHostLink::PodHostLink(DeviceSlot& slot, io::PodLinkReader& reader)
+    : queue_(slot.rack().events()),
+      reader_(reader),
+      uart_(slot.whole("params.uart")),
+      line_(queue_, {.baud = kPod_baud},
+            [this](const io::UartByte& byte, const io::UartFormat& format) {
+              UartPeer::send(byte, format);
+            }) {
+  const std::uint16_t can = slot.whole("params.can");
+  io::CanBus* bus = can == 0 ? nullptr : slot.rack().can(can);
+  if (bus == nullptr) {
+    std::ignore = slot.rack().join_uart(uart_, *this);
+    return;
+  }
+  const std::string sample = slot.text("params.sample");
+  if (sample == "imu14") sample_ = Sample::imu14;
+  if (sample == "imu16") sample_ = Sample::imu16;
+  node_.emplace(queue_, *bus,
+                io::DroneCanNode::Setup{.name = slot.name(),
+                                        .info = "org.whirlstand.pod_host",
+                                        .number = slot.number(),
+                                        .node_id = kHostNode});
+  namespace dc = io::dronecan;
+  node_->on<dc::PodFrame>(
+      [this](const dc::PodFrame& m, Nanoseconds, Nanoseconds) { reader_.add(m); });
+  node_->on<dc::PodSetpoint>(
+      [this](const dc::PodSetpoint& m, Nanoseconds, Nanoseconds) { reader_.add(m); });
+}
+
+void PodHostLink::send(const std::vector<std::uint8_t>& frame) {
+  if (!over_can()) return line_.add(frame);
+  node_->send(io::pod_message(frame), kUsual);
+}
+
+void PodHostLink::send_sample(std::uint8_t number, const std::array<std::int16_t, 7>& counts) {
+  if (!over_can()) return line_.add(io::pack_pod_sample(number, counts));
+  if (sample_ == Sample::imu14) return send_imu<io::dronecan::Imu14>(counts);
+  if (sample_ == Sample::imu16) return send_imu<io::dronecan::Imu16>(counts);
+  node_->send(io::dronecan::PodSample{number, counts}, kUrgent);
+}
+
+template <typename Imu>
+void PodHostLink::send_imu(const std::array<std::int16_t, 7>& counts) {
+  constexpr int kCoarser = std::is_same_v<Imu, io::dronecan::Imu14> ? 4 : 1;
+  Imu imu;
+  for (unsigned i = 0; i < 3; ++i) {
+    imu.rate[i] = static_cast<std::int16_t>(counts[4 + i] / kCoarser);
+    imu.acceleration[i] = static_cast<std::int16_t>(counts[i] / kCoarser);
+  }
+  imu.time = static_cast<std::uint16_t>(queue_.now() / Imu::kTime_step_ns);
+  node_->send(imu, kUrgent);
+}
+
+}  // namespace whirl::rack

@@ -1,0 +1,43 @@
+// A host's end of the link to a pod, over the pod's UART at 3 Mbaud or its CAN at 1 Mbit/s.
+#pragma once
+#include <optional>
+#include <vector>
+
+#include "io_bridges/devices/dronecan_node.hpp"
+#include "io_bridges/devices/uart_transmitter.hpp"
+#include "io_bridges/protocols/dronecan/pod_link.hpp"
+#include "io_bridges/rack/device_type.hpp"
+
+namespace whirl::rack {
+
+std::vector<DeviceKey> pod_link_keys();  // params.uart, .can, .sample
+
+class PodHostLink final : io::UartPeer {
+ public:
+  // What the pod tells goes to `reader`, which must live as long.
+  PodHostLink(DeviceSlot& slot, io::PodLinkReader& reader);
+
+  bool over_can() const { return node_.has_value(); }
+  std::uint16_t uart() const { return uart_; }
+  io::DroneCanNode& node() { return *node_; }         // Pre: over_can()
+  void send(const std::vector<std::uint8_t>& frame);  // as pod_link.hpp packs it
+  // As Imu14 or Imu16 for a part that is set to 16 g and 2000 deg/s: the temperature is lost.
+  void send_sample(std::uint8_t number, const std::array<std::int16_t, 7>& counts);
+
+ private:
+  void receive(const io::UartByte& byte, const io::UartFormat&, Nanoseconds) override {
+    reader_.add(byte.value);
+  }
+
+  template <typename Imu>
+  void send_imu(const std::array<std::int16_t, 7>& counts);
+
+  io::EventQueue& queue_;
+  io::PodLinkReader& reader_;
+  std::uint16_t uart_;
+  enum class Sample : std::uint8_t { counts, imu14, imu16 } sample_ = Sample::counts;
+  io::UartTransmitter line_;
+  std::optional<io::DroneCanNode> node_;
+};
+
+}  // namespace whirl::rack
