@@ -69,7 +69,7 @@ class I2c final : public WordBlock, private io::I2cTarget {
   void act();  // the software asked for START or STOP while the clock is held
   void begin_bits(Phase phase, int bits);
   void after_bits(int bits);  // the next step, from when the clock may run on
-  void step();  // the end of what `phase_` says
+  void step();                // the end of what `phase_` says
   void started();
   void address_sent();
   void byte_sent();

@@ -7,6 +7,7 @@
 #include <map>
 #include <sstream>
 
+#include "base/near.hpp"
 #include "firmware/drivers/cppm_receiver.hpp"
 #include "firmware/drivers/sbus_receiver.hpp"
 #include "firmware/drivers/ublox_gps.hpp"
@@ -205,8 +206,9 @@ TEST(PodOutputs, TheFlightImagesReceiversReadWhatTheHostTold) {
   EXPECT_LT(run.figures["sbus_period_most_ns"], 14 * kMs + 100'000);
   // A timer makes the edges: nothing but the rounding of its clock, which divides evenly.
   EXPECT_LE(run.figures["cppm_off_ns"], 1);
-  EXPECT_NEAR(static_cast<double>(run.figures["cppm_pulse_least_ns"]), 300'000.0, 1.0);
-  EXPECT_NEAR(static_cast<double>(run.figures["cppm_frame_most_ns"]), 22.5e6, 1.0);
+  const auto rounding = stated(1, "ns, of the clock's edges");
+  EXPECT_TRUE(near(run.figures["cppm_pulse_least_ns"], 300'000, rounding));
+  EXPECT_TRUE(near(run.figures["cppm_frame_most_ns"], 22'500'000, rounding));
 }
 
 // As a receiver does that hears its transmitter no more (radio_link.hpp): lost after 60 ms, failsafe after 500.
@@ -274,7 +276,8 @@ void expect_fixes(const GpsClient& gps) {
   for (std::size_t i = 1; i < gps.fixes.size(); ++i) {
     const auto apart_us = static_cast<std::int64_t>(gps.fixes[i].received_us) -
                           static_cast<std::int64_t>(gps.fixes[i - 1].received_us);
-    EXPECT_LT(std::abs(apart_us - 200'000), 2'000) << i;  // the host's millisecond, and one more
+    EXPECT_TRUE(near(apart_us, 200'000, stated(1'999, "us: the host's millisecond, and one more")))
+        << i;
   }
   const fw::GpsFix& fix = gps.fixes.back();
   EXPECT_TRUE(fix.usable());
