@@ -91,6 +91,7 @@ TEST(EscOnCan, TellsItsStateTwentyTimesASecond) {
 TEST(NodeOnCan, WhatLosesTheArbitrationLetsAMoreUrgentOneOfItsNodePass) {
   Bench b;
   io::DroneCanNode other(b.rack.queue, b.rack.can_bus, {"other", "org.test", -1, 11, 1e6});
+  b.rack.run_ms(1);  // it has heard the idle bus
   std::vector<io::CanTransfer> log;
   b.rack.can_bus.on_transfer([&log](const io::CanTransfer& t) { log.push_back(t); });
   RawCommand command;
