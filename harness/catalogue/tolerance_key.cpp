@@ -4,9 +4,8 @@ namespace whirl::catalogue {
 
 using plant::ToleranceClass;
 
-std::map<std::string, ToleranceClass> read_tolerance(const lua::Table& t,
-                                                     std::span<const char* const> groups) {
-  std::map<std::string, ToleranceClass> all;
+plant::Tolerances read_tolerance(const lua::Table& t, std::span<const char* const> groups) {
+  plant::Tolerances all;
   if (!t.has("tolerance")) return all;
   const auto chosen = [](const lua::Table& in, const char* key) {
     const auto words = {plant::name(ToleranceClass::none), plant::name(ToleranceClass::typical),

@@ -3,17 +3,14 @@
 //   tolerance = "typical"
 //   tolerance = { dividers = "worst", rest = "typical" }     -- without `rest`: none
 #pragma once
-#include <map>
 #include <span>
-#include <string>
 
 #include "harness/lua/table.hpp"
-#include "plant/parts/spread.hpp"
+#include "plant/parts/part_number.hpp"
 
 namespace whirl::catalogue {
 
 // Complaints stay with the table.
-std::map<std::string, plant::ToleranceClass> read_tolerance(const lua::Table& t,
-                                                            std::span<const char* const> groups);
+plant::Tolerances read_tolerance(const lua::Table& t, std::span<const char* const> groups);
 
 }  // namespace whirl::catalogue

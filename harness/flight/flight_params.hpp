@@ -11,7 +11,7 @@
 #include "harness/flight/native_esc.hpp"
 #include "harness/flight/surroundings.hpp"
 #include "harness/world/drawn_part.hpp"
-#include "plant/parts/spread.hpp"
+#include "plant/parts/part_number.hpp"
 #include "plant/rotor/blade.hpp"
 #include "plant/vehicle.hpp"
 
@@ -40,7 +40,7 @@ struct FlightParams {
   BoardEars ears;
   // One copy of the hardware (vehicle_parts.hpp): classes by group (plant/parts/vehicle.hpp), none where
   // missing, and what came of it beside the vehicle's own numbers.
-  std::map<std::string, plant::ToleranceClass> tolerance;
+  plant::Tolerances tolerance;
   std::map<std::string, double> imu;  // by the board's keys of an mpu6000
   Eigen::Vector3d imu_place_m = Eigen::Vector3d::Zero(), imu_turn_rad = Eigen::Vector3d::Zero();
   double hse_error = 0.0;

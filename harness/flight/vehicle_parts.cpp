@@ -16,12 +16,11 @@ using Use = std::function<void(const std::string& name, double value)>;
 void draw(const FlightParams& params, std::span<const PartNumber> numbers, const std::string& owner,
           std::uint64_t seed, std::vector<DrawnPart>& drawn, const Use& use) {
   for (const PartNumber& part : numbers) {
-    const auto chosen = params.tolerance.find(part.group);
-    if (chosen == params.tolerance.end() || chosen->second == plant::ToleranceClass::none) continue;
     const std::string name = part.name, told = owner.empty() ? name : owner + " " + name;
-    const double value = plant::draw(part.spread, chosen->second, seed, "part." + told);
-    drawn.push_back({told, value, part.unit});
-    use(name, value);
+    const auto value = plant::draw(part, params.tolerance, seed, "part." + told);
+    if (!value) continue;
+    drawn.push_back({told, *value, part.unit});
+    use(name, *value);
   }
 }
 

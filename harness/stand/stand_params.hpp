@@ -1,7 +1,6 @@
 // What a thrust stand is made of: what turns, what feeds it, what commands it.
 #pragma once
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -10,7 +9,7 @@
 #include "harness/stand/stage_params.hpp"
 #include "harness/world/drawn_part.hpp"
 #include "plant/battery/battery_params.hpp"
-#include "plant/parts/spread.hpp"
+#include "plant/parts/part_number.hpp"
 #include "plant/rotor/blade.hpp"
 #include "plant/sensors/load_cell.hpp"
 #include "plant/sensors/meter.hpp"
@@ -25,9 +24,8 @@ struct StandParams {
   plant::MeterParams anemometer;
   StageParams stage;                        // what differs from the board's own motor and shunt
   double hse_error = 0.0, hsi_error = 0.0;  // of the board's clocks, beside what its file says
-  std::map<std::string, plant::ToleranceClass>
-      tolerance;                 // by group (plant/parts/esc_stand.hpp); none where missing
-  std::vector<DrawnPart> drawn;  // what came of it (stand_parts.hpp)
+  plant::Tolerances tolerance;              // by group: plant/parts/esc_stand.hpp
+  std::vector<DrawnPart> drawn;             // what came of it (stand_parts.hpp)
   EscMasterParams esc;
   bool commands = true;  // false: somebody else commands the ESC (whirl standin)
 };

@@ -88,12 +88,12 @@ bool joined(const std::string& name) {
 void draw_parts(StandParams& params, const BoardDescription& board, std::uint64_t seed) {
   std::map<std::string, double> drawn;
   for (const plant::PartNumber& part : plant::esc_stand_numbers()) {
-    const auto chosen = params.tolerance.find(part.group);
-    if (chosen == params.tolerance.end() || chosen->second == plant::ToleranceClass::none) continue;
     const std::string name = part.name;
     if (!part.of_nominal && stated(params, name)) continue;
     const std::string stream = "part." + std::to_string(params.esc.motor) + "." + name;
-    double value = plant::draw(part.spread, chosen->second, seed, stream);
+    const auto copy = plant::draw(part, params.tolerance, seed, stream);
+    if (!copy) continue;
+    double value = *copy;
     params.drawn.push_back({name, value, part.unit});
     drawn[name] = value;
     if (part.of_nominal) value = nominal(params, board, name) * (1.0 + value);

@@ -1,5 +1,7 @@
 #include "plant/parts/vehicle.hpp"
 
+#include "plant/parts/motor_numbers.hpp"
+
 namespace whirl::plant {
 namespace {
 
@@ -10,37 +12,12 @@ constexpr double kG_mps2 = 9.80665, kDeg_rad = 3.14159265358979323846 / 180.0;
 constexpr const char* kGroups[] = {"motors", "rotors", "body", "imu", "clock"};
 
 constexpr PartNumber kEach[] = {
-    {"motors",
-     "torque_constant",
-     "",
-     true,
-     {Law::normal, 0.0, 0.02, 0.05},
-     "makers' Kv, within 5 %"},
-    {"motors",
-     "resistance",
-     "",
-     true,
-     {Law::normal, 0.0, 0.04, 0.10},
-     "estimate: winding 3 %, switches' 20 % of a third of it, plugs and solder"},
-    {"motors",
-     "no_load_current",
-     "",
-     true,
-     {Law::normal, 0.0, 0.10, 0.30},
-     "makers' no-load currents of one type differ by a tenth"},
-    {"motors", "inertia", "", true, {Law::normal, 0.0, 0.02, 0.05}, "propellers weigh within 5 %"},
-    {"motors",
-     "heat_capacity",
-     "J/K",
-     false,
-     {Law::normal, 18.0, 2.0, 5.0},
-     "estimate: 12 g of copper and 30 g of iron"},
-    {"motors",
-     "bearing_share",
-     "",
-     false,
-     {Law::normal, 0.3, 0.05, 0.15},
-     "estimate: grease of two 3 mm bearings beside the iron"},
+    parts::torque_constant("motors"),
+    parts::resistance("motors"),
+    parts::no_load_current("motors"),
+    parts::inertia("motors"),
+    parts::heat_capacity("motors"),
+    parts::bearing_share("motors"),
     {"rotors",
      "thrust",
      "",
@@ -120,12 +97,7 @@ constexpr PartNumber kVehicle[] = {
      false,
      {Law::level, 0.02 / 3.0, 0.0, 0.02 / 3.0},
      "[MPU6000] 6.1: 2 %"},
-    {"clock",
-     "hse_error",
-     "",
-     false,
-     {Law::normal, 0.0, 15e-6, 50e-6},
-     "crystal: 30 ppm cut, 20 ppm over temperature"},
+    parts::hse_error("clock"),
 };
 
 }  // namespace
