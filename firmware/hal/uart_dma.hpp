@@ -3,12 +3,30 @@
 #include <algorithm>
 #include <bit>
 
+#include "firmware/hal/clock.hpp"
 #include "firmware/hal/interrupts.hpp"
 #include "firmware/hal/pins.hpp"
 #include "firmware/hal/registers.hpp"
 #include "firmware/hal/uart_link.hpp"
 
 namespace fw::hal {
+
+// USART6 with DMA2, for a GPS or what plays one.
+template <typename L, typename TxPin, typename RxPin>
+struct Usart6Port {
+  using Lock = L;
+  using Block = hw::USART6;
+  using RxDma = hw::Usart6RxDma;
+  using TxDma = hw::Usart6TxDma;
+  using Tx = TxPin;
+  using Rx = RxPin;
+  static constexpr std::uint32_t kAf = 8, kDmaChannel = 5, kClock_Hz = kPclk2_Hz;
+  static constexpr hw::Irq kSent = hw::Irq::DMA2_Stream6;
+  static void start_clocks() {
+    hw::RCC::AHB1ENR::set(hw::RCC::GPIOCEN | hw::RCC::DMA2EN);
+    hw::RCC::APB2ENR::set(hw::RCC::USART6EN);
+  }
+};
 
 template <typename Port>
 void UartLink<Port>::init(std::uint32_t baud) {

@@ -23,20 +23,7 @@ struct RadioUart {
   }
 };
 
-struct GpsUart {
-  using Lock = InterruptLock;
-  using Block = USART6;
-  using RxDma = Usart6RxDma;
-  using TxDma = Usart6TxDma;
-  using Tx = GpsTx;
-  using Rx = GpsRx;
-  static constexpr std::uint32_t kAf = 8, kDmaChannel = 5, kClock_Hz = kPclk2_Hz;
-  static constexpr Irq kSent = Irq::DMA2_Stream6;
-  static void start_clocks() {
-    RCC::AHB1ENR::set(RCC::GPIOCEN | RCC::DMA2EN);
-    RCC::APB2ENR::set(RCC::USART6EN);
-  }
-};
+struct GpsUart : Usart6Port<InterruptLock, GpsTx, GpsRx> {};
 
 constinit UartLink<RadioUart> radio;
 constinit UartLink<GpsUart> gps_uart;

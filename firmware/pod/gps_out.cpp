@@ -9,22 +9,7 @@
 
 namespace fw::hal {
 
-using namespace hw;
-
-struct PodGpsUart {
-  using Lock = PriorityLock<kPriorityUart>;
-  using Block = USART6;
-  using RxDma = Usart6RxDma;
-  using TxDma = Usart6TxDma;
-  using Tx = pod::GpsTx;
-  using Rx = pod::GpsRx;
-  static constexpr std::uint32_t kAf = 8, kDmaChannel = 5, kClock_Hz = kPclk2_Hz;
-  static constexpr Irq kSent = Irq::DMA2_Stream6;
-  static void start_clocks() {
-    RCC::AHB1ENR::set(RCC::GPIOCEN | RCC::DMA2EN);
-    RCC::APB2ENR::set(RCC::USART6EN);
-  }
-};
+struct PodGpsUart : Usart6Port<PriorityLock<kPriorityUart>, pod::GpsTx, pod::GpsRx> {};
 
 template class UartLink<PodGpsUart>;
 
