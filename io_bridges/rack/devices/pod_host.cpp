@@ -100,7 +100,6 @@ class PodHostDevice final : public RackDevice {
     sample_.in(kStart_ns);
     sbus_.in(kStart_ns);
     cppm_.in(kStart_ns);
-    queue_baud_ = true;
   }
 
   std::vector<Intake> intakes() const override {
@@ -108,9 +107,7 @@ class PodHostDevice final : public RackDevice {
   }
   void on_message(const io::Reader& message) override {
     if (message.header().port == gps_uart_) return gps_line_.say(message.payload());
-    std::string line(message.payload().begin(), message.payload().end());
-    line.erase(line.find_last_not_of("\r\n") + 1);
-    answer(line);
+    answer(PodHostLink::asked(message));
   }
 
  private:
@@ -118,7 +115,7 @@ class PodHostDevice final : public RackDevice {
 
   void sample() {
     sample_.in(kMs);
-    if (std::exchange(queue_baud_, false)) link_.send(io::pack_pod_gps_baud(gps_number_++, rate_));
+    if (number_ == 0) link_.send(io::pack_pod_gps_baud(gps_number_++, rate_));
     flush_gps();
     ++number_;
     std::array<std::int16_t, 7> counts{};
@@ -182,15 +179,10 @@ class PodHostDevice final : public RackDevice {
   // ---- What is asked of it
 
   void answer(const std::string& name) {
-    const auto say = [&](auto value) {
-      const std::string line = name + " " + std::to_string(value) + "\n";
-      happened_.add(io::Kind::uart_received, link_.uart(), queue_.now(), line.data(),
-                    static_cast<std::uint32_t>(line.size()));
-    };
     for (const auto& [known, value] : figures()) {
-      if (known == name) return say(value);
+      if (known == name) return link_.tell(name, value);
     }
-    say(-1);
+    link_.tell(name, -1);
   }
   std::vector<std::pair<std::string, std::int64_t>> figures() const {
     const auto whole = [](auto value) { return static_cast<std::int64_t>(value); };
@@ -246,7 +238,6 @@ class PodHostDevice final : public RackDevice {
   unsigned sbus_step_ = 0, cppm_step_ = 0;
   std::uint8_t sbus_number_ = 0, cppm_number_ = 0, gps_number_ = 0;
   std::uint32_t rate_ = 0;
-  bool queue_baud_ = false;
   std::vector<std::uint8_t> gps_bytes_;
 };
 

@@ -24,6 +24,7 @@ std::vector<DeviceKey> pod_link_keys() {
 
 PodHostLink::PodHostLink(DeviceSlot& slot, io::PodLinkReader& reader)
     : queue_(slot.rack().events()),
+      happened_(slot.rack().happened()),
       reader_(reader),
       uart_(slot.whole("params.uart")),
       line_(queue_, {.baud = kPod_baud},
@@ -61,6 +62,18 @@ void PodHostLink::send_sample(std::uint8_t number, const std::array<std::int16_t
   if (sample_ == Sample::imu14) return send_imu<io::dronecan::Imu14>(counts);
   if (sample_ == Sample::imu16) return send_imu<io::dronecan::Imu16>(counts);
   node_->send(io::dronecan::PodSample{number, counts}, kUrgent);
+}
+
+std::string PodHostLink::asked(const io::Reader& message) {
+  std::string line(message.payload().begin(), message.payload().end());
+  line.erase(line.find_last_not_of("\r\n") + 1);
+  return line;
+}
+
+void PodHostLink::tell(const std::string& name, std::int64_t value) {
+  const std::string line = name + " " + std::to_string(value) + "\n";
+  happened_.add(io::Kind::uart_received, uart_, queue_.now(), line.data(),
+                static_cast<std::uint32_t>(line.size()));
 }
 
 template <typename Imu>

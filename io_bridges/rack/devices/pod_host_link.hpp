@@ -18,11 +18,14 @@ class PodHostLink final : io::UartPeer {
   PodHostLink(DeviceSlot& slot, io::PodLinkReader& reader);
 
   bool over_can() const { return node_.has_value(); }
-  std::uint16_t uart() const { return uart_; }
-  io::DroneCanNode& node() { return *node_; }         // Pre: over_can()
+  std::uint16_t uart() const { return uart_; }        // of the link; its messages ask for figures
   void send(const std::vector<std::uint8_t>& frame);  // as pod_link.hpp packs it
   // As Imu14 or Imu16 for a part that is set to 16 g and 2000 deg/s: the temperature is lost.
   void send_sample(std::uint8_t number, const std::array<std::int16_t, 7>& counts);
+
+  // Who judges asks for a figure by its name, a line on uart(), and is answered there.
+  static std::string asked(const io::Reader& message);
+  void tell(const std::string& name, std::int64_t value);
 
  private:
   void receive(const io::UartByte& byte, const io::UartFormat&, Nanoseconds) override {
@@ -33,6 +36,7 @@ class PodHostLink final : io::UartPeer {
   void send_imu(const std::array<std::int16_t, 7>& counts);
 
   io::EventQueue& queue_;
+  io::Batch& happened_;
   io::PodLinkReader& reader_;
   std::uint16_t uart_;
   enum class Sample : std::uint8_t { counts, imu14, imu16 } sample_ = Sample::counts;

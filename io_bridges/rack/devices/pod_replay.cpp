@@ -21,9 +21,13 @@
 namespace whirl::rack {
 namespace {
 
-constexpr Nanoseconds kBehind_ns = 2'000'000;        // the replay's clock after the recording's
-constexpr Nanoseconds kReadyAtMost_ns = 800'000;     // then the controller would do without
-constexpr Nanoseconds kStatusAfter_ns = 75'000'000;  // the pod tells 20 times a second at least
+constexpr Nanoseconds kBehind_ns = 2'000'000;  // the replay's clock after the recording's
+// When the controller would do without a data-ready, and how long the pod's last status may be off: it tells
+// 100 times a second over the UART, 20 over CAN, where a sample is three frames behind one of others.
+struct Patience {
+  Nanoseconds ready_ns, status_ns;
+};
+constexpr Patience kOver_uart{500'000, 25'000'000}, kOver_can{800'000, 75'000'000};
 constexpr std::uint8_t kBurst = 0xBB;
 
 // Of the answers of one kind.
@@ -55,7 +59,6 @@ class PodReplayDevice final : public RackDevice {
  public:
   PodReplayDevice(DeviceSlot& slot, std::vector<RecordedTransfer> traffic)
       : queue_(slot.rack().events()),
-        happened_(slot.rack().happened()),
         traffic_(std::move(traffic)),
         register_Hz_(slot.quantity("params.register_rate")),
         burst_Hz_(slot.quantity("params.burst_rate")),
@@ -74,8 +77,7 @@ class PodReplayDevice final : public RackDevice {
 
   std::vector<Intake> intakes() const override { return {{io::Kind::uart_frame, link_.uart()}}; }
   void on_message(const io::Reader& message) override {
-    std::string line(message.payload().begin(), message.payload().end());
-    line.erase(line.find_last_not_of("\r\n") + 1);
+    const std::string line = PodHostLink::asked(message);
     asked_ = true;
     if (ended_ || line != "done") return answer(line);
     done_asked_ = true;
@@ -83,10 +85,11 @@ class PodReplayDevice final : public RackDevice {
 
  private:
   const RecordedTransfer& recorded() const { return traffic_[at_]; }
+  const Patience& patience() const { return link_.over_can() ? kOver_can : kOver_uart; }
 
   // When the next transfer is due, and the sample before it.
   void prepare() {
-    if (at_ == traffic_.size()) return end_.in(kStatusAfter_ns);
+    if (at_ == traffic_.size()) return end_.in(patience().status_ns);
     const RecordedTransfer& t = recorded();
     if (t.ready_ns < 0) {
       const Nanoseconds apart_ns = at_ == 0 ? 0 : t.start_ns - traffic_[at_ - 1].start_ns;
@@ -94,7 +97,7 @@ class PodReplayDevice final : public RackDevice {
     }
     rose_ns_ = io::kNever;
     sample_.at(t.ready_ns + kBehind_ns);
-    next_.at(t.ready_ns + kBehind_ns + kReadyAtMost_ns);
+    next_.at(t.ready_ns + kBehind_ns + patience().ready_ns);
   }
 
   void send_sample() {
@@ -191,23 +194,17 @@ class PodReplayDevice final : public RackDevice {
     add("done", 1.0);
     if (done_asked_) answer("done");
     if (asked_) return;
-    for (const auto& [name, value] : figures_) say(name, value);
+    for (const auto& [name, value] : figures_) link_.tell(name, value);
   }
 
   void answer(const std::string& name) {
     for (const auto& [known, value] : figures_) {
-      if (known == name) return say(name, value);
+      if (known == name) return link_.tell(name, value);
     }
-    say("unknown_or_not_yet", 0);
-  }
-  void say(const std::string& name, long long value) {
-    const std::string line = name + " " + std::to_string(value) + "\n";
-    happened_.add(io::Kind::uart_received, link_.uart(), queue_.now(), line.data(),
-                  static_cast<std::uint32_t>(line.size()));
+    link_.tell("unknown_or_not_yet", 0);
   }
 
   io::EventQueue& queue_;
-  io::Batch& happened_;
   std::vector<RecordedTransfer> traffic_;
   std::size_t at_ = 0;
   double register_Hz_, burst_Hz_;  // 0: as recorded
