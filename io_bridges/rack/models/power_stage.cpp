@@ -114,13 +114,18 @@ void PowerStage::hold_or_turn() {
   motor_.set_load({.quadratic_Nm_s2 = load_.torque_Nm_s2, .constant_Nm = constant_Nm});
 }
 
-// The capacitor between supply and bridge, exactly for a bridge that draws the same current all the time. Source
-// and bridge meet outside of its series resistance.
-PowerStage::Feed PowerStage::feed(double bridge_A, double dt_s) const {
+// Share of its way to where it settles that the capacitor between supply and bridge goes in a step.
+double PowerStage::way_gone(double dt_s) const {
+  return -std::expm1(-dt_s /
+                     ((load_.source_ohm + params_.bus_esr_ohm) * params_.bus_capacitance_F));
+}
+
+// Exactly, for a bridge that draws the same current all the time. Source and bridge meet outside of the
+// capacitor's series resistance.
+PowerStage::Feed PowerStage::feed(double bridge_A, double dt_s, double gone) const {
   const double R = load_.source_ohm, E = params_.bus_esr_ohm, C = params_.bus_capacitance_F;
   if (R <= 0.0) return {capacitor_V_, capacitor_V_, 0.0, 0.0};  // nothing feeds it yet
   const double tau_s = (R + E) * C;
-  const double gone = -std::expm1(-dt_s / tau_s);  // of the way to where it settles
   const double settled_V = load_.source_V - R * bridge_A;
   const double first_A = (settled_V - capacitor_V_) / (R + E);  // into the capacitor
   const double charge_C = first_A * tau_s * gone;
@@ -146,7 +151,8 @@ double PowerStage::seen_V() const {
 void PowerStage::run(double dt_s) {
   hold_or_turn();
   motor_.set_bus(bus_V_);
-  const double fed_V = feed(motor_.coming_bus_current_A(dt_s), dt_s).mean_V;
+  const double gone = way_gone(dt_s);
+  const double fed_V = feed(motor_.coming_bus_current_A(dt_s), dt_s, gone).mean_V;
   motor_.set_bus(fed_V);
   const plant::MotorBooks books = motor_.run(dt_s);
   const double bridge_A = books.bus_charge_C / dt_s;
@@ -156,7 +162,7 @@ void PowerStage::run(double dt_s) {
   books_ += sum;
 
   const double C = params_.bus_capacitance_F;
-  const Feed fed = feed(bridge_A, dt_s);
+  const Feed fed = feed(bridge_A, dt_s, gone);
   const double owed_J = (fed.mean_V - fed_V) * books.bus_charge_C;
   const double end_V = std::sqrt(std::max(0.0, fed.end_V * fed.end_V + 2.0 * owed_J / C));
   source_charge_C_ += fed.charge_C;

@@ -89,7 +89,8 @@ class PowerStage {
   struct Feed {  // of a step
     double end_V, mean_V, charge_C, heat_J;
   };
-  Feed feed(double bridge_A, double dt_s) const;
+  double way_gone(double dt_s) const;
+  Feed feed(double bridge_A, double dt_s, double gone) const;
   double seen_V() const;
   void run(double dt_s);
   void watch_direction(double speed_radps, Nanoseconds now);
@@ -108,7 +109,7 @@ class PowerStage {
   int backward_reports_ = 0;  // in a row
   io::ShaftLoad load_;
   double bus_V_ = 0.0;        // at the bridge
-  double capacitor_V_ = 0.0;  // inside, where it has a resistance in series
+  double capacitor_V_ = 0.0;  // inside: bus_V_ where it has no resistance in series
   Nanoseconds now_ns_ = 0, reported_ns_ = 0;
   plant::MotorBooks books_;
   io::ShaftState state_;
