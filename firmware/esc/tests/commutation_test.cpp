@@ -31,10 +31,18 @@ class TestMotor {
         note_error();
         commutation.on_commutated(static_cast<Ticks>(ticks_));
       }
-      if (ticks_ % 100 == 0) {
-        apply(commutation.on_sample(static_cast<Ticks>(ticks_), floating_counts(), kBus_counts));
-      }
+      if (ticks_ % 100 == 0) sample(commutation);
     }
+  }
+  void sample(Commutation& commutation) {
+    const auto now = static_cast<Ticks>(ticks_);
+    const auto before = middles_of(commutation);
+    const Commutation::Order order = commutation.on_sample(now, floating_counts(), kBus_counts);
+    if (pending_ && middles_of(commutation) != before) {
+      ++lessons;
+      least_ahead_ticks = std::min(least_ahead_ticks, static_cast<Ticks>(due_ - now));
+    }
+    apply(order);
   }
   void apply(const Commutation::Order& order) {
     if (!order.commutate) return;
@@ -52,6 +60,8 @@ class TestMotor {
   double load_Nm = 0.0;
   double worst_error_deg = 0.0;
   double current_A = 0.0;
+  int lessons = 0;                   // samples in which a middle was learnt,
+  Ticks least_ahead_ticks = 0xFFFF;  // and how soon after one the commutation came
 
  private:
   static constexpr double kTick_s = 0.5e-6, kKt = 0.01005, kR = 0.16, kJ = 3.752e-5;
@@ -64,6 +74,13 @@ class TestMotor {
     if (x < 180.0) return 1.0 - (x - 120.0) / 30.0;
     if (x < 300.0) return -1.0;
     return -1.0 + (x - 300.0) / 30.0;
+  }
+  static std::array<int, 6> middles_of(Commutation& commutation) {
+    std::array<int, 6> all{};
+    for (std::uint8_t step = 0; step < 6; ++step) {
+      all[step] = commutation.middles().off(step, 0, 1 << 15);
+    }
+    return all;
   }
   void turn(double voltage_V) {
     static constexpr int kHigh[] = {0, 0, 1, 1, 2, 2}, kLow[] = {1, 2, 2, 0, 0, 1};
@@ -162,6 +179,17 @@ TEST(Commutation, LearnsUnevenDividersWhileItTurns) {
   EXPECT_TRUE(t.commutation.in_sync());
   EXPECT_LT(t.motor.worst_error_deg, 1.5);
   EXPECT_GT(before, 8.0);
+}
+
+// A sample may take 10 us; one that learns and is interrupted as well would take longer.
+TEST(Commutation, LearnsInNoSampleThatACommutationComesInto) {
+  Turning t;
+  t.motor.reads_more = {0.03, -0.03, 0.01};
+  for (const double voltage_V : {2.0, 4.0, 6.0, 8.0, 10.0}) {
+    t.motor.run(t.commutation, voltage_V, 0.3);
+  }
+  EXPECT_GT(t.motor.lessons, 1000);
+  EXPECT_GE(t.motor.least_ahead_ticks, 20);
 }
 
 TEST(Commutation, StartsUnderLoad) {
