@@ -106,7 +106,7 @@ TEST(BoardWires, WhatJoinsTheSameTwoBoardsIsOneMemoryWithAPortForEachBus) {
   const auto links = join_boards(rig.plan, rig.nodes, setups);
   ASSERT_TRUE(links) << links.error().message();
   ASSERT_EQ(links.value().size(), 1u);
-  for (const Setup& setup : setups) {
+  for (const cli::Setup& setup : setups) {
     ASSERT_EQ(setup.wires.size(), 2u);
     EXPECT_EQ(setup.wires[0].fd, setup.wires[1].fd);
     EXPECT_EQ(setup.wires[0].port, 0);
