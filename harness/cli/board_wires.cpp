@@ -108,8 +108,8 @@ Result<Done> check_board_wires(const plan::Plan& plan, const std::vector<Node>& 
       return wrong(plan, "two boards take the place of " + name, "");
     }
   }
-  if (const auto good = check_one_to_one(plan, nodes); !good) return good.error();
-  return check_circles(plan, nodes);
+  if (const auto led = check_circles(plan, nodes); !led) return led.error();
+  return check_one_to_one(plan, nodes);
 }
 
 Result<std::vector<BoardWireLink>> join_boards(const plan::Plan& plan,
