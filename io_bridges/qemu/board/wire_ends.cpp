@@ -230,7 +230,8 @@ void FollowerEnd::count_late(const WireMessage& message, Nanoseconds now) {
 void FollowerEnd::answer(Clock clock, Nanoseconds now) {
   cap_.cancel();
   waiting_ = false;
-  answer_.t_ns = now;
+  // A hold whose end is known beforehand (a fault on this board's end of the wire) is only said.
+  answer_.t_ns = clock == Clock::released ? std::max(now, bus_.released_ns()) : now;
   answer_.clock = clock;
   if (clock == Clock::released && ahead_) {
     answer_.byte = bus_.fetch(now);
