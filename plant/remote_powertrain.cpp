@@ -25,7 +25,8 @@ RemotePowertrain::RemotePowertrain(std::size_t motors, const BatteryParams& batt
       shafts_(motors),
       received_(motors),
       torque_Nm_s2_(motors, 0.0),
-      brake_Nm_(motors, 0.0) {
+      brake_Nm_(motors, 0.0),
+      dip_V_(motors, 0.0) {
   WHIRL_CHECK(inertia_kgm2 > 0.0, inertia_kgm2);
 }
 
@@ -35,11 +36,32 @@ double RemotePowertrain::total_current_A() const {
   return sum;
 }
 
+double RemotePowertrain::undipped_V(std::size_t motor) const {
+  const double ohm = battery_.series_resistance_ohm();
+  return std::max(0.0, battery_.source_V() - ohm * total_current_A() +
+                           share_ * ohm * shafts_.at(motor).source_current_A);
+}
+
 RemoteShaftLoad RemotePowertrain::load(std::size_t motor) const {
-  const double ohm = battery_.series_resistance_ohm(), own_ohm = share_ * ohm;
-  const double source_V =
-      battery_.source_V() - ohm * total_current_A() + own_ohm * shafts_.at(motor).source_current_A;
-  return {torque_Nm_s2_[motor], brake_Nm_[motor], std::max(0.0, source_V), own_ohm};
+  return {torque_Nm_s2_[motor], brake_Nm_[motor],
+          std::max(0.0, undipped_V(motor) - dip_V_.at(motor)),
+          share_ * battery_.series_resistance_ohm()};
+}
+
+void RemotePowertrain::set_shaft_dip(std::size_t motor, double below_V) {
+  WHIRL_CHECK(below_V >= 0.0, motor, below_V);
+  dip_V_.at(motor) = below_V;
+}
+
+// Those under which the shafts did what has been received.
+std::vector<double> RemotePowertrain::take_dips() {
+  std::vector<double> latest(count());
+  for (std::size_t i = 0; i < count(); ++i) latest[i] = std::min(dip_V_[i], undipped_V(i));
+  dips_V_.push_back(std::move(latest));
+  while (dips_V_.size() < age_) dips_V_.push_front(std::vector<double>(count(), 0.0));
+  std::vector<double> then = std::move(dips_V_.front());
+  dips_V_.pop_front();
+  return then;
 }
 
 void RemotePowertrain::receive(std::size_t motor, const RemoteShaftState& state) {
@@ -76,6 +98,7 @@ void RemotePowertrain::set_loads(std::span<const ShaftLoad> loads) {
 
 void RemotePowertrain::step(double dt_s, PowertrainState& state) {
   WHIRL_CHECK(state.motors.size() == count(), state.motors.size(), count());
+  const std::vector<double> dips_V = take_dips();
   for (std::size_t i = 0; i < count(); ++i) {
     WHIRL_CHECK(received_[i].has_value(), i);  // nobody has said what this shaft did
     shafts_[i] = *received_[i];
@@ -95,9 +118,10 @@ void RemotePowertrain::step(double dt_s, PowertrainState& state) {
   for (std::size_t i = 0; i < count(); ++i) {
     const RemoteShaftState& shaft = shafts_[i];
     const double mean_heat_J = own_ohm * shaft.source_current_A * shaft.source_current_A * dt_s;
-    e.exchange_J +=
-        state.bus_voltage_V * shaft.source_current_A * dt_s - (shaft.source_J - mean_heat_J);
-    e.battery_J += shaft.feed_J - mean_heat_J;
+    const double lost_J = dips_V[i] * shaft.source_current_A * dt_s;
+    e.exchange_J += state.bus_voltage_V * shaft.source_current_A * dt_s -
+                    (shaft.source_J + lost_J - mean_heat_J);
+    e.battery_J += shaft.feed_J - mean_heat_J + lost_J;
     e.capacitor_J += shaft.capacitor_J;
     e.copper_J += shaft.copper_J;
     e.diode_J += shaft.diode_J;

@@ -24,6 +24,8 @@
 //            four motors on 30 mohm (tests/remote_powertrain_test.cpp): hover 1e-8 of the energy,
 //            duty 0.3 to 0.6 at once 31 mJ of 162 J (bound 66 mJ) and 0.2 % of speed at worst, a
 //            flight with a push 3e-5
+//   Dip      a fault in one shaft's lead takes so many volts of its source; what that takes of the energy is
+//            battery_J's, as that of the pack's own dip is
 //   Left out the capacitors of the other shafts' boards; warm windings (a board's own matter)
 #pragma once
 #include <deque>
@@ -75,6 +77,8 @@ class RemotePowertrain final : public Powertrain {
   void command(std::size_t motor, const MotorCommand& command) override;
   void set_loads(std::span<const ShaftLoad> loads) override;
   void set_dip(double below_V) override { battery_.set_dip(below_V); }
+  // Of one shaft's source alone; from its next load() on.
+  void set_shaft_dip(std::size_t motor, double below_V);
   void step(double dt_s, PowertrainState& state) override;
 
   // Of the sum of exchange_J since all stood.
@@ -89,6 +93,8 @@ class RemotePowertrain final : public Powertrain {
     double source_V = 0.0;
   };
   double total_current_A() const;  // of the last step
+  double undipped_V(std::size_t motor) const;
+  std::vector<double> take_dips();
   void count_bound(double dt_s);
   double end_J(const Past& past, double dt_s) const;
 
@@ -99,6 +105,8 @@ class RemotePowertrain final : public Powertrain {
   std::vector<RemoteShaftState> shafts_;
   std::vector<std::optional<RemoteShaftState>> received_;  // of the step to come
   std::vector<double> torque_Nm_s2_, brake_Nm_;
+  std::vector<double> dip_V_;
+  std::deque<std::vector<double>> dips_V_;  // of the latest loads, the latest last
   // For the bound:
   std::size_t age_ = 1;
   std::deque<Past> past_;  // the latest last

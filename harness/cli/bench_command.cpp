@@ -204,6 +204,11 @@ Result<results::Report> report_of(const std::string& run) {
   return report;
 }
 
+// Or the same flown another way: its name with what differs behind a comma.
+bool one_plan(const std::string& a, const std::string& b) {
+  return a == b || a.starts_with(b + ", ") || b.starts_with(a + ", ");
+}
+
 }  // namespace
 
 int bench_check_command(const BenchOptions& options, const Composition& composition) {
@@ -219,11 +224,11 @@ int parity_command(const ParityOptions& options) {
   if (!first) return complain(first.error());
   const auto second = report_of(options.second);
   if (!second) return complain(second.error());
-  if (first.value().plan != second.value().plan) {
+  if (!one_plan(first.value().plan, second.value().plan)) {
     return complain(
         {ErrorKind::bad_input, options.second,
          "is a run of " + second.value().plan + ", and the first of " + first.value().plan,
-         "two runs of one plan are wanted"});
+         "two runs of one plan are wanted, or of \"NAME\" and \"NAME, another way\""});
   }
   std::fputs(results::parity_text(first.value(), second.value()).c_str(), stdout);
   const std::string page = options.page.empty() ? options.second + "/parity.html" : options.page;

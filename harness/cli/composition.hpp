@@ -43,6 +43,7 @@ struct Setup {  // of a run; of one board of it, where a target is made
   std::vector<std::string> flashed = {};  // paths of ELF files beside the image
   std::vector<WireEnd> wires = {};        // to other boards
   std::vector<FarBoard> far = {};         // that this one leads
+  bool world_may_stand = false;           // gdb holds this board or another one
   int motor = 0;  // of the vehicle: which one this board turns, in a device's place; 0: none
 };
 

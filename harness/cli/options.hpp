@@ -17,7 +17,8 @@ struct RunOptions {
   int jobs = 1;
   bool gdb = false;
   int gdb_port = 1234;
-  bool keep = false;  // a passing run keeps its large logs too
+  std::string gdb_board;  // of a plan of several: the node that gdb holds
+  bool keep = false;      // a passing run keeps its large logs too
   bool twice = false;
   bool json = false;
   std::string out;  // where results go; empty: results/ of the house

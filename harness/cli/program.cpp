@@ -115,8 +115,12 @@ CLI::App* add_decode(CLI::App& app, DecodeOptions& options) {
 
 CLI::App* add_parity(CLI::App& app, ParityOptions& options) {
   auto* parity = app.add_subcommand("parity", "two runs of one plan, figure by figure");
-  parity->add_option("first", options.first, "a run's folder: of the virtual board")->required();
-  parity->add_option("second", options.second, "another one: of a bench")->required();
+  parity
+      ->add_option("first", options.first,
+                   "a run's folder: of the virtual board, or of native controllers")
+      ->required();
+  parity->add_option("second", options.second, "another one: of a bench, or of several boards")
+      ->required();
   parity->add_option("--page", options.page, "where the page goes (default: the second's folder)");
   return parity;
 }

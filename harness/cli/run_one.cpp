@@ -127,6 +127,23 @@ Asker asker_of(const std::string& key, const plan::Plan& plan, const Settings& s
   return {plan.file, plan.place};
 }
 
+// The node that --gdb holds: the only one, or the one that is named.
+Result<std::size_t> held_by_gdb(const plan::Plan& plan, const RunOptions& options) {
+  if (!options.gdb || (plan.nodes.size() == 1 && options.gdb_board.empty())) return std::size_t{0};
+  std::string names;
+  for (std::size_t i = 0; i < plan.nodes.size(); ++i) {
+    if (!options.gdb_board.empty() && plan.nodes[i].name == options.gdb_board) return i;
+    names += (names.empty() ? "" : ", ") + plan.nodes[i].name;
+  }
+  if (plan.nodes.size() == 1) {
+    return Error{ErrorKind::bad_input, plan.place, "--gdb-board: this plan has one board", ""};
+  }
+  return Error{ErrorKind::bad_input, plan.place,
+               options.gdb_board.empty() ? "--gdb holds one board, and this plan has several"
+                                         : "--gdb-board: no board '" + options.gdb_board + "'",
+               "--gdb-board with one of " + names};
+}
+
 // `folder`: where the parts of the boards leave their files; empty: nowhere.
 Result<Prepared> prepare(const plan::Plan& plan, const PlanChoice& choice,
                          const RunOptions& options, const Composition& composition,
@@ -145,11 +162,8 @@ Result<Prepared> prepare(const plan::Plan& plan, const PlanChoice& choice,
     if (!vehicle) return vehicle.error();
     vehicle_file = shown_path(vehicle.value());
   }
-  if (options.gdb && plan.nodes.size() > 1) {
-    return Error{ErrorKind::bad_input, plan.place,
-                 "--gdb holds one board, and this plan has several",
-                 "run the board alone, in a plan of its own"};
-  }
+  const auto held = held_by_gdb(plan, options);
+  if (!held) return held.error();
   Settings settings = plan.vehicle_settings;
   settings.insert(settings.end(), options.settings.begin(), options.settings.end());
   Prepared all;
@@ -161,9 +175,10 @@ Result<Prepared> prepare(const plan::Plan& plan, const PlanChoice& choice,
         find_file(plan.nodes[i].image, who("plan.image"), image_folders(root), ".elf");
     if (!image) return image.error();
     all.nodes.push_back(std::move(node.value()));
-    const int port = options.gdb ? options.gdb_port : 0;
+    const int port = options.gdb && held.value() == i ? options.gdb_port : 0;
     all.setups.push_back({plan, i, all.nodes.back().board, root, image.value(), vehicle_file,
                           choice.seed.value_or(plan.seed), port, settings, folder});
+    all.setups.back().world_may_stand = options.gdb;
     all.setups.back().copper = options.copper;
     all.setups.back().copper_rate_Hz = options.copper_rate_Hz;
     for (const std::string& cells : plan.nodes[i].flash) {
@@ -249,7 +264,7 @@ Result<RunRecord> run_record(const PlanChoice& choice, const RunOptions& options
   if (!prepared) return prepared.error();
   const Prepared& parts = prepared.value();
   for (const Setup& setup : parts.setups) {
-    if (options.gdb) announce_gdb(setup);
+    if (setup.gdb_port != 0) announce_gdb(setup);
   }
   const std::uint64_t seed = parts.setups.front().seed;
   std::optional<results::MessageWriter> messages;

@@ -48,6 +48,9 @@ RunCommand::RunCommand(CLI::App& app) {
       ->excludes(one);
   run->add_option("--jobs,-j", options.jobs, "so many plans at once")->check(CLI::Range(1, 256));
   run->add_flag("--gdb", options.gdb, "open a gdb port and hold the world's time while gdb holds");
+  run->add_option("--gdb-board", options.gdb_board,
+                  "of a plan of several boards: which one gdb holds")
+      ->needs("--gdb");
   run->add_option("--gdb-port", options.gdb_port, "instead of 1234")
       ->check(CLI::Range(1024, 65535));
   run->add_flag("--keep", options.keep, "keep what went into the board's process as well");

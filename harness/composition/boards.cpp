@@ -307,6 +307,7 @@ Result<std::unique_ptr<Target>> make_target(const cli::Setup& setup,
                     .folder = setup.folder,
                     .node = setup.plan.nodes[setup.node].name}};
   if (const auto set = set_copy(setup, options.board.board); !set) return set.error();
+  if (setup.world_may_stand) options.silence_s = 0;
   options.any_qemu_version = std::getenv("WHIRL_ANY_QEMU") != nullptr;
   auto board = std::make_unique<VirtualBoard>(std::move(options));
   if (setup.copper.empty()) return std::unique_ptr<Target>(std::move(board));

@@ -24,6 +24,7 @@ class FarShafts {
   void on_message(const io::Reader& message);  // one that it hears
   void before_step();                          // of the vehicle
   void after_step(const plant::EnergyBooks& books);
+  void set_dip(std::size_t motor, double below_V) { powertrain_.set_shaft_dip(motor, below_V); }
   void send(std::int64_t t_ns, io::Batch& sensed) const;
 
   // So far, as shares of what the pack has given:

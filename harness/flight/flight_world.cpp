@@ -12,8 +12,7 @@ namespace {
 
 constexpr float kForce = 21196.0f;  // of MAV_CMD_COMPONENT_ARM_DISARM
 constexpr std::uint16_t kArmDisarm = 400, kLand = 21, kTakeoff = 22;  // MAV_CMD
-constexpr const char *kEsc_stopped = "esc_stopped", *kSupply_dip = "supply_dip",
-                     *kCapture_lost = "capture_lost", *kCapture_frozen = "capture_frozen";
+constexpr const char *kCapture_lost = "capture_lost", *kCapture_frozen = "capture_frozen";
 constexpr double kStep_s = 1e-3;
 constexpr std::int64_t kStep_ns = 1'000'000;
 
@@ -167,7 +166,10 @@ void FlightWorld::send(std::int64_t t_ns, io::Batch& sensed) {
     sensed.add(io::Kind::esc_state, static_cast<std::uint16_t>(i + 1), t_ns,
                controllers_[i]->status());
   }
-  if (far_) far_->send(t_ns, sensed);
+  if (far_) {
+    dip_leads(t_ns);
+    far_->send(t_ns, sensed);
+  }
   transmitter_.step(t_ns, sensed);
   const auto send = [&sensed](std::int64_t at_ns, std::span<const std::uint8_t> frame) {
     sensed.add(io::Kind::uart_frame, kRadioPort, at_ns, frame.data(),
@@ -356,38 +358,6 @@ Result<Done> FlightWorld::blow(const request::Wind& wind, std::int64_t now_ns) {
   gust.start_s = static_cast<double>(now_ns) * 1e-9 + wind.after_s.value_or(0.0);
   vehicle_.add_gust(gust);
   return Done{};
-}
-
-Result<bool> FlightWorld::take_fault(const FaultSpec& fault) {
-  if (fault.kind == kEsc_stopped) {
-    if (far_) {
-      return Error{ErrorKind::bad_input, "", "the controllers of this vehicle are boards",
-                   "a fault of that board: reset_pin, code_hangs; or of its wire"};
-    }
-    const int motor = motor_of(fault), motors = static_cast<int>(controllers_.size());
-    if (motor < 1 || motor > motors) {
-      return Error{ErrorKind::bad_input, "", "esc_stopped needs one of the vehicle's motors",
-                   "motor = 1 to " + std::to_string(motors) + ", or the device that is its ESC"};
-    }
-  } else if (fault.kind == kSupply_dip) {
-    if (auto good = must_be_of_all(fault); !good) return good.error();
-    const double start_s = static_cast<double>(fault.start_ns) * 1e-9;
-    vehicle_.dip_supply(fault.value, start_s, static_cast<double>(fault.end_ns) * 1e-9 - start_s);
-  } else if (fault.kind == kCapture_lost || fault.kind == kCapture_frozen) {
-    if (auto good = must_be_of_all(fault); !good) return good.error();
-  } else {
-    return false;
-  }
-  faults_.add(fault);
-  return true;
-}
-
-void FlightWorld::apply_faults(std::int64_t t_ns) {
-  faults_.apply(kEsc_stopped, t_ns, [this](const FaultSpec& fault) {
-    controllers_[static_cast<std::size_t>(motor_of(fault)) - 1]->cut();
-  });
-  // The vehicle itself lowers its supply; here is only kept that it did.
-  faults_.apply(kSupply_dip, t_ns, [](const FaultSpec&) {});
 }
 
 }  // namespace whirl::flight

@@ -9,7 +9,9 @@
 //            arming, a take-off or a landing of the other one ours ends its own set-points until it is commanded anew
 //   Begins   standing at W's origin, or as the plan's `start` says (surroundings.hpp)
 //   Disturbed by Wind with a duration, Jet, Magnet; held and turned by Hold until Release (flight_hand.cpp)
-//   Faults   capture_lost; capture_frozen (the pose that was sent last goes on); supply_dip (value: volts below); esc_stopped (of a motor, or of the device that is its ESC)
+//   Faults   capture_lost; capture_frozen (the pose that was sent last goes on); supply_dip (value: volts below; of all, or of the
+//            lead of one motor's controller where that is a board); esc_stopped (of a motor, or of the device that
+//            is its ESC) (flight_faults.cpp)
 #pragma once
 #include <functional>
 #include <memory>
@@ -73,6 +75,8 @@ class FlightWorld : public World {
   void move(std::int64_t t_ns);
   void send(std::int64_t t_ns, io::Batch& sensed);
   void apply_faults(std::int64_t t_ns);
+  Result<Done> must_be_a_lead(const FaultSpec& fault) const;
+  void dip_leads(std::int64_t t_ns);
   void add_signal(std::string name, Dimension dimension, std::string about,
                   std::function<double()> value);
   void name_signals();

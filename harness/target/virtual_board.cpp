@@ -249,7 +249,7 @@ Result<Done> VirtualBoard::start() {
     return Error{ErrorKind::host, "virtual board", "no shared memory", ""};
   }
   fcntl(process_->log_fd, F_SETFL, O_APPEND);
-  process_->watch_silence = launch.value().gdb_port == 0;
+  process_->watch_silence = launch.value().gdb_port == 0 && options_.silence_s > 0;
   std::vector<int> passed = {process_->link.fd(), config_fd};
   for (const WireEnd& wire : options_.board.run.wires) passed.push_back(wire.fd);
   process_->pid =

@@ -23,8 +23,8 @@ namespace whirl {
 struct VirtualBoardOptions {
   BoardStart board;
   std::string qemu = "qemu-system-arm";
-  std::string plugin;  // whirl_board.so; empty: where the build put it
-  int silence_s = 30;
+  std::string plugin;                     // whirl_board.so; empty: where the build put it
+  int silence_s = 30;                     // 0: however long
   bool any_qemu_version = false;          // do not insist on the tested list
   std::vector<std::string> qemu_options;  // for developers: "-d", "in_asm", ...
 };

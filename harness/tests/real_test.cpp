@@ -268,28 +268,48 @@ TEST_F(Real, AnImageThatSleepsForEverFailsAtTheTimeoutInVirtualTime) {
   EXPECT_TRUE(near(outcome.run.value("virtual_s", 0.0), 3.0, stated(1e-9, "at once")));
 }
 
-// gdb stops in a task, reads the world's state from the image, and lets it fly on.
-TEST_F(Real, GdbStopsInATaskAndTheRunGoesOnAfterIt) {
-  write("p.lua", std::string("plan \"real\" { image = \"flight\", vehicle = \"hp_quad\",\n"
-                             "run = function(t) ") +
-                     kSecond + " end }\n");
-  const int port = 20000 + getpid() % 20000;
-  const std::string out = folder_.file("whirl.txt");
+// What gdb says that stops a board in this function and lets it go, and the code with which the run ends.
+std::string gdb_at(const std::string& function, const std::string& image,
+                   const std::string& arguments) {
+  const std::string port = std::to_string(20000 + getpid() % 20000);
   const std::string command =
-      std::string("timeout 100 ") + WHIRL_PROGRAM + " run --gdb --gdb-port " +
-      std::to_string(port) + " " + folder_.file("p.lua") + " >" + out +
-      " 2>&1 & whirl=$!; gdb-multiarch -batch -nx " + WHIRL_IMAGES +
-      "/flight.elf -ex 'set tcp connect-timeout 60' -ex 'target remote 127.0.0.1:" +
-      std::to_string(port) +
-      "' -ex 'hbreak fw::attitude_task' -ex continue -ex backtrace"
-      " -ex 'delete' -ex detach 2>&1; wait $whirl; echo code $?";
+      std::string("timeout 100 ") + WHIRL_PROGRAM + " run --gdb --gdb-port " + port + " " +
+      arguments + " >/dev/null 2>&1 & whirl=$!; " + "gdb-multiarch -batch -nx " + WHIRL_IMAGES +
+      "/" + image + ".elf -ex 'set tcp connect-timeout 60' -ex 'target remote 127.0.0.1:" + port +
+      "' -ex 'hbreak " + function +
+      "' -ex continue -ex 'shell sleep 2' -ex backtrace -ex 'delete'"
+      " -ex detach 2>&1; wait $whirl; echo code $?";
   std::FILE* pipe = popen(command.c_str(), "r");
   std::string text;
   char piece[4096];
   for (std::size_t n; (n = std::fread(piece, 1, sizeof piece, pipe)) > 0;) text.append(piece, n);
   pclose(pipe);
+  return text;
+}
+
+// gdb stops in a task, reads the world's state from the image, and lets it fly on.
+TEST_F(Real, GdbStopsInATaskAndTheRunGoesOnAfterIt) {
+  write("p.lua", std::string("plan \"real\" { image = \"flight\", vehicle = \"hp_quad\",\n"
+                             "run = function(t) ") +
+                     kSecond + " end }\n");
+  const std::string text = gdb_at("fw::attitude_task", "flight", folder_.file("p.lua"));
   EXPECT_NE(text.find("#0  fw::attitude_task"), std::string::npos) << text;
   EXPECT_NE(text.find("code 0"), std::string::npos) << text;
+}
+
+// The other board has no gdb, and waits with the world: what it is asked at 0.2 s it has not missed.
+TEST_F(Real, GdbHoldsOneBoardOfSeveral) {
+  const std::string esc = "image = 'esc', board = 'esc32v2' }";
+  write("n.lua", "plan 'n' { nodes = { { name = 'a', " + esc + ", { name = 'b', " + esc +
+                     " }, wires = { { from = 'a.usart1', to = 'b.usart1' } }, "
+                     "stand = { prop = 'hk_10x4.5', supply = '16 V' }, timeout = '2 s', "
+                     "run = function(t) t:wait '200 ms' t:ask('get mode', '^mode') end }");
+  const std::string plan = folder_.file("n.lua");
+  const std::string text = gdb_at("fw::esc::control_task", "esc", "--gdb-board b " + plan);
+  EXPECT_NE(text.find("#0  fw::esc::control_task"), std::string::npos) << text;
+  EXPECT_NE(text.find("code 0"), std::string::npos) << text;
+  expect_told(whirl("run --gdb " + plan), 2, "--gdb-board with one of a, b");
+  expect_told(whirl("run --gdb --gdb-board c " + plan), 2, "no board 'c'");
 }
 
 // The process finds it, from its own copy of the description; the line is that of the file.

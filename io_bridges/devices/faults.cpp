@@ -52,6 +52,7 @@ constexpr KindName kNames[] = {
     {FaultKind::can_stuck_dominant, "can_stuck_dominant"},
     {FaultKind::can_babble, "can_babble"},
     {FaultKind::capture_frozen, "capture_frozen"},
+    {FaultKind::board_unplugged, "board_unplugged"},
 };
 
 bool matches(int wanted, int here) {

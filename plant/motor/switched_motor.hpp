@@ -16,6 +16,7 @@
 #pragma once
 #include <array>
 
+#include "plant/base/remembered_exp.hpp"
 #include "plant/motor/averaged_motor.hpp"
 
 namespace whirl::plant {
@@ -36,7 +37,7 @@ class SwitchedMotor {
  public:
   explicit SwitchedMotor(const MotorParams& params);
 
-  void set_bridge(const Bridge& bridge) { bridge_ = bridge; }
+  void set_bridge(const Bridge& bridge);
   void set_bus(double bus_V) { bus_V_ = bus_V; }
   void set_load(const ShaftLoad& load) { load_ = load; }  // opposes rotation, w |w|
   void set_speed(double speed_radps) { speed_ = speed_radps; }
@@ -72,6 +73,9 @@ class SwitchedMotor {
   MotorParams cold_, params_;  // as built, and at the winding's temperature
   double temperature_K_;
   Bridge bridge_;
+  bool patterned_ = false;            // one leg of the bridge is driven and another one low
+  std::array<double, 3> admittance_;  // of each phase, relative
+  mutable RememberedExp settling_;    // of the windings' currents
   ShaftLoad load_;
   double bus_V_ = 0.0;
   std::array<double, 3> current_{};

@@ -186,6 +186,58 @@ TEST(RemotePowertrain, ADipLowersWhatEveryShaftIsGiven) {
   EXPECT_TRUE(near(remote.load(1).source_V, before_V - 3.0, round_off(4, before_V)));
 }
 
+// In flight at a steady hover a lead that loses 3 V takes its current x 3 V, and no energy is made or lost by the
+// exchange beyond what the shaft's slowing down makes it, as in a step of one motor.
+TEST(RemotePowertrain, ADipOfOneShaftIsItsAloneAndInTheBooks) {
+  RemotePowertrain remote(2, Pair::kPack, 0.0, 1e-5);
+  const double before_V = remote.load(1).source_V;
+  remote.set_shaft_dip(1, 3.0);
+  EXPECT_TRUE(near(remote.load(0).source_V, before_V, round_off(4, before_V)));
+  EXPECT_TRUE(near(remote.load(1).source_V, before_V - 3.0, round_off(4, before_V)));
+  remote.set_shaft_dip(1, 100.0);
+  EXPECT_TRUE(
+      near(remote.load(1).source_V, 0.0, round_off(4, before_V)));  // it does not turn round
+
+  Pair pair(4);
+  pair.duty_of_all(0.34);
+  pair.run(1500);
+  pair.remote.set_shaft_dip(2, 3.0);
+  double taken_J = 0.0, heat_J = 0.0;
+  for (int k = 0; k < 1500; ++k) {
+    pair.run(1);
+    ASSERT_TRUE(near(sum_of(pair.there.energy), pair.there.energy.chemical_J,
+                     stated(1e-9, "each shaft's books close")));
+    taken_J += std::abs(pair.exchange_J);
+    if (k >= 1000) heat_J += pair.there.energy.battery_J;
+  }
+  const double currents_A2 = pair.there.battery_current_A * pair.there.battery_current_A;
+  const double ohmic_J = Pair::kPack.series_resistance_ohm * currents_A2 * 0.5;
+  const double lost_J = 3.0 * pair.there.motors[2].bus_current_A * 0.5;
+  EXPECT_LT(pair.there.motors[2].speed_radps, 0.85 * pair.there.motors[1].speed_radps);
+  EXPECT_LT(taken_J, pair.remote.bound_J());
+  EXPECT_TRUE(near(heat_J, ohmic_J + lost_J,
+                   stated(0.2 * lost_J, "the pack's relaxation, and what has not settled")));
+}
+
+// A state that comes back two steps later was made without what was lost since.
+TEST(RemotePowertrain, ADipIsBookedWithTheStatesThatItMade) {
+  PowertrainState state;
+  state.motors.resize(1);
+  RemotePowertrain remote(1, Pair::kPack, 0.0, 1e-5);
+  remote.set_age(2);
+  const auto loss_J = [&] {
+    remote.receive(0, {.source_current_A = 1.0});
+    remote.step(kStep_s, state);
+    return state.energy.battery_J;
+  };
+  const Tolerance rest = stated(1e-4, "the pack's own resistance at 1 A");
+  remote.set_shaft_dip(0, 3.0);
+  EXPECT_TRUE(near(loss_J(), 0.0, rest));
+  remote.set_shaft_dip(0, 0.0);
+  EXPECT_TRUE(near(loss_J(), 3.0 * kStep_s, rest));
+  EXPECT_TRUE(near(loss_J(), 0.0, rest));
+}
+
 TEST(RemotePowertrain, AStepNeedsWhatEveryShaftDidAndNoCommands) {
   PowertrainState state;
   state.motors.resize(2);

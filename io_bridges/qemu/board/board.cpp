@@ -48,7 +48,9 @@ Board::Board(Setup setup, io::Channel channel, Emulator& emulator)
       devices_({events_, *chip_, happened_, [this](const io::Finding& f) { report(f); },
                 setup_.run.seed, rack::device_types(), setup_.run.folder, setup_.run.node, &wires_,
                 setup_.run.wires}),
-      hangs_(events_, emulator, happened_),
+      core_faults_(
+          {events_, emulator, happened_, setup_.image, setup_.description.watch,
+           setup_.description.start != 0 ? setup_.description.start : setup_.part->flash.base}),
       systick_(
           events_, chip_->clocks(), [this] { return emulator_.ahead_ns(); },
           [this] {
@@ -203,30 +205,9 @@ void Board::await_orders() {
   wires_.after_boundary(events_.now(), orders.t_ns);
 }
 
-void Board::hang(const io::FaultCommand& fault) {
-  const auto& watch = setup_.description.watch;
-  const auto number = static_cast<std::size_t>(fault.address);
-  if (number < watch.size()) hangs_.add(fault, setup_.image.functions_named(watch[number]));
-}
-
-// Devices have no reset line: they keep what they were set to.
-void Board::pull_reset_pin(const io::FaultCommand& fault) {
-  const std::uint32_t number = fault.number;
-  const auto pull = [this, number] {
-    happened_.add(io::Kind::fault_applied, static_cast<std::uint16_t>(number), events_.now(),
-                  nullptr, 0);
-    emulator_.reset_core(stm32::ResetCause::pin);
-  };
-  reset_pulls_.emplace_back(events_, pull).at(fault.start_ns);
-}
-
 void Board::on_message(const io::Reader& message) {
   if (message.header().kind == io::Kind::fault) {
-    const auto fault = message.as<io::FaultCommand>();
-    if (fault.kind == static_cast<std::uint32_t>(io::FaultKind::code_hangs)) return hang(fault);
-    if (fault.kind == static_cast<std::uint32_t>(io::FaultKind::reset_pin)) {
-      return pull_reset_pin(fault);
-    }
+    if (core_faults_.on_fault(message.as<io::FaultCommand>())) return;
   }
   if (devices_.on_message(message)) return;
   if (message.header().kind == io::Kind::end_of_run) {

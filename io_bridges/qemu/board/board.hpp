@@ -16,7 +16,7 @@
 #include "io_bridges/devices/event_queue.hpp"
 #include "io_bridges/link/channel.hpp"
 #include "io_bridges/messages/messages.hpp"
-#include "io_bridges/qemu/board/code_hang.hpp"
+#include "io_bridges/qemu/board/core_faults.hpp"
 #include "io_bridges/qemu/board/cortex_m.hpp"
 #include "io_bridges/qemu/board/device_rack.hpp"
 #include "io_bridges/qemu/board/emulator.hpp"
@@ -96,8 +96,6 @@ class Board final : stm32::InterruptLines, stm32::SystemBus, stm32::FlashArray {
   void synchronise();
   void await_orders();
   void on_message(const io::Reader& message);
-  void hang(const io::FaultCommand& fault);
-  void pull_reset_pin(const io::FaultCommand& fault);
   Result<Done> watch_converters();
   Result<Done> follow_wires();
   void retime();
@@ -126,8 +124,7 @@ class Board final : stm32::InterruptLines, stm32::SystemBus, stm32::FlashArray {
   std::unique_ptr<stm32::ChipModel> chip_;
   WireEnds wires_;
   DeviceRack devices_;
-  CodeHangs hangs_;
-  std::deque<io::Event> reset_pulls_;  // events must stay where they are
+  CoreFaults core_faults_;
   SysTick systick_;
   CycleCounter cycle_counter_;
   Unanswered unanswered_;

@@ -37,6 +37,9 @@ class Emulator {
   // Changes cells of flash or system ROM; translated code is thrown away.
   virtual void write_cells(std::uint32_t address, const void* from, std::size_t size) = 0;
 
+  // The core's RAM holds what it does after power-up.
+  virtual void lose_memories() = 0;
+
   // The instruction whose register access is being served; exact to its basic block's last access.
   virtual std::uint32_t accessing_pc() const = 0;
   // The core's own time is ahead of now() by that much, less than an instruction.

@@ -1,5 +1,7 @@
 #include "io_bridges/qemu/board/i2c_wire.hpp"
 
+#include <algorithm>
+
 #include "base/check.hpp"
 #include "base/text.hpp"
 
@@ -199,6 +201,8 @@ WireAnswer FollowerI2c::reply(Clock clock, Nanoseconds now) {
     answer_.has_byte = true;
     ahead_ = false;
   }
+  // A hold whose end is known beforehand (a fault on this board's end of the wire) is only said.
+  answer_.t_ns = clock == Clock::released ? std::max(now, bus_.released_ns()) : now;
   return answer_;
 }
 

@@ -117,8 +117,9 @@ void FollowerSpi::begin(int mode, Nanoseconds now) {
                         ((mode & 1) == 0 ? "; CPHA 0 is not carried over the wire" : "")});
 }
 
-WireAnswer FollowerSpi::reply(WireAnswer::Clock, Nanoseconds) {
+WireAnswer FollowerSpi::reply(WireAnswer::Clock, Nanoseconds now) {
   WireAnswer answer;
+  answer.t_ns = now;
   answer.byte = miso_;
   return answer;
 }

@@ -125,7 +125,7 @@ void FollowerWire::answer(Clock clock, Nanoseconds now) {
   waiting_ = false;
   WireAnswer told = asked_->reply(clock, now);
   told.clock = clock;
-  told.t_ns = clock == Clock::held && shared_ ? now + kLook_ns : now;
+  if (clock == Clock::held && shared_) told.t_ns = now + kLook_ns;
   wire_.answer(told);
 }
 

@@ -90,6 +90,7 @@ class FollowerPort {
   // What came acts; true: it is a question.
   virtual bool act(const io::WireMessage& message, Nanoseconds now) = 0;
   virtual bool held() const { return false; }  // the answer waits for the clock
+  // Its clock is of who calls, and so is t_ns where that is held.
   virtual io::WireAnswer reply(io::WireAnswer::Clock clock, Nanoseconds now) = 0;
 };
 

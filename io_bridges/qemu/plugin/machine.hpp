@@ -87,6 +87,7 @@ class Machine final : public board::Emulator {
   bool peek(std::uint32_t address, void* to, std::size_t size) override;
   std::uint32_t system_control_word(std::uint32_t offset) override;
   void write_cells(std::uint32_t address, const void* from, std::size_t size) override;
+  void lose_memories() override;
   std::uint32_t accessing_pc() const override;
   io::Nanoseconds slept_ns() const override;
   double ahead_ns() const override { return asleep_since_ns_ < 0 ? clock_->ahead_ns() : 0.0; }
@@ -149,7 +150,7 @@ class Machine final : public board::Emulator {
   std::vector<Irq*> interrupts_;
   std::vector<std::unique_ptr<MemoryRegion>> regions_;
   std::vector<std::unique_ptr<Window>> windows_;
-  std::uint8_t* sram_ = nullptr;
+  std::uint8_t *sram_ = nullptr, *ccm_ = nullptr;
   std::vector<bool> sram_holds_code_;  // of its pages: QEMU has translated some of it
   std::unique_ptr<SystemControl> system_control_;
   GByteArray* register_text_ = nullptr;

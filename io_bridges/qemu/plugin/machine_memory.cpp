@@ -176,6 +176,14 @@ bool Machine::write_bus(std::uint32_t address, const void* from, std::size_t siz
   return move_by_dma(address, const_cast<void*>(from), size, true);
 }
 
+// No code is in CCM.
+void Machine::lose_memories() {
+  const board::Part& part = board_.part();
+  const std::vector<std::uint8_t> untouched(part.sram.size, kUntouched);
+  write_cells(part.sram.base, untouched.data(), untouched.size());
+  if (ccm_ != nullptr) std::memset(ccm_, kUntouched, part.ccm.size);
+}
+
 // The machine has memory here, the part has not: a bus fault.
 void Machine::bar(std::uint32_t from, std::uint32_t to) {
   if (to <= from) return;
@@ -206,7 +214,7 @@ void Machine::map_memories() {
   api_.memory_region_add_subregion_overlap(system, part.system_rom.base, &rom, kMemories);
   sram_ = map_ram(system, "whirl.sram", part.sram);
   sram_holds_code_.assign(part.sram.size / kCode_page + 1, false);
-  map_ram(core_memory_, "whirl.ccm", part.ccm);
+  ccm_ = map_ram(core_memory_, "whirl.ccm", part.ccm);
 
   bar(part.sram.base + part.sram.size, part.machine_sram.base + part.machine_sram.size);
   bar(part.flash.base + part.flash.size, part.machine_flash.base + part.machine_flash.size);

@@ -116,8 +116,8 @@ void PowerStage::hold_or_turn() {
 
 // Share of its way to where it settles that the capacitor between supply and bridge goes in a step.
 double PowerStage::way_gone(double dt_s) const {
-  return -std::expm1(-dt_s /
-                     ((load_.source_ohm + params_.bus_esr_ohm) * params_.bus_capacitance_F));
+  return -charging_.expm1(-dt_s /
+                          ((load_.source_ohm + params_.bus_esr_ohm) * params_.bus_capacitance_F));
 }
 
 // Exactly, for a bridge that draws the same current all the time. Source and bridge meet outside of the

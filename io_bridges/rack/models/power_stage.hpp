@@ -101,6 +101,7 @@ class PowerStage {
   PowerStageParams params_;
   plant::SwitchedMotor motor_;
   plant::CurrentShunt shunt_;
+  mutable plant::RememberedExp charging_;    // of the capacitor
   std::vector<RandomStream> noise_;          // of the pins
   std::array<std::array<bool, 2>, 3> on_{};  // [leg][upper]
   std::array<Nanoseconds, 3> both_since_{io::kNever, io::kNever, io::kNever};

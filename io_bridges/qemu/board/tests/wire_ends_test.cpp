@@ -227,6 +227,39 @@ TEST_F(FarBus,
   EXPECT_TRUE(there_.findings.empty());
 }
 
+// A fault on the follower's end of the wire, as one on the leader's end would be.
+class Stretches : public io::I2cFaults {
+ public:
+  explicit Stretches(Nanoseconds hold_ns) : hold_ns_(hold_ns) {}
+  bool deaf(std::uint8_t, Nanoseconds) override { return false; }
+  bool ack(std::uint8_t, int, Nanoseconds) override { return true; }
+  std::uint8_t byte(std::uint8_t, int, std::uint8_t value, Nanoseconds) override { return value; }
+  Nanoseconds stretch(std::uint8_t, Nanoseconds) override { return hold_ns_; }
+
+ private:
+  Nanoseconds hold_ns_;
+};
+
+TEST_F(FarBus, AHoldThatAFaultMakesAtEitherEndIsSeenAtBoth) {
+  join(0);
+  Stretches stretches(1'200'000);  // beyond a boundary
+  master_.at(100'000, false, {1, 2});
+  there_.bus.set_faults(&stretches);
+  run(3);
+  const std::vector<Nanoseconds> rose = master_.rose_at, heard = slave_->at;
+  EXPECT_EQ(rose, (std::vector<Nanoseconds>{1'322'500}));
+  there_.bus.set_faults(nullptr);
+  here_.bus.set_faults(&stretches);
+  master_.at(now_ns_ + 100'000, false, {1, 2});
+  run(3);
+  ASSERT_EQ(master_.rose_at.size(), 2u);
+  EXPECT_EQ(master_.rose_at[1] - rose[0], 3'000'000);
+  ASSERT_EQ(slave_->at.size(), 2 * heard.size());
+  for (std::size_t i = 0; i < heard.size(); ++i) {
+    EXPECT_EQ(slave_->at[heard.size() + i] - heard[i], 3'000'000) << i;
+  }
+}
+
 // 0.3 ms are six questions; the one at 0.85 ms is held across the boundary.
 TEST_F(FarBus, ALongHoldEndsWhenTheSlaveLetsGoAlsoBeyondABoundary) {
   join(300'000);

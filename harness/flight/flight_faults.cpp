@@ -1,0 +1,69 @@
+// The faults that are the flight's own: its supply, its cameras, its native controllers.
+#include <string>
+#include <vector>
+
+#include "harness/flight/flight_world.hpp"
+
+namespace whirl::flight {
+namespace {
+
+constexpr const char *kEsc_stopped = "esc_stopped", *kSupply_dip = "supply_dip";
+
+}  // namespace
+
+Result<bool> FlightWorld::take_fault(const FaultSpec& fault) {
+  if (fault.kind == kEsc_stopped) {
+    if (far_) {
+      return Error{ErrorKind::bad_input, "", "the controllers of this vehicle are boards",
+                   "a fault of that board: reset_pin, code_hangs; or of its wire"};
+    }
+    const int motor = motor_of(fault), motors = static_cast<int>(controllers_.size());
+    if (motor < 1 || motor > motors) {
+      return Error{ErrorKind::bad_input, "", "esc_stopped needs one of the vehicle's motors",
+                   "motor = 1 to " + std::to_string(motors) + ", or the device that is its ESC"};
+    }
+  } else if (fault.kind == kSupply_dip && far_ && motor_of(fault) != 0) {
+    if (auto good = must_be_a_lead(fault); !good) return good.error();
+  } else if (fault.kind == kSupply_dip) {
+    if (auto good = must_be_of_all(fault); !good) return good.error();
+    const double start_s = static_cast<double>(fault.start_ns) * 1e-9;
+    vehicle_.dip_supply(fault.value, start_s, static_cast<double>(fault.end_ns) * 1e-9 - start_s);
+  } else if (fault.kind == "capture_lost" || fault.kind == "capture_frozen") {
+    if (auto good = must_be_of_all(fault); !good) return good.error();
+  } else {
+    return false;
+  }
+  faults_.add(fault);
+  return true;
+}
+
+Result<Done> FlightWorld::must_be_a_lead(const FaultSpec& fault) const {
+  const int motors = static_cast<int>(airframe_.rotors.size());
+  if (motor_of(fault) > motors) {
+    return Error{ErrorKind::bad_input, "", "supply_dip of a motor that the vehicle has not",
+                 "motor = 1 to " + std::to_string(motors) + ", or the device that is its ESC"};
+  }
+  if (fault.value > 0.0) return Done{};
+  return Error{ErrorKind::bad_input, "", "supply_dip of one motor takes volts of its supply",
+               "value = \"3 V\""};
+}
+
+// What the lead of each motor's controller loses, from this boundary to the next.
+void FlightWorld::dip_leads(std::int64_t t_ns) {
+  std::vector<double> below_V(airframe_.rotors.size(), 0.0);
+  faults_.apply(kSupply_dip, t_ns, [&below_V](const FaultSpec& fault) {
+    const int motor = motor_of(fault);
+    if (motor > 0) below_V[static_cast<std::size_t>(motor) - 1] += fault.value;
+  });
+  for (std::size_t i = 0; i < below_V.size(); ++i) far_->set_dip(i, below_V[i]);
+}
+
+void FlightWorld::apply_faults(std::int64_t t_ns) {
+  faults_.apply(kEsc_stopped, t_ns, [this](const FaultSpec& fault) {
+    controllers_[static_cast<std::size_t>(motor_of(fault)) - 1]->cut();
+  });
+  // The vehicle itself lowers its supply; here is only kept that it did.
+  faults_.apply(kSupply_dip, t_ns, [](const FaultSpec&) {});
+}
+
+}  // namespace whirl::flight
