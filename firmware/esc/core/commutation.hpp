@@ -79,13 +79,13 @@ class Commutation {
   Middles& middles() { return middles_; }
   State state() const { return state_; }
   std::uint8_t step() const { return step_; }
-  Pace pace() const;
-  float speed_radps() const {  // mechanical, of the last revolution (electrical); 0 unless running
+  Pace pace();
+  float speed_radps() {  // mechanical, of the last revolution (electrical); 0 unless running
     const Pace p = pace();
     return p.radps(p.revolution, 6, config_);
   }
   // Pace::slowing as of the last crossing, for those who come by more often.
-  bool braked() const { return state_ == State::running && braked_; }
+  bool braked() const { return braked_; }
   const CommutationConfig& config() const { return config_; }
   bool in_sync() const { return state_ == State::running; }
   std::uint32_t bad_detections() const { return bad_detections_; }
@@ -100,10 +100,15 @@ class Commutation {
   std::uint8_t previous_step() const { return previous_of(step_); }
   Order overtaken(Ticks now, int side, int bus_counts);
   Order crossed(Ticks at, bool measured);
+  bool crosses(Ticks now, int side, Ticks elapsed, Ticks& at, bool& measured);
   bool commutates_later(Ticks now) const;
   __attribute__((noinline)) void learn(int bus_counts);  // not on every sample's way
   void lose();
-  void note_sector(Ticks length);
+  bool measure(Ticks length, bool measured);
+  __attribute__((noinline)) void book();
+  Ticks bounded(std::uint32_t sector) const;
+  Order wait_for_commutation(Ticks now, int off, bool at_rail, int bus_counts);
+  __attribute__((noinline)) Order miss(Ticks now);
   void wait(Ticks now);
   bool back_emf_fits();
   Order order(Ticks at);
@@ -128,6 +133,7 @@ class Commutation {
   Ticks last_length_ = 0;  // of the sector before, between two measured crossings; 0: it was not
   int longer_ = 0;         // the last sector than the one before, both so measured; 0: learnt
   bool measured_ = false;  // the last crossing was
+  Ticks unbooked_ = 0;     // the last sector, until book(); 0: it has been
   std::array<Ticks, 6> sectors_{};
   std::uint8_t newest_ = 0;
   std::uint32_t bad_detections_ = 0;
