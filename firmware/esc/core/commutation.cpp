@@ -44,7 +44,7 @@ void Commutation::join(Ticks now, std::uint8_t step, Ticks sector) {
 
 Commutation::Order Commutation::start(Ticks now) {
   stop();
-  const int noise = 2 * middles_.noise_counts();
+  const int noise = middles_.noise_counts() * 5 / 8;
   start_clear_counts_ = noise > config_.start_clear_counts ? noise : config_.start_clear_counts;
   state_ = State::starting;
   sampled_at_ = now;
@@ -66,6 +66,7 @@ Commutation::Order Commutation::on_commutated(Ticks now) {
   commutated_at_ = now;
   ordered_ = false;
   seen_before_ = false;
+  smooth_ = 0;
   return {};
 }
 
@@ -198,6 +199,13 @@ Commutation::Order Commutation::miss(Ticks now) {
   return order(now);
 }
 
+// A start begins at rest, so from nothing in each sector.
+int Commutation::smoothed(int off, bool at_rail) {
+  if (at_rail) return 0;
+  smooth_ += off - smooth_ / kSmoothing;
+  return smooth_ / kSmoothing;
+}
+
 // A sample off the blank time; `at` is when the phase crossed its middle, told by two samples if `measured`.
 bool Commutation::crosses(Ticks now, int side, Ticks elapsed, Ticks& at, bool& measured) {
   const int clear = state_ == State::running ? 0 : start_clear_counts_;
@@ -211,10 +219,13 @@ bool Commutation::crosses(Ticks now, int side, Ticks elapsed, Ticks& at, bool& m
     const std::uint32_t gap = since(now, before_at_);
     const auto height = static_cast<std::uint32_t>(before_counts_ - side);
     at = static_cast<Ticks>(now - gap * static_cast<std::uint32_t>(-side) / height);
+    if (state_ == State::starting) at = static_cast<Ticks>(at - kSmoothing_lag);
     measured = true;
     return true;
   }
-  if (side < -start_clear_counts_ && (state_ == State::starting || elapsed >= sector_ / 2)) {
+  const bool late = state_ == State::starting ? crossing_known_ || elapsed > config_.swing
+                                              : elapsed >= sector_ / 2;
+  if (side < -start_clear_counts_ && late) {
     // It had crossed before we could look: believe the expected moment, if there is one.
     at = state_ == State::running ? static_cast<Ticks>(commutated_at_ + sector_ / 2) : now;
     return true;
@@ -242,7 +253,7 @@ Commutation::Order Commutation::on_sample(Ticks now, int floating_counts, int bu
     if (unbooked_ != 0) book();
     return {};
   }
-  const int side = at_rail ? 0 : off;
+  const int side = state_ == State::starting ? smoothed(off, at_rail) : at_rail ? 0 : off;
   if (side > highest_counts_ || -side > highest_counts_) highest_counts_ = side > 0 ? side : -side;
   Ticks at = now;
   bool measured = false;

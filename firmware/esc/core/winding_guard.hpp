@@ -23,9 +23,9 @@ class WindingGuard {
     return static_cast<int>(ampere / kAmperes_per_count);
   }
 
-  static constexpr float kLimit_share = 1.06f;     // above what the model's bound alone allows
-  static constexpr float kCut_share = 1.45f;       // of the limit: one sample
-  static constexpr float kLasting_share = 1.2f;    // for longer than any step takes:
+  static constexpr float kLimit_share = 1.06f;   // above what the model's bound alone allows
+  static constexpr float kCut_share = 1.45f;     // of the limit: one sample
+  static constexpr float kLasting_share = 1.2f;  // for longer than any step takes:
   static constexpr std::uint16_t kLasting_ms = 250;
   static constexpr float kBus_A = 24.0f;
 

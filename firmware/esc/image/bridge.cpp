@@ -19,13 +19,18 @@ constexpr std::uint32_t kAll_lower_B = bit(0 + 16) | bit(1 + 16);
 constexpr std::uint32_t kUpper_enable[3] = {TIM4::CC1E, TIM4::CC2E, TIM4::CC3E};
 
 constexpr Pattern pattern(unsigned high, unsigned low) {
-  return {.off_A = low == 0 ? 0u : bit(7 + 16),
-          .off_B = low == 0 ? kAll_lower_B : low == 1 ? bit(1 + 16) : bit(0 + 16),
-          // A disabled channel lets go of its pin's level: the pin is low by the port's own output then.
-          .upper = kUpper_enable[high] | TIM4::CC4E,
-          .on_A = low == 0 ? bit(7) : 0u,
-          .on_B = low == 0 ? 0u : low == 1 ? bit(0) : bit(1),
-          .floating = static_cast<std::uint8_t>(3u - high - low)};
+  return {
+      .off_A = low == 0 ? 0u : bit(7 + 16),
+      .off_B = low == 0   ? kAll_lower_B
+               : low == 1 ? bit(1 + 16)
+                          : bit(0 + 16),
+      // A disabled channel lets go of its pin's level: the pin is low by the port's own output then.
+      .upper = kUpper_enable[high] | TIM4::CC4E,
+      .on_A = low == 0 ? bit(7) : 0u,
+      .on_B = low == 0   ? 0u
+              : low == 1 ? bit(0)
+                         : bit(1),
+      .floating = static_cast<std::uint8_t>(3u - high - low)};
 }
 
 constexpr Pattern kPatterns[6] = {pattern(0, 1), pattern(0, 2), pattern(1, 2),

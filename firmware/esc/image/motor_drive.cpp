@@ -154,7 +154,7 @@ void MotorDrive::on_commutation() {
 }
 
 void MotorDrive::know(const Calibration& calibration) {
-  guard_.configure(calibration.motor.max_current_A, calibration.sense.gain);
+  guard_.configure(calibration.motor_within_limits().max_current_A, calibration.sense.gain);
   commutation_.know(calibration.motor.Kt_NmpA);
 }
 
