@@ -27,7 +27,7 @@ struct CommutationConfig {
   Ticks shortest_sector = 180;  // 90 us: beyond 13,000 rpm with 7 pole pairs
   Ticks start_blank = 300;      // while starting, sectors are only guessed: 150 us
   Ticks swing = 6000;  // so long a rotor that still swings from its alignment may turn back: 3 ms
-  int start_clear_counts = 10;  // doubled, off the middle; or 5/8 of the noise's range, if more
+  int start_clear_counts = 10;     // doubled, off the middle; or 5/8 of the noise's range, if more
   std::uint8_t blank_share = 32;   // of 256: share of a sector that is not looked at
   std::uint8_t advance_share = 8;  // of 256: commutate earlier by this share of a sector
   // Line-to-line back-EMF in counts times a sector's ticks: the same at every speed. 0.01005 V s over
