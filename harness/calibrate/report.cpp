@@ -5,6 +5,7 @@
 
 #include "base/rpm.hpp"
 #include "base/text.hpp"
+#include "firmware/esc/core/calibration.hpp"
 #include "firmware/esc/core/thrust_model.hpp"
 
 namespace whirl::calibrate {
@@ -16,6 +17,10 @@ std::string format(const char* form, T... values) {
   std::snprintf(text, sizeof text, form, values...);
   return text;
 }
+
+// What they are apparent by: bus current over duty is so much less than the winding's (docs/commutation.md),
+// and so must its limit be, in the same amperes.
+constexpr double kWinding_over_apparent = 1.1;
 
 struct Setting {
   std::string name;
@@ -48,6 +53,8 @@ std::vector<Setting> settings(const Calibration& c) {
     all.push_back({"no_load", c.motor.no_load_current.value});
     all.push_back({"resistance", c.motor.resistance.value});
     all.push_back({"overlap", c.motor.overlap.value});
+    all.push_back(
+        {"max_current", fw::esc::MotorConstants{}.max_current_A / kWinding_over_apparent});
   }
   for (const auto& map : {c.still.a, c.still.q}) {
     for (const Coefficient& x : map) all.push_back({x.name, x.value});

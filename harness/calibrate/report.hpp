@@ -15,8 +15,8 @@ struct Calibration {
   MotorFit motor;
   StillAirFit still;
   RotorFit rotor;
-  // Also kt, no_load, resistance, overlap. They are apparent, of bus current over duty, which is up to a
-  // tenth less than the winding's: the ESC's bound on the winding's current would let that much more pass.
+  // Also kt, no_load, resistance, overlap. They are apparent, of bus current over duty, which is up to a tenth
+  // less than the winding's: max_current is told with them, as much less.
   bool tell_motor = false;
 };
 

@@ -15,11 +15,11 @@ local function flood(name, rate)
       t:step "flood"
       t:command { setpoint_rate = rate }
       t:budget("fw::esc::control_task") {
-        period = "1 ms", jitter = "20 us", latency = "20 us", response = "500 us", during = "2 s",
+        period = "1 ms", jitter = "20 us", latency = "20 us", response = "500 us", during = "2 s", margin = "10 %",
       }
-      t:budget("fw::esc::sampling_task") { latency = "10 us", during = "2 s" }
-      t:budget("fw::esc::commutation_task") { latency = "10 us", during = "2 s" }
-      t:budget("cpu") { busy = "60 %", during = "2 s" }
+      t:budget("fw::esc::sampling_task") { latency = "10 us", during = "2 s", margin = "10 %" }
+      t:budget("fw::esc::commutation_task") { latency = "10 us", during = "2 s", margin = "10 %" }
+      t:budget("cpu") { busy = "60 %", during = "2 s", margin = "10 %" }
       local flooded = t:record({ "thrust" }, "1 s")
       t:expect(flooded:max_error { thrust = calm }, "thrust off its value")
         :at_most "0.04 N"

@@ -41,9 +41,9 @@ line_plan("serial_stream", function(t)
   t:step "500 frames a second, 10 answers a second"
   t:ask("stream 500", "^ok$")
   t:wait "50 ms"
-  t:budget("fw::esc::control_task") { period = "1 ms", jitter = "20 us", response = "500 us", during = "2 s" }
-  t:budget("fw::esc::commutation_task") { latency = "10 us", during = "2 s" }
-  t:budget("cpu") { busy = "60 %", during = "2 s" }
+  t:budget("fw::esc::control_task") { period = "1 ms", jitter = "20 us", response = "500 us", during = "2 s", margin = "10 %" }
+  t:budget("fw::esc::commutation_task") { latency = "10 us", during = "2 s", margin = "10 %" }
+  t:budget("cpu") { busy = "60 %", during = "2 s", margin = "10 %" }
   for _ = 1, 16 do
     t:ask("status", "^mode 2 flags %d+ rpm %d+ mA %d+ mV %d+ mN %d+ mW %d+ ")
     t:ask("get all", "^kt ")

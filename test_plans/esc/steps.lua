@@ -2,7 +2,9 @@
 -- below 15.7 V is taken from it once the rotor turns. How long 20 A alone would take from 0.8 to 4.0 N is computed
 -- here, from the stand's own inertia and motor and from the torque that it shows at both ends.
 -- The power-based controller: rise_by_power.lua; open loop: open_loop.lua.
+-- The ESC is calibrated: until then it leaves a tenth of its current.
 include "include/start.lua"
+include "include/calibration.lua"
 
 local inertia_kgm2 = 3.752e-5
 local kv_rpm_per_V = 950
@@ -79,6 +81,8 @@ local function steps(name, supply, missing, more)
     tags = { "esc" },
     timeout = "20 s",
     run = function(t)
+      t:wait "200 ms"
+      calibrate(t)
       start(t, "3.2 N")
       if missing then t:fault { kind = "supply_dip", value = missing } end
       t:wait "1 s"

@@ -24,13 +24,14 @@ local function timing(mode, number, low, high, prepare)
       t:command { line = "mode " .. number }
       start(t, low)
       t:step "steady"
-      t:budget("adc1") { period = "50 us", jitter = "5 us", during = "1 s" }
+      t:budget("adc1") { period = "50 us", jitter = "5 us", during = "1 s", margin = "10 %" }
       t:budget("fw::esc::control_task") {
-        period = "1 ms", jitter = "20 us", latency = "20 us", response = "500 us", during = "3 s",
+        period = "1 ms", jitter = "20 us", latency = "20 us", response = "500 us", during = "3 s", margin = "10 %",
       }
-      t:budget("fw::esc::sampling_task") { latency = "10 us", response = "10 us", during = "3 s" }
-      t:budget("fw::esc::commutation_task") { latency = "10 us", response = "10 us", during = "3 s" }
-      t:budget("cpu") { busy = "60 %", during = "3 s" }
+      t:budget("fw::esc::sampling_task") { latency = "10 us", response = "10 us", during = "3 s", margin = "10 %" }
+      t:budget("fw::esc::commutation_task") { latency = "10 us", response = "10 us", during = "3 s", margin = "10 %" }
+      t:budget("cpu") { busy = "60 %", during = "3 s", margin = "10 %" }
+      t:budget("stack") { depth = "2 KiB", margin = "10 %" }
       if prepare then
         local r = t:record({ "esc_observable", "esc_iterations" }, "1 s")
         t:expect(r:mean "esc_observable", "share of the time that power tells the inflow"):at_least(0.99)

@@ -76,6 +76,14 @@ struct Calibration {
   float arming_voltage_V = 15.7f;  // at rest
   Mode mode = Mode::thrust_by_speed;
   bool identified = false;
+
+  // The motor, with no more current than is told apart: a shunt that nobody has held against an ammeter may
+  // read a tenth low, and nobody knows of the motor how far its ripple reaches above the mean.
+  MotorConstants motor_within_limits() const {
+    MotorConstants limited = motor;
+    if (!identified) limited.max_current_A *= 0.9f;
+    return limited;
+  }
 };
 
 }  // namespace fw::esc

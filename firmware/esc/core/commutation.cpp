@@ -23,7 +23,7 @@ void Commutation::stop() {
   sectors_.fill(0);
   good_ = missed_ = unfit_ = 0;
   ordered_ = braked_ = measured_ = false;
-  last_length_ = 0;
+  last_length_ = unbooked_ = 0;
   longer_ = 0;
 }
 
@@ -31,7 +31,7 @@ void Commutation::join(Ticks now, std::uint8_t step, Ticks sector) {
   stop();
   state_ = State::running;
   step_ = step;
-  sector_ = sector < config_.shortest_sector ? config_.shortest_sector : sector;
+  sector_ = bounded(sector);
   sectors_.fill(sector_);
   good_ = kInARow;
   commutated_at_ = sampled_at_ = now;
@@ -44,7 +44,7 @@ void Commutation::join(Ticks now, std::uint8_t step, Ticks sector) {
 
 Commutation::Order Commutation::start(Ticks now) {
   stop();
-  const int noise = 2 * middles_.noise_counts();
+  const int noise = middles_.noise_counts() * 5 / 8;
   start_clear_counts_ = noise > config_.start_clear_counts ? noise : config_.start_clear_counts;
   state_ = State::starting;
   sampled_at_ = now;
@@ -66,19 +66,12 @@ Commutation::Order Commutation::on_commutated(Ticks now) {
   commutated_at_ = now;
   ordered_ = false;
   seen_before_ = false;
+  smooth_ = 0;
   return {};
 }
 
-void Commutation::note_sector(Ticks length) {
-  const auto last = [&](unsigned back) { return sector_of(sectors_, newest_, back); };
-  const std::uint32_t before = last(2) + last(3);
-  braked_ = last(3) > 0 && (length + last(1)) * 64u > before * 65u;
-  sectors_[newest_] = length;
-  newest_ = static_cast<std::uint8_t>(newest_ == 5 ? 0 : newest_ + 1);
-  // While starting, the rotor gains speed within one sector: follow faster.
-  const std::uint32_t weight = state_ == State::running ? 96 : 200;
-  const std::uint32_t mixed = (sector_ * (256u - weight) + length * weight) >> 8;
-  sector_ = static_cast<Ticks>(mixed < config_.shortest_sector ? config_.shortest_sector : mixed);
+Ticks Commutation::bounded(std::uint32_t sector) const {
+  return static_cast<Ticks>(sector < config_.shortest_sector ? config_.shortest_sector : sector);
 }
 
 void Commutation::lose() {
@@ -121,24 +114,42 @@ void Commutation::learn(int bus_counts) {
   middles_.learn(previous_of(previous_step()), more * emf_counts / sector, bus_counts);
 }
 
+void Commutation::book() {
+  const Ticks length = unbooked_;
+  unbooked_ = 0;
+  const auto last = [&](unsigned back) { return sector_of(sectors_, newest_, back); };
+  const std::uint32_t before = last(2) + last(3);
+  braked_ = state_ == State::running && last(3) > 0 && (length + last(1)) * 64u > before * 65u;
+  sectors_[newest_] = length;
+  newest_ = static_cast<std::uint8_t>(newest_ == 5 ? 0 : newest_ + 1);
+}
+
+// The sector between two crossings; false: the rotor is lost.
+bool Commutation::measure(Ticks length, bool measured) {
+  const bool odd = length > 2u * sector_ || 2u * length < sector_;
+  const bool runs = state_ == State::running;
+  if (runs && odd && ++missed_ >= kInARow / 2) {
+    lose();
+    return false;
+  }
+  if (!odd) missed_ = 0;
+  const bool fair = runs && measured && measured_ && !odd;
+  longer_ = fair && last_length_ > 0 ? static_cast<int>(length) - last_length_ : 0;
+  last_length_ = fair ? length : Ticks{0};
+  unbooked_ = length;
+  // While starting, the rotor gains speed within one sector: follow faster.
+  const std::uint32_t weight = runs ? 96 : 200;
+  sector_ = bounded((sector_ * (256u - weight) + length * weight) >> 8);
+  if (good_ < kInARow && ++good_ == kInARow) state_ = State::running;
+  return true;
+}
+
 Commutation::Order Commutation::crossed(Ticks at, bool measured) {
-  if (crossing_known_) {
-    const Ticks length = since(at, crossed_at_);
-    const bool odd = length > 2u * sector_ || 2u * length < sector_;
-    const bool fair = measured && measured_ && !odd && state_ == State::running;
-    longer_ = fair && last_length_ > 0 ? static_cast<int>(length) - last_length_ : 0;
-    last_length_ = fair ? length : Ticks{0};
-    if (state_ == State::running && odd && ++missed_ >= kInARow / 2) {
-      lose();
-      return {};
-    }
-    if (!odd) missed_ = 0;
-    note_sector(length);
-    if (good_ < kInARow && ++good_ == kInARow) state_ = State::running;
+  if (crossing_known_) [[likely]] {
+    if (!measure(since(at, crossed_at_), measured)) return {};
   } else {
     // The first crossing of a start lies half a sector after its commutation.
-    sector_ = static_cast<Ticks>(2 * since(at, commutated_at_));
-    if (sector_ < config_.shortest_sector) sector_ = config_.shortest_sector;
+    sector_ = bounded(static_cast<Ticks>(2 * since(at, commutated_at_)));
   }
   crossing_known_ = true;
   measured_ = measured;
@@ -152,57 +163,32 @@ Commutation::Order Commutation::crossed(Ticks at, bool measured) {
 // (electrical) since the crossing and is far faster than the guess. Jump to where it is.
 Commutation::Order Commutation::overtaken(Ticks now, int side, int bus_counts) {
   if (state_ != State::starting || !crossing_known_ || side <= bus_counts / 64) return {};
-  sector_ = static_cast<Ticks>(since(now, crossed_at_) / 3);
-  if (sector_ < config_.shortest_sector) sector_ = config_.shortest_sector;
+  sector_ = bounded(since(now, crossed_at_) / 3u);
   crossing_known_ = false;
   good_ = 0;
   step_ = static_cast<std::uint8_t>((step_ + 3) % 6);
   return {true, now};
 }
 
-Commutation::Order Commutation::on_sample(Ticks now, int floating_counts, int bus_counts) {
-  if (state_ == State::stopped) return {};
-  wait(now);
-  // Positive before the crossing, negative after it, whatever the step.
-  const std::uint8_t seen = ordered_ ? previous_step() : step_;
-  const int doubled = middles_.off(seen, floating_counts, bus_counts);
-  const int off = (seen & 1) != 0 ? -doubled : doubled;
-  // At a rail a diode still carries the old current: that says nothing about the rotor. At low duty
-  // this outlasts the blank time, for the current dies slowly while the PWM is off.
-  const int rail = bus_counts >> 6;
-  const bool at_rail = floating_counts <= rail || floating_counts >= bus_counts - rail;
-  if (ordered_) {
-    if (longer_ != 0 && commutates_later(now)) learn(bus_counts);
-    if (!at_rail && -off > highest_counts_) highest_counts_ = -off;
-    return overtaken(now, off, bus_counts);
+// Between a crossing and its commutation.
+Commutation::Order Commutation::wait_for_commutation(Ticks now, int off, bool at_rail,
+                                                     int bus_counts) {
+  if ((longer_ != 0 || unbooked_ != 0) && commutates_later(now)) {
+    if (longer_ != 0) {
+      learn(bus_counts);
+    } else {
+      book();
+    }
   }
-  const Ticks elapsed = since(now, commutated_at_);
-  const Ticks blank = share_of(sector_, config_.blank_share);
-  if (elapsed <
-      (state_ == State::running || blank < config_.start_blank ? blank : config_.start_blank)) {
+  if (!at_rail && -off > highest_counts_) highest_counts_ = -off;
+  if (state_ == State::running) [[likely]]
     return {};
-  }
-  const int side = at_rail ? 0 : off;
-  if (side > highest_counts_ || -side > highest_counts_) highest_counts_ = side > 0 ? side : -side;
-  const int clear = state_ == State::running ? 0 : start_clear_counts_;
-  if (side > clear) {
-    seen_before_ = true;
-    before_at_ = now;
-    before_counts_ = side;
-  } else if (seen_before_ && side < -clear) {
-    const std::uint32_t gap = since(now, before_at_);
-    const auto height = static_cast<std::uint32_t>(before_counts_ - side);
-    const auto back = static_cast<Ticks>(gap * static_cast<std::uint32_t>(-side) / height);
-    return crossed(static_cast<Ticks>(now - back), true);
-  } else if (side < -start_clear_counts_ && (state_ == State::starting || elapsed >= sector_ / 2)) {
-    // It had crossed before we could look: believe the expected moment, if there is one.
-    const auto expected = static_cast<Ticks>(commutated_at_ + sector_ / 2);
-    return crossed(state_ == State::running ? expected : now, false);
-  }
-  // No crossing where one and a half sectors have passed: go on blindly, but not for ever, and not if
-  // there is hardly any back-EMF: then the rotor has been stopped.
-  const Ticks patience = static_cast<Ticks>(sector_ < 0x5000 ? sector_ + sector_ / 2 : sector_);
-  if (elapsed < patience) return {};
+  return overtaken(now, off, bus_counts);
+}
+
+// No crossing where one and a half sectors have passed: go on blindly, but not for ever, and not if
+// there is hardly any back-EMF: then the rotor has been stopped.
+Commutation::Order Commutation::miss(Ticks now) {
   ++bad_detections_;
   good_ = 0;
   crossing_known_ = false;
@@ -213,7 +199,72 @@ Commutation::Order Commutation::on_sample(Ticks now, int floating_counts, int bu
   return order(now);
 }
 
-Pace Commutation::pace() const {
+// A start begins at rest, so from nothing in each sector.
+int Commutation::smoothed(int off, bool at_rail) {
+  if (at_rail) return 0;
+  smooth_ += off - smooth_ / kSmoothing;
+  return smooth_ / kSmoothing;
+}
+
+// A sample off the blank time; `at` is when the phase crossed its middle, told by two samples if `measured`.
+bool Commutation::crosses(Ticks now, int side, Ticks elapsed, Ticks& at, bool& measured) {
+  const int clear = state_ == State::running ? 0 : start_clear_counts_;
+  if (side > clear) {
+    seen_before_ = true;
+    before_at_ = now;
+    before_counts_ = side;
+    return false;
+  }
+  if (seen_before_ && side < -clear) {
+    const std::uint32_t gap = since(now, before_at_);
+    const auto height = static_cast<std::uint32_t>(before_counts_ - side);
+    at = static_cast<Ticks>(now - gap * static_cast<std::uint32_t>(-side) / height);
+    if (state_ == State::starting) at = static_cast<Ticks>(at - kSmoothing_lag);
+    measured = true;
+    return true;
+  }
+  const bool late = state_ == State::starting ? crossing_known_ || elapsed > config_.swing
+                                              : elapsed >= sector_ / 2;
+  if (side < -start_clear_counts_ && late) {
+    // It had crossed before we could look: believe the expected moment, if there is one.
+    at = state_ == State::running ? static_cast<Ticks>(commutated_at_ + sector_ / 2) : now;
+    return true;
+  }
+  return false;
+}
+
+Commutation::Order Commutation::on_sample(Ticks now, int floating_counts, int bus_counts) {
+  if (state_ == State::stopped) [[unlikely]]
+    return {};
+  wait(now);
+  // Positive before the crossing, negative after it, whatever the step.
+  const std::uint8_t seen = ordered_ ? previous_step() : step_;
+  const int doubled = middles_.off(seen, floating_counts, bus_counts);
+  const int off = (seen & 1) != 0 ? -doubled : doubled;
+  // At a rail a diode still carries the old current: that says nothing about the rotor. At low duty
+  // this outlasts the blank time, for the current dies slowly while the PWM is off.
+  const int rail = bus_counts >> 6;
+  const bool at_rail = floating_counts <= rail || floating_counts >= bus_counts - rail;
+  if (ordered_) return wait_for_commutation(now, off, at_rail, bus_counts);
+  const Ticks elapsed = since(now, commutated_at_);
+  const Ticks blank = share_of(sector_, config_.blank_share);
+  if (elapsed <
+      (state_ == State::running || blank < config_.start_blank ? blank : config_.start_blank)) {
+    if (unbooked_ != 0) book();
+    return {};
+  }
+  const int side = state_ == State::starting ? smoothed(off, at_rail) : at_rail ? 0 : off;
+  if (side > highest_counts_ || -side > highest_counts_) highest_counts_ = side > 0 ? side : -side;
+  Ticks at = now;
+  bool measured = false;
+  if (crosses(now, side, elapsed, at, measured)) return crossed(at, measured);
+  if (unbooked_ != 0) book();
+  const Ticks patience = static_cast<Ticks>(sector_ < 0x5000 ? sector_ + sector_ / 2 : sector_);
+  return elapsed < patience ? Order{} : miss(now);
+}
+
+Pace Commutation::pace() {
+  if (unbooked_ != 0) book();
   return state_ == State::running ? pace_of(sectors_, newest_, waited_) : Pace{};
 }
 

@@ -26,8 +26,8 @@ struct CommutationConfig {
   Ticks align_sector = 24'000;  // a forced sector while starting: 12 ms, shrinking
   Ticks shortest_sector = 180;  // 90 us: beyond 13,000 rpm with 7 pole pairs
   Ticks start_blank = 300;      // while starting, sectors are only guessed: 150 us
-  int start_clear_counts =
-      10;  // doubled counts off the middle, or twice the noise's range, if more
+  Ticks swing = 6000;  // so long a rotor that still swings from its alignment may turn back: 3 ms
+  int start_clear_counts = 10;     // doubled, off the middle; or 5/8 of the noise's range, if more
   std::uint8_t blank_share = 32;   // of 256: share of a sector that is not looked at
   std::uint8_t advance_share = 8;  // of 256: commutate earlier by this share of a sector
   // Line-to-line back-EMF in counts times a sector's ticks: the same at every speed. 0.01005 V s over
@@ -79,19 +79,22 @@ class Commutation {
   Middles& middles() { return middles_; }
   State state() const { return state_; }
   std::uint8_t step() const { return step_; }
-  Pace pace() const;
-  float speed_radps() const {  // mechanical, of the last revolution (electrical); 0 unless running
+  Pace pace();
+  float speed_radps() {  // mechanical, of the last revolution (electrical); 0 unless running
     const Pace p = pace();
     return p.radps(p.revolution, 6, config_);
   }
   // Pace::slowing as of the last crossing, for those who come by more often.
-  bool braked() const { return state_ == State::running && braked_; }
+  bool braked() const { return braked_; }
   const CommutationConfig& config() const { return config_; }
   bool in_sync() const { return state_ == State::running; }
   std::uint32_t bad_detections() const { return bad_detections_; }
 
  private:
-  static constexpr int kInARow = 6;     // crossings that make a start, or their lack a loss
+  static constexpr int kInARow = 6;  // crossings that make a start, or their lack a loss
+  // While starting, samples pass a mean of the last few: its noise is 2.6 times less, and it comes 150 us late.
+  static constexpr int kSmoothing = 4;
+  static constexpr Ticks kSmoothing_lag = 300;
   static constexpr int kLearning = 30;  // ticks that a sample which learns takes, and some: 15 us
 
   static std::uint8_t previous_of(std::uint8_t step) {
@@ -100,10 +103,16 @@ class Commutation {
   std::uint8_t previous_step() const { return previous_of(step_); }
   Order overtaken(Ticks now, int side, int bus_counts);
   Order crossed(Ticks at, bool measured);
+  int smoothed(int off, bool at_rail);
+  bool crosses(Ticks now, int side, Ticks elapsed, Ticks& at, bool& measured);
   bool commutates_later(Ticks now) const;
   __attribute__((noinline)) void learn(int bus_counts);  // not on every sample's way
   void lose();
-  void note_sector(Ticks length);
+  bool measure(Ticks length, bool measured);
+  __attribute__((noinline)) void book();
+  Ticks bounded(std::uint32_t sector) const;
+  Order wait_for_commutation(Ticks now, int off, bool at_rail, int bus_counts);
+  __attribute__((noinline)) Order miss(Ticks now);
   void wait(Ticks now);
   bool back_emf_fits();
   Order order(Ticks at);
@@ -116,6 +125,7 @@ class Commutation {
   Ticks crossed_at_ = 0;
   Ticks before_at_ = 0;  // last sample on the near side of the crossing
   int before_counts_ = 0;
+  int smooth_ = 0;  // while starting: kSmoothing times the mean of the last few off the middle
   bool seen_before_ = false;
   bool ordered_ = false;
   bool braked_ = false;
@@ -128,6 +138,7 @@ class Commutation {
   Ticks last_length_ = 0;  // of the sector before, between two measured crossings; 0: it was not
   int longer_ = 0;         // the last sector than the one before, both so measured; 0: learnt
   bool measured_ = false;  // the last crossing was
+  Ticks unbooked_ = 0;     // the last sector, until book(); 0: it has been
   std::array<Ticks, 6> sectors_{};
   std::uint8_t newest_ = 0;
   std::uint32_t bad_detections_ = 0;

@@ -34,7 +34,8 @@ Core::Core(const Calibration& calibration)
     : calibration_(calibration),
       supervisor_({.arming_voltage_V = calibration.arming_voltage_V}),
       estimator_(calibration, kPeriod_s),
-      speed_control_(calibration.motor, calibration.free_air, SpeedGains{}, kPeriod_s) {}
+      speed_control_(calibration.motor_within_limits(), calibration.free_air, SpeedGains{},
+                     kPeriod_s) {}
 
 void Core::on_setpoint(std::uint16_t v) {
   command_given_ = false;
@@ -62,8 +63,8 @@ bool Core::recalibrate(const Calibration& calibration) {
   calibration_.mode = mode;
   supervisor_.limit({.arming_voltage_V = calibration.arming_voltage_V});
   estimator_ = ThrustEstimator(calibration_, kPeriod_s);
-  speed_control_ =
-      SpeedController(calibration.motor, calibration.free_air, SpeedGains{}, kPeriod_s);
+  speed_control_ = SpeedController(calibration.motor_within_limits(), calibration.free_air,
+                                   SpeedGains{}, kPeriod_s);
   return true;
 }
 
@@ -155,7 +156,8 @@ Drive Core::regulate(float value) {
   const float share = sensed_.slowing ? kHeld_share : share_at(latest_radps);
   VoltageDemand demand{};
   if (calibration_.mode == Mode::duty) {
-    demand = within_current_limits(calibration_.motor, value * bus_V, latest_radps, bus_V, share);
+    demand = within_current_limits(calibration_.motor_within_limits(), value * bus_V, latest_radps,
+                                   bus_V, share);
     // At little duty the current has gaps and the rotor would slow down until nothing is sensed.
     const float held_V = speed_control_.update(kHeld_radps, latest_radps, bus_V, share).voltage_V;
     if (demand.voltage_V < held_V) demand = {held_V, true};

@@ -23,10 +23,10 @@ class WindingGuard {
     return static_cast<int>(ampere / kAmperes_per_count);
   }
 
-  static constexpr float kLimit_share = 1.06f;     // above what the model's bound alone allows
-  static constexpr float kCut_share = 1.45f;       // of the limit: one sample
-  static constexpr float kLasting_share = 1.2f;    // for longer than any step takes:
-  static constexpr std::uint16_t kLasting = 5000;  // samples, 0.25 s
+  static constexpr float kLimit_share = 1.06f;   // above what the model's bound alone allows
+  static constexpr float kCut_share = 1.45f;     // of the limit: one sample
+  static constexpr float kLasting_share = 1.2f;  // for longer than any step takes:
+  static constexpr std::uint16_t kLasting_ms = 250;
   static constexpr float kBus_A = 24.0f;
 
   // gain: true current over the shunt's, as calibrated.
@@ -37,9 +37,9 @@ class WindingGuard {
   }
   void restart() {
     shunt_ = current_ = 0;
-    cut_ = false;
+    cut_ = tripped_ = false;
     cuts_ = bus_over_ = 0;
-    lasting_ = 0;
+    lasting_ms_ = 0;
   }
 
   // Once per period. shunt: counts above zero; duty: PWM counts in force in this period.
@@ -48,31 +48,43 @@ class WindingGuard {
     shunt_ = shunt;
     note_bus(shunt);
     cut_ = false;
-    if (duty < kLeast_told) {  // too short a pulse: noise only
+    if (duty < kLeast_told) [[unlikely]] {  // too short a pulse: noise only
       current_ -= current_ / 4;
       return;
     }
     const auto share =
         static_cast<int>((duty * (374'604u - 15u * duty)) >> 16);  // 65536 (1 - e^-dx)
-    const int raw = (1024 * shunt - 748 * before) * 64 / share;
+    const int raw = (256 * shunt - 187 * before) * 256 / share;
     current_ += (raw - current_) / 2;
-    cut_ = raw > cut_at_;
-    cuts_ = cut_ ? static_cast<std::uint8_t>(cuts_ + 4)
-                 : static_cast<std::uint8_t>(cuts_ - (cuts_ > 0));
-    note_lasting(current_ > lasting_at_);
+    if (raw > cut_at_) [[unlikely]] {
+      cut_ = true;
+      cuts_ = static_cast<std::uint8_t>(cuts_ + 4);
+      tripped_ |= cuts_ >= kCutsToTrip;
+    } else if (cuts_ > 0) [[unlikely]] {
+      --cuts_;
+    }
+  }
+
+  // Once per millisecond: whether the current lasts.
+  void tick() {
+    const int next = current_ > lasting_at_ ? lasting_ms_ + 1 : lasting_ms_ - 4;
+    lasting_ms_ = static_cast<std::uint16_t>(next > 0 ? next : 0);
+    tripped_ |= lasting_ms_ >= kLasting_ms;
   }
 
   // braked: the rotor slows down although it is driven; 40 % of the limit will do.
   std::uint32_t allowed(std::uint32_t wanted, int bus_counts, bool braked = false) const {
-    if (cut_) return kShortest;
+    if (cut_) [[unlikely]]
+      return kShortest;
     const int over = current_ - (braked ? 2 * limit_ / 5 : limit_);
-    if (over <= 0 || bus_counts <= 0) return wanted;
+    if (over <= 0 || bus_counts <= 0) [[likely]]
+      return wanted;
     const auto less = static_cast<std::uint32_t>(kDroop * over / bus_counts);
     const std::uint32_t rest = wanted > less ? wanted - less : 0u;
     return rest > kShortest ? rest : kShortest;
   }
 
-  bool tripped() const { return cuts_ >= kCutsToTrip || bus_over_ >= 3 || lasting_ >= kLasting; }
+  bool tripped() const { return tripped_; }
   float current_A() const { return static_cast<float>(current_) * kAmperes_per_count; }
 
  private:
@@ -82,20 +94,20 @@ class WindingGuard {
   static constexpr int kDroop =
       static_cast<int>(0.4f * kAmperes_per_count / kVolts_per_count * 3600);
 
-  void note_lasting(bool over) {
-    const int next = over ? lasting_ + 1 : lasting_ - 4;
-    lasting_ = static_cast<std::uint16_t>(next > 0 ? next : 0);
-  }
   void note_bus(int shunt) {
-    const bool over = shunt > counts(kBus_A);
-    bus_over_ = over ? static_cast<std::uint8_t>(bus_over_ + 1) : std::uint8_t{0};
+    if (shunt <= counts(kBus_A)) [[likely]] {
+      bus_over_ = 0;
+      return;
+    }
+    ++bus_over_;
+    tripped_ |= bus_over_ >= 3;
   }
 
   int limit_ = counts(21.2f), cut_at_ = counts(29.0f), lasting_at_ = counts(24.0f);
   int shunt_ = 0, current_ = 0;
-  bool cut_ = false;
+  bool cut_ = false, tripped_ = false;
   std::uint8_t cuts_ = 0, bus_over_ = 0;
-  std::uint16_t lasting_ = 0;
+  std::uint16_t lasting_ms_ = 0;
 };
 
 }  // namespace fw::esc

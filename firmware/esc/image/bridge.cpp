@@ -7,37 +7,40 @@ namespace {
 
 using namespace f103;
 
+// What a step writes, in this order: a commutation may come into a sample, and both are short of time.
 struct Pattern {
-  std::uint8_t high, low, floating;
+  std::uint32_t off_A, off_B;  // BSRR: the lower switches but one
+  std::uint32_t upper;         // CCER
+  std::uint32_t on_A, on_B;    // BSRR: that one
+  std::uint8_t floating;
 };
-constexpr Pattern kPatterns[6] = {{0, 1, 2}, {0, 2, 1}, {1, 2, 0}, {1, 0, 2}, {2, 0, 1}, {2, 1, 0}};
 
-constexpr std::uint32_t kUpperEnable[3] = {TIM4::CC1E, TIM4::CC2E, TIM4::CC3E};
-constexpr std::uint32_t kAllUpper = TIM4::CC1E | TIM4::CC2E | TIM4::CC3E;
+constexpr std::uint32_t kAll_lower_B = bit(0 + 16) | bit(1 + 16);
+constexpr std::uint32_t kUpper_enable[3] = {TIM4::CC1E, TIM4::CC2E, TIM4::CC3E};
+
+constexpr Pattern pattern(unsigned high, unsigned low) {
+  return {
+      .off_A = low == 0 ? 0u : bit(7 + 16),
+      .off_B = low == 0   ? kAll_lower_B
+               : low == 1 ? bit(1 + 16)
+                          : bit(0 + 16),
+      // A disabled channel lets go of its pin's level: the pin is low by the port's own output then.
+      .upper = kUpper_enable[high] | TIM4::CC4E,
+      .on_A = low == 0 ? bit(7) : 0u,
+      .on_B = low == 0   ? 0u
+              : low == 1 ? bit(0)
+                         : bit(1),
+      .floating = static_cast<std::uint8_t>(3u - high - low)};
+}
+
+constexpr Pattern kPatterns[6] = {pattern(0, 1), pattern(0, 2), pattern(1, 2),
+                                  pattern(1, 0), pattern(2, 0), pattern(2, 1)};
 
 std::uint32_t duty_counts = 0;
 
 void lower_off() {
   GPIOA::BSRR::write(bit(7 + 16));
-  GPIOB::BSRR::write(bit(0 + 16) | bit(1 + 16));
-}
-
-void lower_off(std::uint8_t phase) {
-  if (phase == 0) {
-    GPIOA::BSRR::write(bit(7 + 16));
-  } else {
-    GPIOB::BSRR::write(phase == 1 ? bit(0 + 16) : bit(1 + 16));
-  }
-}
-
-void lower_on(std::uint8_t phase) {
-  if (phase == 0) {
-    GPIOB::BSRR::write(bit(0 + 16) | bit(1 + 16));
-    GPIOA::BSRR::write(bit(7));
-  } else {
-    GPIOA::BSRR::write(bit(7 + 16));
-    GPIOB::BSRR::write(phase == 1 ? bit(0) | bit(1 + 16) : bit(1) | bit(0 + 16));
-  }
+  GPIOB::BSRR::write(kAll_lower_B);
 }
 
 void write_duty() {
@@ -46,11 +49,6 @@ void write_duty() {
   TIM4::CCR3::write(duty_counts);
   const std::uint32_t on = duty_counts < kShortest_on ? kShortest_on : duty_counts;
   TIM4::CCR4::write(on - kSample_before_end);
-}
-
-// A disabled channel lets go of its pin's level: the pin is low by the port's own output then.
-void upper_only(std::uint8_t phase) {
-  TIM4::CCER::write(kUpperEnable[phase] | TIM4::CC4E);
 }
 
 }  // namespace
@@ -90,13 +88,15 @@ void let_go() {
   lower_off();
 }
 
+// Never both switches of a leg: what goes off goes off before anything goes on. A jump of three steps,
+// when a start is overtaken, swaps the switches of both legs.
 void apply(std::uint8_t step) {
-  const Pattern pattern = kPatterns[step];
-  // Never both switches of a leg: what goes off goes off before anything goes on. A jump of three
-  // steps, when a start is overtaken, swaps the switches of both legs.
-  lower_off(pattern.high);
-  upper_only(pattern.high);
-  lower_on(pattern.low);
+  const Pattern& next = kPatterns[step];
+  GPIOA::BSRR::write(next.off_A);
+  GPIOB::BSRR::write(next.off_B);
+  TIM4::CCER::write(next.upper);
+  GPIOA::BSRR::write(next.on_A);
+  GPIOB::BSRR::write(next.on_B);
 }
 
 void set_duty(std::uint32_t counts) {

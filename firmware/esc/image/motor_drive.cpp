@@ -105,21 +105,24 @@ void MotorDrive::record(int shunt_counts, int bus_counts) {
 }
 
 void MotorDrive::on_sample() {
-  if (phase_ == Phase::catching) return look_for_rotor();
-  if (phase_ == Phase::probing) return probe();
+  if (phase_ == Phase::catching) [[unlikely]]
+    return look_for_rotor();
+  if (phase_ == Phase::probing) [[unlikely]]
+    return probe();
   const sampling::Sample sample = sampling::read();
   record(sample.shunt, sample.bus);
-  if (phase_ == Phase::off) {
+  if (phase_ == Phase::off) [[unlikely]] {
     zero_counts_ += (64 * sample.shunt - zero_counts_) / 64;
     return;
   }
   watch_current(sample.shunt - (zero_counts_ >> 6), sample.bus);
-  if (phase_ == Phase::turning) commutate_by(sample.floating, sample.bus);
+  if (phase_ == Phase::turning) [[likely]]
+    commutate_by(sample.floating, sample.bus);
 }
 
 void MotorDrive::watch_current(int shunt_counts, int bus_counts) {
   guard_.update(shunt_counts, bridge::duty());
-  if (guard_.tripped()) {
+  if (guard_.tripped()) [[unlikely]] {
     const hal::InterruptLock lock;
     go_off();
     tripped_ = true;
@@ -136,7 +139,8 @@ void MotorDrive::commutate_by(int floating_counts, int bus_counts) {
   const Commutation::Order order =
       commutation_.on_sample(bridge::now(), floating_counts, bus_counts);
   if (order.commutate) bridge::interrupt_at(order.at);
-  if (commutation_.state() == Commutation::State::stopped) go_catching();
+  if (commutation_.state() == Commutation::State::stopped) [[unlikely]]
+    go_catching();
 }
 
 void MotorDrive::on_commutation() {
@@ -150,7 +154,7 @@ void MotorDrive::on_commutation() {
 }
 
 void MotorDrive::know(const Calibration& calibration) {
-  guard_.configure(calibration.motor.max_current_A, calibration.sense.gain);
+  guard_.configure(calibration.motor_within_limits().max_current_A, calibration.sense.gain);
   commutation_.know(calibration.motor.Kt_NmpA);
 }
 
@@ -189,6 +193,7 @@ Sensed MotorDrive::sense() {
     bus = bus_sum_;
     n = samples_;
     shunt_sum_ = bus_sum_ = samples_ = 0;
+    guard_.tick();
     pace = commutation_.pace();
   }
   const CommutationConfig& config = commutation_.config();

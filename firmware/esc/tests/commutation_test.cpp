@@ -192,6 +192,19 @@ TEST(Commutation, LearnsInNoSampleThatACommutationComesInto) {
   EXPECT_GE(t.motor.least_ahead_ticks, 20);
 }
 
+// What swings back when a start begins shows a back-EMF of the wrong sign: no crossing.
+TEST(Commutation, StartsARotorThatSwingsBackFromItsAlignment) {
+  for (const double back_radps : {2.0, 5.0, 8.0}) {
+    Commutation commutation{CommutationConfig{}};
+    TestMotor motor;
+    motor.angle = 2.0 * kPi / 3.0;
+    motor.speed = -back_radps;
+    motor.apply(commutation.start(0));
+    motor.run(commutation, 2.0, 0.12);
+    EXPECT_TRUE(commutation.in_sync()) << back_radps;
+  }
+}
+
 TEST(Commutation, StartsUnderLoad) {
   Turning t(0.02);
   EXPECT_TRUE(t.commutation.in_sync());

@@ -1,6 +1,7 @@
 #include "firmware/esc/core/core.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -204,8 +205,27 @@ TEST(Core, SixLossesInAFewSecondsAreTooMany) {
 
 // The bound follows the newest speed, not the filtered one: a rotor that is braked hard has less
 // back-EMF than the filter believes.
+// A shunt that nobody has held against an ammeter may read a tenth low.
+TEST(Core, LeavesATenthOfTheCurrentUntilItIsCalibrated) {
+  std::array<double, 2> peak_A{};
+  for (const bool identified : {false, true}) {
+    Calibration calibration;
+    calibration.identified = identified;
+    Bench bench(calibration);
+    bench.arm();
+    bench.hold(400, 1000);
+    bench.peak_A = 0.0;
+    bench.hold(1400, 100);
+    peak_A[identified ? 1 : 0] = bench.peak_A;
+  }
+  EXPECT_GT(peak_A[1], 15.0);
+  EXPECT_TRUE(near(peak_A[0], 0.9 * peak_A[1], stated(0.02 * peak_A[1], "a diode's drop stays")));
+}
+
 TEST(Core, BoundOfTheCurrentFollowsTheLatestSpeed) {
-  Core core(in_mode(Mode::thrust_by_speed));
+  Calibration calibration = in_mode(Mode::thrust_by_speed);
+  calibration.identified = true;
+  Core core(calibration);
   Sensed sensed{.bus_voltage_V = 16.4f, .speed_radps = 0.0f};
   for (int i = 0; i < 26; ++i) core.tick(sensed), core.on_setpoint(0);
   core.on_setpoint(2047);

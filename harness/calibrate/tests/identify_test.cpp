@@ -196,6 +196,24 @@ TEST(Identify, FindsTheSpeedsEffect) {
                    stated(0.01 * t.c0, "1 %: the firmware's floats, the solver's tolerance")));
 }
 
+// Apparent constants let a tenth more through the winding: their limit is told as much lower, and never alone.
+TEST(Identify, TellsTheLimitInTheAmperesOfTheMotorThatItTells) {
+  auto found = identify(Stand(Truth{}, 1, 1e-4).all());
+  ASSERT_TRUE(found.ok()) << found.error().message();
+  const auto told = [&found](const std::string& start) {
+    std::string line;
+    for (const std::string& one : lines(found.value())) {
+      if (one.rfind(start, 0) == 0) line = one;
+    }
+    return line;
+  };
+  EXPECT_EQ(told("set resistance"), "");
+  EXPECT_EQ(told("set max_current"), "");
+  found.value().tell_motor = true;
+  EXPECT_NE(told("set resistance"), "");
+  EXPECT_EQ(told("set max_current"), "set max_current 18.18182");
+}
+
 TEST(Identify, IntervalsCoverTheTruthInNinetyFivePercentOfSeeds) {
   constexpr int kSeeds = 300;
   const Truth t;
