@@ -97,6 +97,11 @@ TEST(CanErrorFrame, SaysWhatTheControllerSays) {
   const CanTrouble passive = parse_error_frame(0x20000204, {0, 0x20, 0, 0, 0, 0, 128, 0});
   EXPECT_EQ(passive.state, CanBusState::passive);
   EXPECT_EQ(passive.transmit_errors, 128);
+  EXPECT_EQ(passive.receive_errors, 0);
+  EXPECT_EQ(alone.receive_errors, 3);
+  EXPECT_TRUE(parse_error_frame(0x20000001, {}).transmit_time_out);
+  EXPECT_TRUE(parse_error_frame(0x20000010, {}).transceiver);
+  EXPECT_FALSE(alone.transmit_time_out || alone.transceiver);
   EXPECT_TRUE(parse_error_frame(0x20000004, {0, 0x01}).receive_overflow);
   EXPECT_EQ(parse_error_frame(0x20000100, {}).state, CanBusState::active);
   EXPECT_NE(text_of(alone).find("nobody acknowledges"), std::string::npos);
