@@ -57,8 +57,7 @@ void HostLink::on_frame(const Frame& frame, std::uint32_t now_us) {
     std::array<std::int16_t, 7> counts{};
     for (std::size_t i = 0; i < counts.size(); ++i) counts[i] = frame.word(1 + 2 * i);
     imu.sample(counts);
-    watch_.came(frame.sequence, now_us,
-                over_can_ ? SampleWatch::kLate_on_can_us : SampleWatch::kLate_us);
+    watch_.came(frame.sequence, now_us);
   }
   if (frame.kind == FrameKind::faults && frame.length == kFault_bytes) {
     const std::uint8_t flags = frame.payload[0];

@@ -17,8 +17,6 @@ namespace {
 
 using PartsLock = hal::PriorityLock<kPriorityParts>;
 
-constexpr std::uint8_t kBurst = 0x80 | mpu::ACCEL_XOUT_H;
-constexpr std::uint32_t kBurst_bytes = 14;
 constinit std::array<std::uint8_t, whirl::core::kRegisters> no_supply{};
 
 }  // namespace
@@ -29,7 +27,7 @@ void PodImu::start() {
   no_supply.fill(0xFF);
   hw::RCC::AHB1ENR::set(hw::RCC::GPIOCEN);
   DataReady::output(false, false);
-  start_spi_slave(kBurst, kBurst_bytes);
+  start_spi_slave();
   const PartsLock lock;
   part_.reset(now_ns());
   armed_ = answers(now_ns());

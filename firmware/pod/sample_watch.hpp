@@ -2,8 +2,8 @@
 // time between them. The last 32 stand in a mask, so that the host can mark its own data.
 //
 //   Lost   its number never came; one that is overtaken counts so, too
-//   Late   more than the link's own spread after a period: over the UART 250 us; over CAN 350 us, for one
-//          frame of others may go first (160), three frames have stuff bits or not (87), and the main loop turns (60)
+//   Late   more than 250 us beyond a period. Over CAN one frame of others may go first (160 us) and three frames have
+//          stuff bits or not (87); a turn of the main loop at its longest (60) on top of both is told as late, too
 #pragma once
 #include <cstdint>
 
@@ -11,11 +11,9 @@ namespace fw::pod {
 
 class SampleWatch {
  public:
-  static constexpr std::uint32_t kPeriod_us = 1000, kLate_us = kPeriod_us + 250,
-                                 kLate_on_can_us = kPeriod_us + 350;
+  static constexpr std::uint32_t kPeriod_us = 1000, kLate_us = kPeriod_us + 250;
 
-  void came(std::uint8_t sequence, std::uint32_t now_us, std::uint32_t late_us = kLate_us) {
-    late_us_ = late_us;
+  void came(std::uint8_t sequence, std::uint32_t now_us) {
     if (!begun_) {
       begun_ = true;
     } else {
@@ -23,7 +21,7 @@ class SampleWatch {
       const std::uint32_t missing = step == 0 ? 0u : step - 1u;
       lost_ += missing;
       for (std::uint32_t i = 0; i < missing && i < 32; ++i) shift(true);
-      const bool late = missing == 0 && now_us - last_us_ > late_us_;
+      const bool late = missing == 0 && now_us - last_us_ > kLate_us;
       if (late) ++late_count_;
       shift(late);
     }
@@ -34,14 +32,14 @@ class SampleWatch {
   std::uint32_t late() const { return late_count_; }
   std::uint32_t flagged() const { return mask_; }  // bit 0: the newest sample
   std::uint8_t last() const { return last_; }
-  bool overdue(std::uint32_t now_us) const { return begun_ && now_us - last_us_ > late_us_; }
+  bool overdue(std::uint32_t now_us) const { return begun_ && now_us - last_us_ > kLate_us; }
 
  private:
   void shift(bool flagged) { mask_ = mask_ << 1 | (flagged ? 1u : 0u); }
 
   bool begun_ = false;
   std::uint8_t last_ = 0;
-  std::uint32_t last_us_ = 0, late_us_ = kLate_us, lost_ = 0, late_count_ = 0, mask_ = 0;
+  std::uint32_t last_us_ = 0, lost_ = 0, late_count_ = 0, mask_ = 0;
 };
 
 }  // namespace fw::pod

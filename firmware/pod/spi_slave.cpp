@@ -20,9 +20,9 @@ constexpr std::uint32_t kTxStream =
 
 struct State {
   const std::uint8_t* answers = nullptr;
-  std::uint32_t burst_command = 0, burst_bytes = 0;
   std::uint32_t passed = 0;  // bytes of this transfer, the command's included, as far as seen
   std::uint32_t command = 0, address = 0;
+  std::uint32_t next = 0;  // the answer to the byte that passes now, fetched while there was time
   std::array<std::uint8_t, Transfer::kMostWritten> written{};
   SpiCounters counters;
 };
@@ -30,9 +30,7 @@ constinit State state;
 
 }  // namespace
 
-void start_spi_slave(std::uint8_t burst_command, std::uint32_t burst_bytes) {
-  state.burst_command = burst_command;
-  state.burst_bytes = burst_bytes;
+void start_spi_slave() {
   RCC::AHB1ENR::set(RCC::GPIOAEN | RCC::GPIOBEN | RCC::DMA2EN);
   RCC::APB2ENR::set(RCC::SPI1EN | RCC::SYSCFGEN);
   SlaveSelect::alternate(kAf5, false, hal::Pull::up);
@@ -65,8 +63,8 @@ POD_RAM_CODE void arm_spi_slave(const std::uint8_t* answers) {
   state.answers = answers;
   state.passed = 0;
   Spi1TxDma::IFCR::write(Spi1TxDma::all_flags);
-  Spi1TxDma::M0AR::write(std::bit_cast<std::uint32_t>(answers) + (state.burst_command & 0x7F));
-  Spi1TxDma::NDTR::write(state.burst_bytes);
+  Spi1TxDma::M0AR::write(std::bit_cast<std::uint32_t>(answers) + (kBurstCommand & 0x7F));
+  Spi1TxDma::NDTR::write(kBurstBytes);
   SPI1::CR1::write(kControl);
   SPI1::DR::write(0);  // while the command passes
   Spi1TxDma::CR::write(kTxStream | Spi1TxDma::EN);
@@ -75,20 +73,34 @@ POD_RAM_CODE void arm_spi_slave(const std::uint8_t* answers) {
 
 namespace {
 
-// The command has passed, and half a period is left until DR moves on: first of all the answer.
-[[gnu::always_inline]] inline void answer_command(std::uint32_t command) {
-  if (command == state.burst_command) {
-    SPI1::CR2::write(SPI1::TXDMAEN);  // what comes in does not matter
-  } else {
-    const std::uint32_t answer = state.answers[command & 0x7F];
-    SPI1::DR::write((command & kRead) != 0 ? answer : 0u);
-    __asm volatile("" ::: "memory");  // nothing is moved before it
-    SPI1::CR2::write(SPI1::RXNEIE);
-    Spi1TxDma::CR::write(kTxStream);
-    state.address = command & 0x7F;
-  }
+// Of the register behind the one that is answered.
+[[gnu::always_inline]] inline void fetch_next() {
+  state.address = (state.address + 1) & 0x7F;
+  state.next = (state.command & kRead) != 0 ? state.answers[state.address] : 0u;
+}
+
+// What else there is to a register's command, apart: what it saves to the stack would be saved before the answer.
+POD_RAM_CODE void begin_registers(std::uint32_t command) {
+  SPI1::CR2::write(SPI1::RXNEIE);
+  Spi1TxDma::CR::write(kTxStream);
+  state.address = command & 0x7F;
   state.passed = 1;
   state.command = command;
+  fetch_next();
+}
+
+// The command has passed, and half a period is left until DR moves on: first of all the answer.
+[[gnu::always_inline]] inline void answer_command(std::uint32_t command) {
+  if (command == kBurstCommand) {
+    SPI1::CR2::write(SPI1::TXDMAEN);  // what comes in does not matter
+    state.passed = 1;
+    state.command = command;
+    return;
+  }
+  const std::uint32_t answer = state.answers[command & 0x7F];
+  SPI1::DR::write((command & kRead) != 0 ? answer : 0u);
+  __asm volatile("" ::: "memory");  // nothing is moved before it
+  begin_registers(command);
 }
 
 }  // namespace
@@ -98,10 +110,10 @@ namespace {
 void finish_transfer(std::uint32_t command, std::uint32_t count) {
   Transfer transfer;
   transfer.written = state.written;
-  transfer.burst = command == state.burst_command;
+  transfer.burst = command == kBurstCommand;
   transfer.read = (command & kRead) != 0;
   transfer.first = static_cast<std::uint8_t>(command & 0x7F);
-  transfer.count = transfer.burst ? state.burst_bytes : count;
+  transfer.count = transfer.burst ? kBurstBytes : count;
   if (transfer.burst) ++state.counters.bursts;
   if (!transfer.read && transfer.count > Transfer::kMostWritten) {
     ++state.counters.overflow;
@@ -110,20 +122,30 @@ void finish_transfer(std::uint32_t command, std::uint32_t count) {
   transfer_over(transfer);
 }
 
+namespace {
+
+// Apart for the same reason.
+POD_RAM_CODE void byte_passed(std::uint32_t in) {
+  const std::uint32_t at = state.passed++ - 1;
+  if ((state.command & kRead) == 0 && at < Transfer::kMostWritten) {
+    state.written[at] = static_cast<std::uint8_t>(in);
+  }
+  fetch_next();
+}
+
+}  // namespace
 }  // namespace fw::pod
 
 // The last bit of a byte has been sampled.
 extern "C" POD_RAM_CODE void spi1_handler() {
   using namespace fw::pod;
-  using namespace fw::hw;
-  const std::uint32_t in = SPI1::DR::read();
-  if (state.passed == 0) return answer_command(in);
-  const bool read = (state.command & kRead) != 0;
-  state.address = (state.address + 1) & 0x7F;
-  SPI1::DR::write(read ? state.answers[state.address] : 0u);
-  const std::uint32_t at = state.passed++ - 1;
-  if (!read && at < Transfer::kMostWritten) {
-    state.written[at] = static_cast<std::uint8_t>(in);
+  const std::uint32_t in = fw::hw::SPI1::DR::read();
+  if (state.passed == 0) {
+    answer_command(in);
+  } else {
+    fw::hw::SPI1::DR::write(state.next);
+    __asm volatile("" ::: "memory");  // nothing is moved before it
+    byte_passed(in);
   }
 }
 

@@ -14,6 +14,8 @@
 #include <array>
 #include <cstdint>
 
+#include "io_bridges/devices/core/mpu6000_registers.hpp"
+
 namespace fw::pod {
 
 struct Transfer {
@@ -28,7 +30,11 @@ struct SpiCounters {
   std::uint32_t transfers = 0, bursts = 0, late_rearm = 0, overflow = 0;
 };
 
-void start_spi_slave(std::uint8_t burst_command, std::uint32_t burst_bytes);
+// The read that is expected next: the measured values. Fixed here, for in the half period nothing is to be fetched.
+inline constexpr std::uint8_t kBurstCommand = 0x80 | whirl::core::mpu::ACCEL_XOUT_H;
+inline constexpr std::uint32_t kBurstBytes = 14;
+
+void start_spi_slave();
 // What each register answers from the next transfer on, and what a burst does. Pre: not selected, and
 // the caller keeps kPriorityParts out.
 void arm_spi_slave(const std::uint8_t* answers);

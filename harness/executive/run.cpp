@@ -325,7 +325,7 @@ class Run {
   }
 
   void file_row() {
-    rows_.append(lockstep_.row());
+    rows_.append(lockstep_.row(), parts_.world.ages_ns());
     if (parts_.messages != nullptr) parts_.messages->add_row(stage_.now_ns, lockstep_.row());
   }
 

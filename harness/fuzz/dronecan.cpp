@@ -4,9 +4,11 @@
 #include "base/check.hpp"
 #include "io_bridges/protocols/dronecan/allocation.hpp"
 #include "io_bridges/protocols/dronecan/esc.hpp"
+#include "io_bridges/protocols/dronecan/esc_extended.hpp"
 #include "io_bridges/protocols/dronecan/gnss.hpp"
 #include "io_bridges/protocols/dronecan/imu_samples.hpp"
 #include "io_bridges/protocols/dronecan/param.hpp"
+#include "io_bridges/protocols/dronecan/pod.hpp"
 #include "io_bridges/protocols/dronecan/sensors.hpp"
 #include "io_bridges/protocols/dronecan/types.hpp"
 #include "io_bridges/protocols/dronecan/vehicle_state.hpp"
@@ -35,9 +37,9 @@ void check_as_any(std::span<const std::uint8_t> payload) {
 
 void check_all(std::span<const std::uint8_t> payload) {
   check_as_any<NodeStatus, GetNodeInfoRequest, GetNodeInfoResponse, Allocation, RawCommand,
-               RpmCommand, EscStatus, RawImu, MagneticFieldStrength2, StaticPressure,
-               StaticTemperature, Fix2, BatteryInfo, ArmingStatus, GetSetRequest, GetSetResponse,
-               Imu14, Imu16>(payload);
+               RpmCommand, EscStatus, EscStatusExtended, RawImu, MagneticFieldStrength2,
+               StaticPressure, StaticTemperature, Fix2, BatteryInfo, ArmingStatus, GetSetRequest,
+               GetSetResponse, Imu14, Imu16, PodSample, PodFrame, PodSetpoint>(payload);
 }
 
 }  // namespace

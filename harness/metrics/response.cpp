@@ -43,17 +43,30 @@ Change change_of(const Record& record) {
           mean_of(tail.last(window))};
 }
 
+// When the value of a row was measured: steps after the command.
+double measured_at(const Record& record, std::size_t row) {
+  const auto rows = static_cast<double>(row) - static_cast<double>(record.command);
+  if (record.ages_ns.empty()) return rows;
+  return rows - static_cast<double>(record.ages_ns[row]) / static_cast<double>(record.step_ns);
+}
+
 // First time after the command at which the change is done to the given share; NaN if never.
 double crossing_s(const Record& record, const Change& change, double share) {
   const double level = change.from + share * change.size();
   const double sign = change.rises() ? 1.0 : -1.0;
-  const auto tail = after(record);
   const double step_s = static_cast<double>(record.step_ns) * 1e-9;
-  for (std::size_t i = 0; i < tail.size(); ++i) {
-    if (!(sign * (tail[i] - level) >= 0.0)) continue;
-    if (i == 0) return 0.0;
-    const double before = tail[i - 1];
-    return step_s * (static_cast<double>(i) - (tail[i] - level) / (tail[i] - before));
+  std::size_t before = record.command;
+  for (std::size_t i = record.command; i < record.values.size(); ++i) {
+    const double at = measured_at(record, i), since = at - measured_at(record, before);
+    if (i > before && !(since > 0.0)) continue;
+    const double beyond = record.values[i] - level;
+    if (!(sign * beyond >= 0.0)) {
+      before = i;
+      continue;
+    }
+    if (i == record.command) return 0.0;
+    const double share_back = beyond / (record.values[i] - record.values[before]);
+    return step_s * std::max(0.0, at - since * share_back);
   }
   return kNaN;
 }

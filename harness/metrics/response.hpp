@@ -3,6 +3,8 @@
 //   Record   samples at a fixed step, from before the command (the reference) to the record's end
 //   Change   from the mean of the 200 ms before the command to the mean of the record's last 200 ms
 //   Times    in seconds after the command; crossings are interpolated between samples
+//   Held     a value that an instrument gave stands in each row until the next one comes: crossings are interpolated
+//            between the times at which it was measured, and no row is a sample of its own
 //   Nothing  to measure (less than 200 ms before the command or after it, no change, a NaN among the
 //            samples after the command) gives NaN, and a NaN never meets a limit
 #pragma once
@@ -15,6 +17,7 @@ struct Record {
   std::span<const double> values;  // one per step
   std::int64_t step_ns = 1'000'000;
   std::size_t command = 0;  // index of the sample at the command; those before it are the reference
+  std::span<const std::int64_t> ages_ns = {};  // of each value, at its row's time; empty: all new
 };
 
 double rise_time_s(const Record& record);  // 10 to 90 % of a change upward; NaN for one downward

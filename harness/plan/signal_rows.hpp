@@ -14,7 +14,8 @@ class SignalRows {
  public:
   SignalRows(std::vector<results::Column> columns, std::int64_t step_ns);
 
-  void append(std::span<const double> row);
+  // ages_ns: of the values; empty: all are of this row's time, as in all rows before and behind it.
+  void append(std::span<const double> row, std::span<const std::int64_t> ages_ns = {});
 
   const std::vector<results::Column>& columns() const { return columns_; }
   std::int64_t step_ns() const { return step_ns_; }
@@ -29,7 +30,8 @@ class SignalRows {
  private:
   struct Recording {
     std::vector<std::size_t> columns;
-    std::vector<std::vector<double>> values;  // of each
+    std::vector<std::vector<double>> values;         // of each
+    std::vector<std::vector<std::int64_t>> ages_ns;  // of each; empty: all are of their row's time
     std::size_t command = 0;
   };
 
@@ -37,7 +39,8 @@ class SignalRows {
   std::int64_t step_ns_;
   std::size_t kept_;          // rows of the past: the reference of a change, and the latest
   std::vector<double> past_;  // a ring of them
-  std::size_t rows_ = 0;      // ever
+  std::vector<std::int64_t> past_ages_ns_;
+  std::size_t rows_ = 0;  // ever
   std::vector<Recording> records_;
   std::vector<std::size_t> open_;  // of the records
 };

@@ -32,11 +32,12 @@ Result<std::unique_ptr<BenchStand>> BenchStand::make(BenchStandParams params) {
 
 Result<Done> BenchStand::name_signals() {
   for (std::size_t i = 0; i < params_.readings.size(); ++i) {
-    const auto added = add_signal(params_.readings[i], [this, i] { return latest(i); });
+    const auto added = add_signal(
+        params_.readings[i], [this, i] { return latest(i); }, i);
     if (!added) return added;
   }
   for (EscLine::Named& told : master_.signals()) {
-    const auto added = add_signal(std::move(told.signal), std::move(told.value));
+    const auto added = add_signal(std::move(told.signal), std::move(told.value), std::nullopt);
     if (!added) return added;
   }
   for (const auto& [name, of] : params_.aliases) {
@@ -45,7 +46,7 @@ Result<Done> BenchStand::name_signals() {
     Signal alias = signals_[*source];
     alias.about = "is " + of + ": " + alias.about;
     alias.name = name;
-    const auto added = add_signal(std::move(alias), values_[*source]);
+    const auto added = add_signal(std::move(alias), values_[*source], read_by_[*source]);
     if (!added) return added;
   }
   for (const BenchLimit& limit : params_.limits) {
@@ -61,10 +62,13 @@ Result<Done> BenchStand::name_signals() {
   return Done{};
 }
 
-Result<Done> BenchStand::add_signal(Signal signal, std::function<double()> value) {
+Result<Done> BenchStand::add_signal(Signal signal, std::function<double()> value,
+                                    std::optional<std::size_t> reading) {
   if (column(signal.name)) return refused("two signals are called '" + signal.name + "'");
   signals_.push_back(std::move(signal));
   values_.push_back(std::move(value));
+  read_by_.push_back(reading);
+  ages_ns_.push_back(0);
   return Done{};
 }
 
@@ -96,6 +100,9 @@ void BenchStand::step(std::int64_t t_ns, const io::Batch& happened, io::Batch& s
     }
   }
   now_ns_ = t_ns;
+  for (std::size_t i = 0; i < read_by_.size(); ++i) {
+    if (read_by_[i] && measured_[*read_by_[i]]) ages_ns_[i] = t_ns - measured_[*read_by_[i]]->t_ns;
+  }
   if (const auto why = beyond_limits()) {
     sensed.add(io::Kind::emergency_stop, 0, t_ns, why->data(),
                static_cast<std::uint32_t>(why->size()));

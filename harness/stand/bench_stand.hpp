@@ -3,6 +3,7 @@
 //   Signals  those that the bench's instruments give, NaN before the first reading and when the last one is older
 //            than 250 ms; those of esc_master.hpp; other names for them (`aliases`)
 //   Command  those of esc_master.hpp. No wind, no brake, no faults: nothing here moves air
+//   Ages     of what the instruments give: from its own time on. What the ESC tells counts as of its step
 //   Limits   judged each step on any of the signals; outside, or not measured for 250 ms once it was: the bench is
 //            told to make safe
 #pragma once
@@ -38,6 +39,7 @@ class BenchStand final : public World {
 
   const std::vector<Signal>& signals() const override { return signals_; }
   void read(std::span<double> values) const override;
+  std::span<const std::int64_t> ages_ns() const override { return ages_ns_; }
   void step(std::int64_t t_ns, const io::Batch& happened, io::Batch& sensed) override;
   Result<Done> command(const Command& command, std::int64_t now_ns) override;
   Result<Done> disturb(const Disturbance& disturbance, std::int64_t now_ns) override;
@@ -55,7 +57,8 @@ class BenchStand final : public World {
     double value = 0.0;
   };
   Result<Done> name_signals();
-  Result<Done> add_signal(Signal signal, std::function<double()> value);
+  Result<Done> add_signal(Signal signal, std::function<double()> value,
+                          std::optional<std::size_t> reading);
   std::optional<std::size_t> column(const std::string& name) const;
   double latest(std::size_t reading) const;
   std::optional<std::string> beyond_limits();
@@ -65,6 +68,8 @@ class BenchStand final : public World {
   std::vector<std::optional<Measured>> measured_;
   std::vector<Signal> signals_;
   std::vector<std::function<double()>> values_;
+  std::vector<std::optional<std::size_t>> read_by_;  // the reading that a signal is, if it is one
+  std::vector<std::int64_t> ages_ns_;
   std::vector<bool> seen_;  // of the limits: their signals were measured
   std::int64_t now_ns_ = 0;
 };

@@ -26,6 +26,8 @@ class World {
 
   virtual const std::vector<Signal>& signals() const = 0;
   virtual void read(std::span<double> values) const = 0;  // in the order of signals()
+  // How old each of these values is, where an instrument gives one now and then; empty: all are of the step's time.
+  virtual std::span<const std::int64_t> ages_ns() const { return {}; }
 
   // Which messages it wants beside those of the first board, which it surrounds.
   virtual bool hears(const io::Header& /*of_another_board*/) const { return false; }

@@ -1,6 +1,6 @@
 -- The pod plays a GPS and a receiver, its host on CAN: what is on the lines is what the host gave, at the parts' times.
 -- SBUS 100000 baud 8E2: 120 us a character, a frame each 14 ms; CPPM in steps of 0.5 us. A sample of three frames
--- is late 350 us after its millisecond (firmware/pod/sample_watch.hpp). A channel of CPPM lasts 0.9 ms at least:
+-- is late 250 us after its millisecond (firmware/pod/sample_watch.hpp). A channel of CPPM lasts 0.9 ms at least:
 -- half of that is the limit of its interrupt; three frames of the CAN's block pass in 0.33 ms at least: so is a third.
 plan "pod_outputs" {
   image = "pod", board = "pod_outputs_rig",

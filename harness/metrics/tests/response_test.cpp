@@ -33,6 +33,58 @@ TEST(Response, FirstOrderLagRisesInTauTimesLogNine) {
   EXPECT_TRUE(std::isnan(fall_time_s(record(v))));
 }
 
+// What an instrument's rows look like: each value stands from the row at which it is known until the next one.
+struct Held {
+  std::vector<double> values;
+  std::vector<std::int64_t> ages_ns;
+  Record record(bool with_ages) const {
+    return {values, 1'000'000, kBefore,
+            with_ages ? std::span(ages_ns) : std::span<const std::int64_t>()};
+  }
+};
+
+// f(t after the command), measured each `every_ms` from `first_ms` on, and known so long afterwards.
+Held held(double every_ms, double first_ms, double known_ms,
+          const std::function<double(double)>& f) {
+  Held all;
+  double measured_ms = first_ms;
+  for (int row = -static_cast<int>(kBefore); row < 1000; ++row) {
+    while (measured_ms + every_ms + known_ms <= row) measured_ms += every_ms;
+    all.values.push_back(f(measured_ms * 1e-3));
+    all.ages_ns.push_back(std::llround((row - measured_ms) * 1e6));
+  }
+  return all;
+}
+
+// 17 ms of a rise, by a cell of 500 readings a second, wherever they fall: the rows that hold them tell up to 2 ms of
+// it, their times tell it as a line between two readings can.
+TEST(Response, OfHeldReadingsTheirTimesCount) {
+  const double tau = 0.017 / std::log(9.0), want = 0.017;
+  const auto rise = [&](double t) { return t < 0.0 ? 2.0 : 3.2 - 1.2 * std::exp(-t / tau); };
+  double worst_held = 0.0;
+  for (double phase_ms = 0.0; phase_ms < 2.0; phase_ms += 0.13) {
+    for (const double known_ms : {0.2, 1.7}) {
+      const Held v = held(2.0, -400.0 + phase_ms, known_ms, rise);
+      worst_held = std::max(worst_held, std::abs(rise_time_s(v.record(false)) - want));
+      EXPECT_TRUE(near(rise_time_s(v.record(true)), want,
+                       stated(3e-4, "chords of 2 ms, one over the kink at the command")))
+          << phase_ms;
+      EXPECT_TRUE(near(response_time_s(v.record(true)), tau * std::log(10.0),
+                       stated(1.5e-4, "a chord of 2 ms on an exponential: h^2/8 tau")));
+    }
+  }
+  EXPECT_GT(worst_held, 5e-4);
+}
+
+TEST(Response, AReadingThatCrossesLateIsNotBeforeTheCommand) {
+  std::vector<double> values(kBefore, 0.0);
+  values.push_back(0.0);
+  for (int i = 0; i < 400; ++i) values.push_back(1.0);
+  const std::vector<std::int64_t> ages_ns(values.size(), 5'000'000);
+  const Record old{values, 1'000'000, kBefore, ages_ns};
+  EXPECT_EQ(response_time_s(old), 0.0);
+}
+
 TEST(Response, AFallIsAMirroredRise) {
   const double tau = 0.05;
   const auto v = answer(3.2, 2.0, [&](double t) { return 2.0 + 1.2 * std::exp(-t / tau); });

@@ -40,6 +40,25 @@ TEST_F(Rows, ARecordHas200msBeforeItsCommandAndEndsWhereItIsClosed) {
   }
 }
 
+TEST_F(Rows, AgesStayWithTheirValues) {
+  for (; count_ < 300; ++count_) {
+    const double row[] = {1.0, 2.0};
+    const std::int64_t ages_ns[] = {0, count_ * 10};
+    rows_.append(row, ages_ns);
+    if (count_ == 290) rows_.open_record({0, 1});
+  }
+  const metrics::Record record = rows_.record(0, 1);
+  ASSERT_EQ(record.ages_ns.size(), record.values.size());
+  EXPECT_EQ(record.ages_ns[0], (290 - static_cast<int>(record.command)) * 10);
+  EXPECT_EQ(record.ages_ns.back(), 2990);
+  EXPECT_EQ(rows_.record(0, 0).ages_ns.back(), 0);
+}
+
+TEST_F(Rows, OfAModelNothingHasAnAge) {
+  run_to(300);
+  EXPECT_TRUE(rows_.record(rows_.open_record({0}), 0).ages_ns.empty());
+}
+
 TEST_F(Rows, ARecordAtTheBeginningHasWhatThereIs) {
   run_to(51);
   const std::size_t first = rows_.open_record({0, 1});

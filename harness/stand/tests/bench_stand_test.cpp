@@ -72,6 +72,20 @@ TEST(BenchStand, ASignalIsTheLastReadingUntilItIsOld) {
   EXPECT_TRUE(std::isnan(p.signal("thrust")));
 }
 
+// Also by an alias; what the ESC tells counts as of its step.
+TEST(BenchStand, AnInstrumentsSignalIsAsOldAsItsReading) {
+  BenchStandParams params = params_of_bench();
+  params.aliases["lift"] = "thrust";
+  Played p(std::move(params));
+  p.step(2.5, {});  // at 0, seen at 1 ms
+  p.steps(3);
+  const auto ages_ns = p.world->ages_ns();
+  for (std::size_t i = 0; i < p.world->signals().size(); ++i) {
+    const std::string& name = p.world->signals()[i].name;
+    EXPECT_EQ(ages_ns[i], name == "thrust" || name == "lift" ? 4 * kBench_ms : 0) << name;
+  }
+}
+
 TEST(BenchStand, AnAliasIsTheSignalItNames) {
   Played p;
   const auto status = io::pack_status(0x29, {3.0, 5000.0, 1});
