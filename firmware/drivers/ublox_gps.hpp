@@ -136,7 +136,6 @@ void UbloxGps<Uart>::tick(std::uint32_t now_us) {
     case Phase::confirm:
       if (answered_) {
         setting_ = 0;
-        pvt_ = false;
         return begin(Phase::configure, now_us);
       }
       if (ask(kPort, now_us)) return;
