@@ -64,7 +64,7 @@ enum class FaultKind : std::uint32_t {
   can_stuck_dominant,  // the wire is held dominant
   can_babble,          // a node of identifier 0 takes the share `value` of the bus (0: all of it)
   capture_frozen,      // harness: the capture system goes on sending the pose that it sent last
-  sensor_drift,        // what axis reads runs away: value (SI) more with each minute since its start
+  sensor_drift,  // what axis reads runs away: value (SI) more with each minute since its start
 };
 
 std::optional<FaultKind> fault_kind(std::string_view name);  // "i2c_nack"
