@@ -38,8 +38,8 @@ function(fw_image name)
     COMMAND sh ${gate} $<TARGET_FILE:${name}> ${ARG_FLASH} ${ARG_RAM})
 endfunction()
 
-set(FLIGHT_SOURCES images/flight.cpp images/boot_text.cpp images/flight_escs.cpp images/flight_can.cpp images/gps_solution.cpp ${FW_CORE} hal/clock.cpp hal/time_base.cpp hal/spi_master.cpp
-    hal/i2c_master.cpp hal/can_link.cpp hal/uart_link.cpp hal/battery_adc.cpp hal/edge_capture.cpp hal/flash.cpp)
+set(FLIGHT_SOURCES images/flight.cpp images/boot_text.cpp images/flight_escs.cpp images/flight_can.cpp images/flight_sticks.cpp images/gps_solution.cpp ${FW_CORE} hal/clock.cpp hal/time_base.cpp hal/spi_master.cpp
+    hal/i2c_master.cpp hal/can_link.cpp hal/uart_link.cpp hal/battery_adc.cpp hal/edge_capture.cpp hal/receiver_uart.cpp hal/flash.cpp)
 # Of the RAM, 19 KiB are the card's: 16 that bridge its longest pause, and a block each way.
 fw_image(flight FLASH 128 RAM 32 FOLDER . SOURCES ${FLIGHT_SOURCES})
 # The same for ESCs in mode 5, whose set-points span another range.

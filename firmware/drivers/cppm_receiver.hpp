@@ -9,6 +9,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <span>
 
 #include "firmware/status.hpp"
 
@@ -18,6 +19,8 @@ struct CppmFrame {
   std::array<std::uint16_t, 16> channels_us{};
   std::uint8_t count = 0;
   std::uint32_t received_us = 0;  // the edge that ended its last channel
+
+  std::span<const std::uint16_t> channels() const { return {channels_us.data(), count}; }
 };
 
 class CppmReceiver {

@@ -21,9 +21,16 @@ struct SbusFrame {
   bool frame_lost = false, failsafe = false;
   std::uint32_t received_us = 0;
 
+  // It tells where the sticks are; else where they were, or what the receiver is set up to put out.
+  bool is_news() const { return !frame_lost && !failsafe; }
   // As a servo's pulse: 5/8 us a count, 880 us at 0.
   std::uint32_t pulse_us(unsigned channel) const {
     return (channels[channel] * 5u + 4u) / 8u + 880u;
+  }
+  std::array<std::uint16_t, 16> pulses_us() const {
+    std::array<std::uint16_t, 16> out{};
+    for (unsigned i = 0; i < out.size(); ++i) out[i] = static_cast<std::uint16_t>(pulse_us(i));
+    return out;
   }
 };
 

@@ -3,10 +3,11 @@
 //   Contract  tick() every few milliseconds; push() with each byte and its time, from a task or, where
 //             tick() cannot interrupt it, an interrupt. Neither blocks. A UART that only queues is meant
 //   Setup     finds the receiver at any of its baud rates and tells it 57600 baud, UBX alone; 200 ms per
-//             solution; airborne model, 3D; POSLLH, VELNED and SOL each solution. Each step must be
-//             acknowledged within 250 ms and is tried three times; then the search begins anew
-//   Output    a Fix when the three messages of one solution are there, once; its time is that of the
-//             solution's first byte: the receiver measured a fixed latency before
+//             solution; airborne model, 3D; then PVT each solution. A generation 6 refuses that one, and
+//             is told POSLLH, VELNED and SOL in its place. Each step must be acknowledged within 250 ms and
+//             is tried three times; then the search begins anew, and asks again what it talks to
+//   Output    a Fix from PVT, or when the three messages of one solution are there, once; its time is that
+//             of the solution's first byte: the receiver measured a fixed latency before
 //   Faults    2 s without a solution: the receiver has lost its settings, the search begins anew
 //   Source    PX4-GPSDrivers src/ubx.{h,cpp}, ArduPilot AP_GPS_UBLOX; acknowledge of a new baud rate may
 //             come at the old or the new one: it is not waited for
@@ -34,8 +35,8 @@ struct GpsFix {
   std::int32_t latitude_e7_deg = 0, longitude_e7_deg = 0;
   std::int32_t height_mm = 0, height_sea_mm = 0;  // over the ellipsoid, above the sea
   std::uint32_t level_accuracy_mm = 0, down_accuracy_mm = 0;
-  std::int32_t v_north_cmps = 0, v_east_cmps = 0, v_down_cmps = 0;
-  std::uint32_t speed_accuracy_cmps = 0;
+  std::int32_t v_north_mmps = 0, v_east_mmps = 0, v_down_mmps = 0;
+  std::uint32_t speed_accuracy_mmps = 0;
   std::uint8_t fix_type = 0, flags = 0, satellites = 0;
 
   bool usable() const {
@@ -53,6 +54,7 @@ class UbloxGps {
   void push(std::uint8_t byte, std::uint32_t now_us);
 
   bool running() const { return phase_ == Phase::run; }
+  bool takes_pvt() const { return pvt_; }  // once it runs
   // True: a new fix since the last call.
   bool take(GpsFix& out) {
     if (!fresh_) return false;
@@ -80,11 +82,13 @@ class UbloxGps {
       {1, 0, 0, 0, 0xD0, 0x08, 0, 0, kBaud & 0xFF, kBaud >> 8 & 0xFF, kBaud >> 16, 0, 1, 0, 1, 0});
   static constexpr auto kRate = ubx::frame<6>(kCfg, 0x08, {200, 0, 1, 0, 1, 0});
   static constexpr auto kNav5 = ubx::frame<36>(kCfg, 0x24, {0x05, 0, 6, 2});
+  static constexpr auto kPvt = ubx::frame<3>(kCfg, 0x01, {0x01, 0x07, 1});
   static constexpr auto kPosllh = ubx::frame<3>(kCfg, 0x01, {0x01, 0x02, 1});
   static constexpr auto kVelned = ubx::frame<3>(kCfg, 0x01, {0x01, 0x12, 1});
   static constexpr auto kSol = ubx::frame<3>(kCfg, 0x01, {0x01, 0x06, 1});
-  static constexpr std::array<std::span<const std::uint8_t>, 5> kSettings{kRate, kNav5, kPosllh,
-                                                                          kVelned, kSol};
+  static constexpr std::array<std::span<const std::uint8_t>, 6> kSettings{kRate,   kNav5,   kPvt,
+                                                                          kPosllh, kVelned, kSol};
+  static constexpr std::size_t kPvtSetting = 2;  // taken: those behind it are not needed
 
   void begin(Phase phase, std::uint32_t now_us) {
     phase_ = phase;
@@ -101,6 +105,9 @@ class UbloxGps {
   bool ask(std::span<const std::uint8_t> request, std::uint32_t now_us);
   void configure(std::uint32_t now_us);
   void on_frame(std::uint32_t now_us);
+  void on_answer(bool nak);
+  void on_pvt(std::uint32_t now_us);
+  void on_message_of_three(std::uint32_t now_us);
   void on_part(Part part, std::uint32_t now_us);
 
   Uart& uart_;
@@ -108,9 +115,9 @@ class UbloxGps {
   Phase phase_ = Phase::knock;
   std::size_t baud_ = 0, setting_ = 0;
   std::uint32_t since_us_ = 0;  // this phase, or the newest question, or solution
-  std::uint32_t frame_us_ = 0;  // the last byte before a frame began
+  std::uint32_t frame_us_ = 0;  // the first byte of the newest frame
   unsigned tries_ = 0;
-  bool asked_ = false, answered_ = false, fresh_ = false, in_frame_ = false;
+  bool asked_ = false, answered_ = false, fresh_ = false, pvt_ = false;
   std::uint8_t awaited_ = 0;  // id of the CFG message
   std::uint8_t parts_ = 0;
   GpsFix next_, fix_;
@@ -162,7 +169,7 @@ bool UbloxGps<Uart>::ask(std::span<const std::uint8_t> request, std::uint32_t no
 template <BaudUart Uart>
 void UbloxGps<Uart>::configure(std::uint32_t now_us) {
   if (answered_) {
-    ++setting_;
+    setting_ = setting_ == kPvtSetting && pvt_ ? kSettings.size() : setting_ + 1;
     begin(Phase::configure, now_us);
   }
   if (setting_ == kSettings.size()) return begin(Phase::run, now_us);
@@ -171,21 +178,53 @@ void UbloxGps<Uart>::configure(std::uint32_t now_us) {
 
 template <BaudUart Uart>
 void UbloxGps<Uart>::push(std::uint8_t byte, std::uint32_t now_us) {
-  if (byte == 0xB5 && !in_frame_) frame_us_ = now_us;
-  in_frame_ = true;
-  if (!parser_.push(byte)) return;
-  in_frame_ = false;
-  on_frame(now_us);
+  if (parser_.between_frames()) frame_us_ = now_us;
+  if (parser_.push(byte)) on_frame(now_us);
 }
 
 template <BaudUart Uart>
 void UbloxGps<Uart>::on_frame(std::uint32_t now_us) {
+  constexpr std::size_t kPvtOf7 = 84, kPvtOf8 = 92;
   const bool nak = parser_.is(0x05, 0x00, 2);
-  if (nak || parser_.is(0x05, 0x01, 2)) {
-    if (parser_.get<std::uint8_t>(0) != kCfg || parser_.get<std::uint8_t>(1) != awaited_) return;
-    if (nak) refused_ = refused_ + 1;
-    answered_ = asked_ && !nak;
-  } else if (parser_.is(0x01, 0x02, 28)) {
+  if (nak || parser_.is(0x05, 0x01, 2)) return on_answer(nak);
+  if (!pvt_) return on_message_of_three(now_us);
+  if (parser_.is(0x01, 0x07, kPvtOf8) || parser_.is(0x01, 0x07, kPvtOf7)) on_pvt(now_us);
+}
+
+// That PVT is refused is an answer, too: which generation it is.
+template <BaudUart Uart>
+void UbloxGps<Uart>::on_answer(bool nak) {
+  if (parser_.get<std::uint8_t>(0) != kCfg || parser_.get<std::uint8_t>(1) != awaited_) return;
+  const bool of_pvt = phase_ == Phase::configure && setting_ == kPvtSetting;
+  if (nak && !of_pvt) refused_ = refused_ + 1;
+  if (of_pvt) pvt_ = !nak;
+  answered_ = asked_ && (!nak || of_pvt);
+}
+
+template <BaudUart Uart>
+void UbloxGps<Uart>::on_pvt(std::uint32_t now_us) {
+  fix_.received_us = frame_us_;
+  fix_.itow_ms = parser_.get<std::uint32_t>(0);
+  fix_.fix_type = parser_.get<std::uint8_t>(20);
+  fix_.flags = parser_.get<std::uint8_t>(21);
+  fix_.satellites = parser_.get<std::uint8_t>(23);
+  fix_.longitude_e7_deg = parser_.get<std::int32_t>(24);
+  fix_.latitude_e7_deg = parser_.get<std::int32_t>(28);
+  fix_.height_mm = parser_.get<std::int32_t>(32);
+  fix_.height_sea_mm = parser_.get<std::int32_t>(36);
+  fix_.level_accuracy_mm = parser_.get<std::uint32_t>(40);
+  fix_.down_accuracy_mm = parser_.get<std::uint32_t>(44);
+  fix_.v_north_mmps = parser_.get<std::int32_t>(48);
+  fix_.v_east_mmps = parser_.get<std::int32_t>(52);
+  fix_.v_down_mmps = parser_.get<std::int32_t>(56);
+  fix_.speed_accuracy_mmps = parser_.get<std::uint32_t>(68);
+  fresh_ = true;
+  if (phase_ == Phase::run) since_us_ = now_us;
+}
+
+template <BaudUart Uart>
+void UbloxGps<Uart>::on_message_of_three(std::uint32_t now_us) {
+  if (parser_.is(0x01, 0x02, 28)) {
     on_part(posllh, now_us);
     next_.longitude_e7_deg = parser_.get<std::int32_t>(4);
     next_.latitude_e7_deg = parser_.get<std::int32_t>(8);
@@ -195,10 +234,10 @@ void UbloxGps<Uart>::on_frame(std::uint32_t now_us) {
     next_.down_accuracy_mm = parser_.get<std::uint32_t>(24);
   } else if (parser_.is(0x01, 0x12, 36)) {
     on_part(velned, now_us);
-    next_.v_north_cmps = parser_.get<std::int32_t>(4);
-    next_.v_east_cmps = parser_.get<std::int32_t>(8);
-    next_.v_down_cmps = parser_.get<std::int32_t>(12);
-    next_.speed_accuracy_cmps = parser_.get<std::uint32_t>(28);
+    next_.v_north_mmps = 10 * parser_.get<std::int32_t>(4);
+    next_.v_east_mmps = 10 * parser_.get<std::int32_t>(8);
+    next_.v_down_mmps = 10 * parser_.get<std::int32_t>(12);
+    next_.speed_accuracy_mmps = 10 * parser_.get<std::uint32_t>(28);
   } else if (parser_.is(0x01, 0x06, 52)) {
     on_part(sol, now_us);
     next_.fix_type = parser_.get<std::uint8_t>(10);

@@ -58,6 +58,7 @@ class Parser {
         return in_frame(byte);
     }
   }
+  bool between_frames() const { return have_ == 0; }
   bool is(std::uint8_t message_class, std::uint8_t id, std::size_t length) const {
     return header_[0] == message_class && header_[1] == id && this->length() == length;
   }

@@ -12,6 +12,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <span>
 
 #include "firmware/calibration/calibrator.hpp"
 #include "firmware/calibration/sensor_correction.hpp"
@@ -52,7 +53,7 @@ class Flight {
   void on_velocity(const Vector3& v_W_mps, float z_m, float yaw_rad);
   // An attitude to hold, in the air only; thrust: share of the collective, hover at a half.
   void on_attitude(const Quaternion& q_WB, float yaw_rate_radps, float thrust_share);
-  void on_rc(const CppmFrame& frame) { pilot_.on_frame(frame); }
+  void on_rc(std::span<const std::uint16_t> channels_us) { pilot_.on_frame(channels_us); }
   void on_esc_answered(unsigned motor) { motors_.on_answered(motor); }
   void on_esc_status(unsigned motor, const esc::protocol::Status& status) {
     motors_.on_status(motor, status);

@@ -28,8 +28,9 @@ int position_of(std::uint16_t us) {
 }  // namespace
 
 PilotLink Pilot::link() const {
-  if (held_ == kFrames && quiet_ms_ < kLost_ms) return PilotLink::ok;
-  if (last_refused_) return PilotLink::nonsense;
+  const bool frames_come = held_ == kFrames && quiet_ms_ < kLost_ms;
+  if (frames_come && in_doubt_ms_ < kLost_ms) return PilotLink::ok;
+  if (last_refused_ || (frames_come && heard_)) return PilotLink::nonsense;
   return heard_ ? PilotLink::lost : PilotLink::never_heard;
 }
 
@@ -46,10 +47,10 @@ int Pilot::position(Channel channel) const {
   return first;
 }
 
-void Pilot::on_frame(const CppmFrame& frame) {
-  bool good = frame.count >= kChannels && frame.channels_us[kThrottle] >= kFailsafeThrottle_us;
+void Pilot::on_frame(std::span<const std::uint16_t> channels_us) {
+  bool good = channels_us.size() >= kChannels && channels_us[kThrottle] >= kFailsafeThrottle_us;
   for (unsigned i = 0; good && i < kChannels; ++i) {
-    good = frame.channels_us[i] >= kSensibleLow_us && frame.channels_us[i] <= kSensibleHigh_us;
+    good = channels_us[i] >= kSensibleLow_us && channels_us[i] <= kSensibleHigh_us;
   }
   last_refused_ = !good;
   if (!good) {
@@ -57,19 +58,20 @@ void Pilot::on_frame(const CppmFrame& frame) {
     return;
   }
   if (quiet_ms_ >= kLost_ms) held_ = 0;  // what was before a gap says nothing of now
-  std::copy_n(frame.channels_us.begin(), kChannels, last_us_[next_].begin());
+  std::copy_n(channels_us.begin(), kChannels, last_us_[next_].begin());
   next_ = (next_ + 1) % kFrames;
   held_ = std::min(held_ + 1, kFrames);
   quiet_ms_ = 0;
-  if (held_ < kFrames) return;
+  const int mode = position(kMode), arm = position(kArm);
+  if (held_ < kFrames || mode < 0 || arm < 0) return;
   heard_ = true;
+  in_doubt_ms_ = 0;
   demand_.roll = share_of_travel(median_us(kRoll));
   demand_.pitch = share_of_travel(median_us(kPitch));
   demand_.yaw = share_of_travel(median_us(kYaw));
   demand_.throttle = share_from_stop(median_us(kThrottle));
-  if (const int mode = position(kMode); mode >= 0) demand_.mode = static_cast<PilotMode>(mode);
-  // In its middle the switch says nothing.
-  if (const int arm = position(kArm); arm == 0 || arm == 2) demand_.arm = arm == 2;
+  demand_.mode = static_cast<PilotMode>(mode);
+  if (arm != 1) demand_.arm = arm == 2;  // in its middle the switch says nothing
 }
 
 }  // namespace fw

@@ -8,13 +8,14 @@
 //   Not ok    fewer than six channels; one of them beyond 900..2100 us; throttle below 950 us, where
 //             receivers put it that lost their transmitter. Such a frame counts as none
 //   Lost      0.5 s without a frame that is ok
-//   One bad   frame moves nothing: sticks are the median of three frames, switches count once three
-//             frames in a row agree
+//   One bad   frame moves nothing: sticks are the median of three frames, and nothing counts unless the
+//             three agree on where the switches are
+//   Nonsense  0.5 s of frames that are not ok, or of which no three agree: neither signal has a checksum,
+//             and what any bits mean is ok two times in three
 #pragma once
 #include <array>
 #include <cstdint>
-
-#include "firmware/drivers/cppm_receiver.hpp"
+#include <span>
 
 namespace fw {
 
@@ -34,10 +35,13 @@ enum class PilotLink : std::uint8_t { never_heard, ok, lost, nonsense };
 
 class Pilot {
  public:
-  void tick() { quiet_ms_ += quiet_ms_ < kLost_ms ? 1 : 0; }  // once a millisecond
-  void on_frame(const CppmFrame& frame);
+  void tick() {  // once a millisecond
+    quiet_ms_ += quiet_ms_ < kLost_ms ? 1 : 0;
+    in_doubt_ms_ += in_doubt_ms_ < kLost_ms ? 1 : 0;
+  }
+  void on_frame(std::span<const std::uint16_t> channels_us);
 
-  // nonsense: frames still come, but none that is ok.
+  // nonsense: frames still come, but say nothing.
   PilotLink link() const;
   const PilotDemand& demand() const { return demand_; }  // after a loss: the last
   std::uint32_t frames_refused() const { return refused_; }
@@ -53,7 +57,8 @@ class Pilot {
 
   std::array<std::array<std::uint16_t, kChannels>, kFrames> last_us_{};
   unsigned held_ = 0, next_ = 0;
-  std::uint32_t quiet_ms_ = kLost_ms, refused_ = 0;
+  std::uint32_t quiet_ms_ = kLost_ms, refused_ = 0;  // since a frame that was ok
+  std::uint32_t in_doubt_ms_ = kLost_ms;             // since three agreed
   bool heard_ = false, last_refused_ = false;
   PilotDemand demand_;
 };

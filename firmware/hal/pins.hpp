@@ -56,6 +56,7 @@ using CanTx = Pin<hw::GPIOB, 13>;
 using SensorScl = Pin<hw::GPIOB, 10>;
 using SensorSda = Pin<hw::GPIOB, 11>;
 using ReceiverPulses = Pin<hw::GPIOA, 10>;
+using ReceiverSbus = Pin<hw::GPIOB, 7>;  // behind an inverter
 using RadioTx = Pin<hw::GPIOA, 2>;
 using RadioRx = Pin<hw::GPIOA, 3>;
 using GpsTx = Pin<hw::GPIOC, 6>;

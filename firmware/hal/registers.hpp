@@ -154,7 +154,9 @@ struct Usart {
   using CR1 = Reg32<base + 0x0C>;
   using CR2 = Reg32<base + 0x10>;
   using CR3 = Reg32<base + 0x14>;
-  static constexpr std::uint32_t RE = bit(2), TE = bit(3), PCE = bit(10), M = bit(12), UE = bit(13);
+  static constexpr std::uint32_t PE = bit(0), FE = bit(1), NF = bit(2), ORE = bit(3);  // of SR
+  static constexpr std::uint32_t RE = bit(2), TE = bit(3), RXNEIE = bit(5), PCE = bit(10),
+                                 M = bit(12), UE = bit(13);
   static constexpr std::uint32_t STOP_2 = 2u << 12;  // of CR2
   static constexpr std::uint32_t DMAR = bit(6), DMAT = bit(7);
 };
@@ -241,6 +243,7 @@ enum class Irq : std::uint8_t {
   I2C2_EV = 33,
   I2C2_ER = 34,
   SPI1_Global = 35,
+  USART1_Global = 37,
   EXTI15_10 = 40,
   TIM5_Global = 50,
   TIM6_DAC = 54,

@@ -17,6 +17,7 @@ FW_WEAK void i2c1_er_handler();
 FW_WEAK void i2c2_ev_handler();
 FW_WEAK void i2c2_er_handler();
 FW_WEAK void spi1_handler();
+FW_WEAK void usart1_handler();
 FW_WEAK void exti15_10_handler();
 FW_WEAK void tim5_handler();
 FW_WEAK void tim6_dac_handler();
@@ -51,6 +52,7 @@ constexpr auto make_vectors() {
   on(Irq::I2C2_EV, i2c2_ev_handler);
   on(Irq::I2C2_ER, i2c2_er_handler);
   on(Irq::SPI1_Global, spi1_handler);
+  on(Irq::USART1_Global, usart1_handler);
   on(Irq::EXTI15_10, exti15_10_handler);
   on(Irq::TIM5_Global, tim5_handler);
   on(Irq::TIM6_DAC, tim6_dac_handler);

@@ -9,7 +9,6 @@
 
 #include "firmware/config/parameter_store.hpp"
 #include "firmware/config/vehicle.hpp"
-#include "firmware/drivers/cppm_receiver.hpp"
 #include "firmware/drivers/hmc5883l.hpp"
 #include "firmware/drivers/mpu6000.hpp"
 #include "firmware/drivers/ms5611.hpp"
@@ -19,7 +18,6 @@
 #include "firmware/flight/schedule.hpp"
 #include "firmware/hal/battery_adc.hpp"
 #include "firmware/hal/clock.hpp"
-#include "firmware/hal/edge_capture.hpp"
 #include "firmware/hal/fault_record.hpp"
 #include "firmware/hal/flash.hpp"
 #include "firmware/hal/i2c_master.hpp"
@@ -32,6 +30,7 @@
 #include "firmware/images/boot_text.hpp"
 #include "firmware/images/flight_can.hpp"
 #include "firmware/images/flight_escs.hpp"
+#include "firmware/images/flight_sticks.hpp"
 #include "firmware/images/gps_solution.hpp"
 #include "firmware/images/imu_checks.hpp"
 #include "firmware/link/telemetry.hpp"
@@ -49,8 +48,6 @@ constinit Ms5611<hal::I2cMaster<hal::SensorI2c>> barometer(hal::i2c2);
 constinit Hmc5883l<hal::I2cMaster<hal::SensorI2c>> magnetometer(hal::i2c2);
 constinit UbloxGps<hal::UartLink<hal::GpsUart>> gps(hal::gps_uart);
 constinit ParameterStore<hal::ParameterSectors> store(hal::parameter_sectors);
-constinit CppmReceiver receiver;
-volatile bool sticks_came = false;
 using Card = SdCard<hal::SpiMaster<hal::CardBus>>;
 constinit Card card(hal::spi3);
 // 16 MiB hold ten minutes, more than a battery does; what is not used is given back.
@@ -123,10 +120,6 @@ void fallback_tick() {
   ticks_due = ticks_due + 1;
 }
 
-void receiver_edge(std::uint32_t edge_us) {
-  if (receiver.edge(edge_us)) sticks_came = true;
-}
-
 void sensor_job_done(const hal::I2cJob& job, Status status) {
   if (job.address == barometer.kAddress) barometer.job_done(job, status);
   if (job.address == magnetometer.kAddress) magnetometer.job_done(job, status);
@@ -170,17 +163,8 @@ __attribute__((noinline)) void imu_task() {
   faults.imu_reconfigured = imu.reconfigured();
 }
 
-// A frame is ended by the gap after it: until then the one before stays whole.
-static void read_sticks() {
-  if (!sticks_came) return;
-  const hal::InterruptLock lock;
-  sticks_came = false;
-  const CppmFrame frame = receiver.frame();
-  flight().on_rc(frame);
-}
-
 __attribute__((noinline)) void attitude_task() {
-  read_sticks();
+  read_sticks(flight());
   flight().attitude_step();
 }
 
@@ -386,7 +370,7 @@ extern "C" void fw_main() {
   hal::battery_adc.init();
   hal::radio.init(57'600);
   hal::gps_uart.init(57'600);  // the driver searches from there
-  hal::start_edge_capture();
+  start_sticks();
   hal::start_watchdog();
   run();
 }

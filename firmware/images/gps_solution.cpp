@@ -9,17 +9,17 @@
 namespace fw {
 
 GpsSolution solution_of(const GpsFix& fix) {
-  const auto velocity_mps = [](std::int32_t cmps) { return 0.01f * static_cast<float>(cmps); };
+  const auto velocity_mps = [](std::int32_t mmps) { return 1e-3f * static_cast<float>(mmps); };
   const auto metres = [](std::uint32_t mm) { return 1e-3f * static_cast<float>(mm); };
   GpsSolution out;
   out.latitude_e7_deg = fix.latitude_e7_deg;
   out.longitude_e7_deg = fix.longitude_e7_deg;
   out.height_mm = fix.height_mm;
-  out.v_W_mps = {velocity_mps(fix.v_north_cmps), velocity_mps(fix.v_east_cmps),
-                 velocity_mps(fix.v_down_cmps)};
+  out.v_W_mps = {velocity_mps(fix.v_north_mmps), velocity_mps(fix.v_east_mmps),
+                 velocity_mps(fix.v_down_mmps)};
   out.level_accuracy_m = metres(fix.level_accuracy_mm);
   out.down_accuracy_m = metres(fix.down_accuracy_mm);
-  out.speed_accuracy_mps = 0.01f * static_cast<float>(fix.speed_accuracy_cmps);
+  out.speed_accuracy_mps = metres(fix.speed_accuracy_mmps);
   out.fix_type = fix.fix_type;
   out.satellites = fix.satellites;
   out.within_limits = fix.usable();

@@ -12,6 +12,7 @@ namespace {
 using Bytes = std::vector<std::uint8_t>;
 
 const Bytes kAck_rate = {0xB5, 0x62, 0x05, 0x01, 0x02, 0x00, 0x06, 0x08, 0x16, 0x3F};
+const Bytes kPvt_on = {0xB5, 0x62, 0x06, 0x01, 0x03, 0x00, 0x01, 0x07, 0x01, 0x13, 0x51};
 const Bytes kNak_msg = {0xB5, 0x62, 0x05, 0x00, 0x02, 0x00, 0x06, 0x01, 0x0E, 0x33};
 
 bool parses(const Bytes& bytes) {
@@ -49,7 +50,7 @@ struct FakeReceiver {
     const std::uint8_t id = bytes[3];
     if (lose_answers > 0) {
       --lose_answers;
-    } else if (id == 0x01 && refuses) {
+    } else if (id == 0x01 && (refuses || (is_six && told.back() == kPvt_on))) {
       answers.insert(answers.end(), kNak_msg.begin(), kNak_msg.end());
     } else {
       Bytes ack = {0xB5, 0x62, 0x05, 0x01, 0x02, 0x00, 0x06, id};
@@ -71,7 +72,7 @@ struct FakeReceiver {
     bauds.push_back(wanted);
   }
   std::uint32_t baud = 9600, uart_baud = 0;
-  bool deaf = false, refuses = false;
+  bool deaf = false, refuses = false, is_six = true;
   int lose_answers = 0;
   std::deque<std::uint8_t> answers;
   std::vector<Bytes> told;
@@ -123,6 +124,15 @@ Bytes sol(std::uint32_t itow_ms) {
   return p;
 }
 
+Bytes pvt(std::uint32_t itow_ms, std::size_t size) {
+  Bytes p(size);
+  put(p, 0, itow_ms), put(p, 24, 1491300000), put(p, 28, -352800000), put(p, 32, 600000);
+  put(p, 36, 581000), put(p, 40, 3000), put(p, 44, 4500);
+  put(p, 48, 1234), put(p, 52, -456), put(p, 56, 67), put(p, 60, 9999), put(p, 68, 123);
+  p[20] = 3, p[21] = 0x01, p[23] = 9;
+  return p;
+}
+
 TEST(UbloxGps, FindsTheReceiverAtAnyRateAndSetsItUp) {
   for (const std::uint32_t baud : {4800u, 9600u, 19200u, 38400u, 57600u, 115200u}) {
     Bench bench;
@@ -130,11 +140,12 @@ TEST(UbloxGps, FindsTheReceiverAtAnyRateAndSetsItUp) {
     bench.run_ms(9000);
     EXPECT_TRUE(bench.gps.running()) << baud;
     EXPECT_EQ(bench.receiver.baud, 57600u);
-    // Whole frames by their class, id and settings: rate, model, and three messages.
+    // Whole frames by their class, id and settings: rate, model, PVT, and three messages in its place.
     const auto& told = bench.receiver.told;
-    ASSERT_GE(told.size(), 7u);
-    const Bytes rate(told[told.size() - 5].begin() + 2, told[told.size() - 5].begin() + 10);
+    ASSERT_GE(told.size(), 8u);
+    const Bytes rate(told[told.size() - 6].begin() + 2, told[told.size() - 6].begin() + 10);
     EXPECT_EQ(rate, (Bytes{0x06, 0x08, 6, 0, 200, 0, 1, 0}));
+    EXPECT_EQ(told[told.size() - 4], kPvt_on);
     EXPECT_EQ(told[told.size() - 3], (Bytes{0xB5, 0x62, 6, 1, 3, 0, 1, 2, 1, 0x0E, 0x47}));
     EXPECT_EQ(told.back(), (Bytes{0xB5, 0x62, 6, 1, 3, 0, 1, 6, 1, 0x12, 0x4F}));
   }
@@ -161,6 +172,79 @@ TEST(UbloxGps, ARefusalIsNoAcknowledge) {
   EXPECT_TRUE(bench.gps.running());
 }
 
+TEST(UbloxGps, ANewerReceiverTakesPvtAndIsToldNothingBehindIt) {
+  Bench bench;
+  bench.receiver.is_six = false;
+  bench.run_ms(4000);
+  ASSERT_TRUE(bench.gps.running());
+  EXPECT_TRUE(bench.gps.takes_pvt());
+  EXPECT_EQ(bench.receiver.told.back(), kPvt_on);
+  EXPECT_EQ(bench.gps.refused(), 0u);
+}
+
+// Each by itself: u-blox 7 sends 84 bytes, 8 sends 92.
+TEST(UbloxGps, AFixIsOnePvtOfEitherLength) {
+  for (const std::size_t size : {84u, 92u}) {
+    Bench bench;
+    bench.receiver.is_six = false;
+    bench.run_ms(4000);
+    GpsFix fix;
+    bench.push(0x02, posllh(800)), bench.push(0x12, velned(800)), bench.push(0x06, sol(800));
+    EXPECT_FALSE(bench.gps.take(fix));  // saved settings of somebody else's
+    const std::uint32_t before_us = bench.now_us;
+    bench.push(0x07, pvt(1000, size));
+    ASSERT_TRUE(bench.gps.take(fix)) << size;
+    EXPECT_FALSE(bench.gps.take(fix));
+    EXPECT_EQ(fix.itow_ms, 1000u);
+    EXPECT_EQ(fix.longitude_e7_deg, 1491300000);
+    EXPECT_EQ(fix.latitude_e7_deg, -352800000);
+    EXPECT_EQ(fix.height_mm, 600000);
+    EXPECT_EQ(fix.height_sea_mm, 581000);
+    EXPECT_EQ(fix.level_accuracy_mm, 3000u);
+    EXPECT_EQ(fix.down_accuracy_mm, 4500u);
+    EXPECT_EQ(fix.v_north_mmps, 1234);
+    EXPECT_EQ(fix.v_east_mmps, -456);
+    EXPECT_EQ(fix.v_down_mmps, 67);
+    EXPECT_EQ(fix.speed_accuracy_mmps, 123u);
+    EXPECT_EQ(fix.satellites, 9);
+    EXPECT_TRUE(fix.usable());
+    EXPECT_EQ(fix.received_us, before_us + 174);
+  }
+}
+
+// Otherwise the next solution would seem 200 ms older than it is.
+TEST(UbloxGps, AFrameThatIsSpoiltDoesNotAgeTheNext) {
+  Bench bench;
+  bench.receiver.is_six = false;
+  bench.run_ms(4000);
+  Bytes spoilt = pvt(1000, 92);
+  for (const std::uint8_t byte : {0xB5, 0x62, 0x01, 0x07, 92, 0x00})
+    bench.gps.push(byte, bench.now_us);
+  for (const std::uint8_t byte : spoilt) bench.gps.push(byte, bench.now_us);
+  for (int k = 0; k < 2; ++k) bench.gps.push(0xEE, bench.now_us);  // no checksum of it
+  const std::uint32_t before_us = bench.now_us += 200'000;
+  bench.push(0x07, pvt(1200, 92));
+  GpsFix fix;
+  ASSERT_TRUE(bench.gps.take(fix));
+  EXPECT_EQ(fix.received_us, before_us + 174);
+}
+
+// Plugged in while the other is gone.
+TEST(UbloxGps, AnotherGenerationInItsPlaceIsSetUpAsItNeeds) {
+  Bench bench;
+  bench.run_ms(4000);
+  ASSERT_TRUE(bench.gps.running());
+  ASSERT_FALSE(bench.gps.takes_pvt());
+  bench.receiver.is_six = false;
+  bench.receiver.baud = 9600;
+  bench.run_ms(9000);
+  EXPECT_TRUE(bench.gps.takes_pvt());
+  bench.receiver.is_six = true;
+  bench.receiver.baud = 9600;
+  bench.run_ms(9000);
+  EXPECT_FALSE(bench.gps.takes_pvt());
+}
+
 TEST(UbloxGps, AFixIsTheThreeMessagesOfOneSolutionInAnyOrder) {
   Bench bench;
   bench.run_ms(4000);
@@ -180,10 +264,10 @@ TEST(UbloxGps, AFixIsTheThreeMessagesOfOneSolutionInAnyOrder) {
   EXPECT_EQ(fix.height_sea_mm, 581000);
   EXPECT_EQ(fix.level_accuracy_mm, 3000u);
   EXPECT_EQ(fix.down_accuracy_mm, 4500u);
-  EXPECT_EQ(fix.v_north_cmps, 123);
-  EXPECT_EQ(fix.v_east_cmps, -45);
-  EXPECT_EQ(fix.v_down_cmps, 6);
-  EXPECT_EQ(fix.speed_accuracy_cmps, 12u);
+  EXPECT_EQ(fix.v_north_mmps, 1230);
+  EXPECT_EQ(fix.v_east_mmps, -450);
+  EXPECT_EQ(fix.v_down_mmps, 60);
+  EXPECT_EQ(fix.speed_accuracy_mmps, 120u);
   EXPECT_EQ(fix.satellites, 9);
   EXPECT_TRUE(fix.usable());
   EXPECT_EQ(fix.received_us, before_us + 174);  // the first byte

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "base/near.hpp"
+#include "firmware/drivers/cppm_receiver.hpp"
 #include "firmware/flight/manual.hpp"
 #include "firmware/tests/vehicle_model.hpp"
 
@@ -21,7 +22,7 @@ struct ManualRig {
 
   void run(double seconds) {
     for (long ms = std::lround(seconds * 1000.0); ms > 0; --ms) {
-      if (hand.on && ms % 22 == 0) flight.on_rc(frame());
+      if (hand.on && ms % 22 == 0) flight.on_rc(frame().channels());
       vehicle.step(flight);
     }
   }

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "base/near.hpp"
+#include "firmware/drivers/cppm_receiver.hpp"
+#include "firmware/flight/receiver_choice.hpp"
 
 namespace fw {
 namespace {
@@ -22,7 +24,7 @@ CppmFrame frame_of(const Sticks& s) {
 // A frame each 22 ms.
 void send(Pilot& pilot, const CppmFrame& frame, int times) {
   for (int i = 0; i < times; ++i) {
-    pilot.on_frame(frame);
+    pilot.on_frame(frame.channels());
     for (int ms = 0; ms < 22; ++ms) pilot.tick();
   }
 }
@@ -95,6 +97,27 @@ TEST(Pilot, NonsenseIsNoFrameAndEndsTheLink) {
   }
 }
 
+// Any bits, as long as they are within the limits: a receiver gone mad.
+TEST(Pilot, FramesOfAnyValuesMoveTheSticksForHalfASecondAtMost) {
+  int moved = 0;
+  for (std::uint32_t seed = 1; seed <= 40; ++seed) {
+    Pilot pilot;
+    send(pilot, frame_of({.throttle = 1500, .mode = 1500, .arm = 2000}), 5);
+    std::uint32_t state = seed;
+    const auto any_us = [&state] {
+      state = state * 1664525u + 1013904223u;
+      return static_cast<std::uint16_t>(950u + (state >> 16) % 1151u);
+    };
+    for (int k = 0; k < 100 && pilot.link() != PilotLink::nonsense; ++k) {
+      send(pilot, frame_of({any_us(), any_us(), any_us(), any_us(), any_us(), any_us()}), 1);
+      if (pilot.demand().roll != 0.0f) ++moved;
+    }
+    EXPECT_EQ(pilot.link(), PilotLink::nonsense) << seed;
+  }
+  // Three agree on both switches once in 80: in the 23 frames of half a second, one time in four.
+  EXPECT_LT(moved, 40 * 23);
+}
+
 TEST(Pilot, IsLostHalfASecondAfterTheLastFrame) {
   Pilot pilot;
   send(pilot, frame_of({.roll = 2000}), 3);
@@ -103,6 +126,27 @@ TEST(Pilot, IsLostHalfASecondAfterTheLastFrame) {
   wait_ms(pilot, 1);
   EXPECT_EQ(pilot.link(), PilotLink::lost);
   EXPECT_EQ(pilot.demand().roll, 1.0f);
+}
+
+TEST(ReceiverChoice, TheFirstThatSpeaksIsHeardAndInTheAirNoOther) {
+  constexpr auto cppm = ReceiverKind::cppm, sbus = ReceiverKind::sbus;
+  for (const auto& [first, other] : {std::pair{cppm, sbus}, {sbus, cppm}}) {
+    ReceiverChoice choice;
+    std::uint32_t now_us = 0xFFFF'F000;  // it wraps soon
+    EXPECT_TRUE(choice.hears(first, now_us, false));
+    EXPECT_FALSE(choice.hears(other, now_us += 10'000, false));
+    EXPECT_TRUE(choice.hears(first, now_us, false));
+    EXPECT_FALSE(choice.hears(other, now_us + 499'999, false));
+    EXPECT_FALSE(choice.hears(other, now_us + 5'000'000, true));
+    EXPECT_TRUE(choice.hears(first, now_us += 5'000'000, true));
+    EXPECT_TRUE(choice.hears(other, now_us + 500'000, false));
+    EXPECT_FALSE(choice.hears(first, now_us + 500'001, false));
+  }
+}
+
+TEST(ReceiverChoice, ATransmitterThatIsSwitchedOnInFlightIsHeard) {
+  ReceiverChoice choice;
+  EXPECT_TRUE(choice.hears(ReceiverKind::sbus, 1000, true));
 }
 
 }  // namespace

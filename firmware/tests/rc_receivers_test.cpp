@@ -164,6 +164,19 @@ TEST(SbusReceiver, PulsesAsBetaflightScalesThem) {
   EXPECT_EQ(frame.pulse_us(2), 2013u);  // 2012.5
 }
 
+// Betaflight and PX4 flag both: frame lost 0x04, failsafe 0x08. Either says that the sticks are not told.
+TEST(SbusReceiver, AFrameWithEitherFlagIsNoNewsOfTheSticks) {
+  for (const auto& [flags, news] :
+       {std::pair{"00", true}, {"04", false}, {"08", false}, {"0C", false}, {"03", true}}) {
+    SbusBench bench;
+    bench.now_us += 2000;
+    bench.frame(kCentred.substr(0, 46) + flags + "00");
+    ASSERT_EQ(bench.frames, 1);
+    EXPECT_EQ(bench.receiver.frame().is_news(), news) << flags;
+    EXPECT_EQ(bench.receiver.frame().pulses_us()[15], 1500u);
+  }
+}
+
 TEST(SbusReceiver, ItWaitsForAPauseBeforeItsFirstFrame) {
   SbusBench bench;
   bench.now_us = 0;

@@ -53,6 +53,7 @@ constexpr KindName kNames[] = {
     {FaultKind::can_babble, "can_babble"},
     {FaultKind::capture_frozen, "capture_frozen"},
     {FaultKind::board_unplugged, "board_unplugged"},
+    {FaultKind::sensor_drift, "sensor_drift"},
 };
 
 bool matches(int wanted, int here) {
@@ -104,6 +105,17 @@ const Fault* FaultBook::apply(FaultKind kind, int bus, int address, Nanoseconds 
   const Fault* fault = find(kind, bus, address, now, axis);
   if (fault != nullptr) applied(*fault, now);
   return fault;
+}
+
+double added_by_faults(FaultBook* book, int bus, int address, Nanoseconds now, int axis) {
+  constexpr double kMinute_ns = 60e9;
+  double added = 0.0;
+  if (const Fault* f = apply(book, FaultKind::sensor_offset, bus, address, now, axis))
+    added += f->value;
+  if (const Fault* f = apply(book, FaultKind::sensor_drift, bus, address, now, axis)) {
+    added += f->value * static_cast<double>(now - f->start_ns) / kMinute_ns;
+  }
+  return added;
 }
 
 std::vector<std::uint32_t> FaultBook::pending() const {

@@ -65,6 +65,7 @@ enum class FaultKind : std::uint32_t {
   can_babble,          // a node of identifier 0 takes the share `value` of the bus (0: all of it)
   capture_frozen,      // harness: the capture system goes on sending the pose that it sent last
   board_unplugged,  // board: without supply and off its wires while it lasts, then as from power-up
+  sensor_drift,     // what axis reads runs away: value (SI) more with each minute since its start
 };
 
 std::optional<FaultKind> fault_kind(std::string_view name);  // "i2c_nack"
@@ -118,5 +119,8 @@ inline const Fault* apply(FaultBook* book, FaultKind kind, int bus, int address,
                           int axis = kAnywhere) {
   return book == nullptr ? nullptr : book->apply(kind, bus, address, now, axis);
 }
+
+// What faults add to an axis of a sensor: sensor_offset and sensor_drift together.
+double added_by_faults(FaultBook* book, int bus, int address, Nanoseconds now, int axis);
 
 }  // namespace whirl::io

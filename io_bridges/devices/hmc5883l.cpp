@@ -79,8 +79,7 @@ void Hmc5883l::place() {
 std::int16_t Hmc5883l::counts_of(std::size_t axis, double field_T, Nanoseconds now) {
   const double noise_T = params_.noise_T / std::sqrt(part_.averages()) * noise_.normal();
   const int number = static_cast<int>(axis);
-  const Fault* offset = fault(FaultKind::sensor_offset, now, number);
-  if (offset != nullptr) field_T += offset->value;
+  field_T += added_by_faults(faults_, params_.bus, params_.device, now, number);
   if (fault(FaultKind::sensor_saturated, now, number) != nullptr) {
     return core::Hmc5883l::kOverflow_counts;
   }

@@ -34,8 +34,8 @@
 //
 //   Self test  the straps' field is measured less the field without it, which takes it out; where
 //            the two together overflow, the axis reads -4096
-//   Faults   sensor_frozen (data stay, RDY and DRDY go on), sensor_offset (T), sensor_saturated (-4096
-//            of that axis), sensor_wrong_identity (0x0A reads value), sensor_late (each measurement
+//   Faults   sensor_frozen (data stay, RDY and DRDY go on), sensor_offset (T), sensor_drift (T a minute),
+//            sensor_saturated (-4096 of that axis), sensor_wrong_identity (0x0A reads value), sensor_late (each measurement
 //            comes value seconds later), sensor_brown_out
 #pragma once
 #include <array>

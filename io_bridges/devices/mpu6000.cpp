@@ -138,7 +138,7 @@ void Mpu6000::take_sample() {
 
 double Mpu6000::faulted(int axis, double value, Nanoseconds now) {
   if (const Fault* scale = fault(FaultKind::sensor_scale, now, axis)) value *= 1.0 + scale->value;
-  if (const Fault* offset = fault(FaultKind::sensor_offset, now, axis)) value += offset->value;
+  value += added_by_faults(faults_, params_.bus, params_.device, now, axis);
   return fault(FaultKind::sensor_saturated, now, axis) != nullptr ? 1e9 : value;
 }
 

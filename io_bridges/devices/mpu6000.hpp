@@ -7,8 +7,8 @@
 //   Timing   the part's own clock (CLKSEL 0: internal, 1..3: PLL) with its error: a sample every
 //            (1 + SMPLRT_DIV) ticks of 8 or 1 kHz. DLPF as in dlpf.hpp
 //   Source   PS-MPU-6000A-00 rev 3.4, RM-MPU-6000A-00 rev 4.2; PRODUCT_ID from Betaflight's driver
-//   Faults   sensor_frozen, sensor_offset and sensor_saturated (by axis), sensor_wrong_identity
-//            (WHO_AM_I reads value), sensor_brown_out
+//   Faults   sensor_frozen; by axis sensor_offset, sensor_drift, sensor_scale and sensor_saturated;
+//            sensor_wrong_identity (WHO_AM_I reads value), sensor_brown_out
 #pragma once
 #include <array>
 #include <cstdint>

@@ -62,8 +62,7 @@ std::uint32_t Ms5611::counts(Nanoseconds now) {
   const Noise& row = kNoise[part_.osr()];
   const double noise = params_.noise_scale * noise_.normal();
   const int axis = part_.quantity() == Quantity::pressure ? 0 : 1;
-  const Fault* offset = fault(FaultKind::sensor_offset, now, axis);
-  const double added = offset == nullptr ? 0.0 : offset->value;
+  const double added = added_by_faults(faults_, params_.bus, params_.device, now, axis);
   if (fault(FaultKind::sensor_saturated, now, axis) != nullptr) return kMost_counts;
   const double exact =
       axis == 0

@@ -33,7 +33,7 @@
 //   | read past the data   | I2C 0, SPI 0xFF (0x00 while converting)                               |
 //
 //   Faults   sensor_frozen (each result repeats the last of its kind), sensor_offset (axis 0 Pa,
-//            1 K), sensor_saturated (that axis reads 0xFFFFFF), sensor_wrong_identity (PROM word 7,
+//            1 K), sensor_drift (the same a minute), sensor_saturated (that axis reads 0xFFFFFF), sensor_wrong_identity (PROM word 7,
 //            serial and CRC, reads value), sensor_late (conversions take value seconds longer),
 //            sensor_brown_out
 #pragma once

@@ -88,6 +88,11 @@ fail_safe("the battery is empty", {}, function(t)
   lands(t, "battery empty", 4)
 end)
 
+fail_safe("the wire that measures the battery is off", {}, function(t)
+  t:fault { kind = "sensor_offset", device = "battery", value = "-20 V" }
+  lands(t, "battery empty", 4)
+end)
+
 -- The cameras see beyond the fence.
 fail_safe("a gust blows it over the fence", { room = { size = { "10 m", "4 m", "3 m" } } }, function(t)
   t:command { position = { north = "2.1 m", height = "1.1 m" } }

@@ -2,34 +2,9 @@
 -- fly away. Without a position the image lands by vertical speed alone, so that what is asked of it then is to come
 -- down near by.
 include "include/gps.lua"
+include "include/gps_faults.lua"
 
--- Blind it comes down in some 20 s, and the wind carries it meanwhile: 3 m/s for so long, at most.
-local function gps_plan(name, run)
-  plan(name) {
-    image = "flight", board = "px4fmu_v1", vehicle = "hp_quad",
-    tags = { "flight", "faults" }, timeout = "240 s",
-    outdoors = true, air = wind, fence = { radius = "70 m", height = "20 m" },
-    run = run,
-  }
-end
-
--- Where the vehicle is from now on, against where it was.
-local function stays_near(t, limit, duration)
-  local north, east = t:value("north", "m"), t:value("east", "m")
-  local r = t:record({ "north", "east" }, duration)
-  t:expect(r:max_error { north = string.format("%.3f m", north), east = string.format("%.3f m", east) }, "farthest from where it was"):at_most(limit)
-end
-
--- Down, with the motors off, within the fence.
-local function comes_down(t)
-  t:within("3 s", function(s) return s.told_state == 4 end, "failsafe landing")
-  t:always("inside_fence"):at_least(1)
-  local tilt = t:always("tilt")
-  tilt:at_most "30 deg"
-  t:within("40 s", function(s) return s.on_ground == 1 end, "on the ground")
-  tilt:stop()
-  t:within("14 s", function(s) return s.told_armed == 0 end, "disarmed")
-end
+local function gps_plan(name, run) gps_fault_plan("px4fmu_v1", name, run) end
 
 gps_plan("gps: one solution in three lost is flown through", function(t)
   hover_by_gps(t)

@@ -38,6 +38,23 @@ for _, f in ipairs(faults) do
   }
 end
 
+-- As parts do that warm up: 0.16 deg/s a kelvin of the gyro, 20 kelvin a minute; height by 5 m, field by a sixth.
+plan "sensors that drift are flown with" {
+  image = "flight", board = "px4fmu_v1", vehicle = "hp_quad",
+  tags = { "flight", "faults" }, timeout = "60 s",
+  run = function(t)
+    hover(t)
+    t:fault { kind = "sensor_drift", device = "imu", axis = "gyro_y", value = "3 deg/s" }
+    t:fault { kind = "sensor_drift", device = "baro", axis = "pressure", value = "60 Pa" }
+    t:fault { kind = "sensor_drift", device = "mag", axis = "field_x", value = "10 uT" }
+    local r = t:record({ "height", "offset", "attitude_error" }, "25 s")
+    t:expect(r:rms_error("height", "1.1 m"), "height RMS error"):at_most "5 cm"
+    t:expect(r:rms "offset", "sideways RMS error"):at_most "10 cm"
+    t:expect(r:max "attitude_error", "attitude that is flown by"):at_most "3 deg"
+    t:expect(t:value "told_state", "flies"):equal(2)
+  end,
+}
+
 -- A part that is not what the image was built for, from power-up on. Four bits check the PROM: of sixteen copies of
 -- the barometer one would pass with this word (of seed 1 it is 0x55).
 for _, f in ipairs {

@@ -1,31 +1,13 @@
 -- Flown by hand: armed by the switch, taken off by throttle in manual velocity, held by sticks in manual
 -- attitude, given to the autopilot to land. Then what must not happen: arming with the throttle up, and
 -- flying on when the transmitter is gone; and that a receiver's nonsense, frame by frame, moves nothing.
-
-local function boot(t)
-  t:within("8 s", function(s) return s.heartbeat_age_s < 1.5 end, "the first heartbeat")
-  t:command { rc = { mode = 2 } }
-  t:wait "4 s" -- gyro bias on the ground, capture poses, ESC arming zeros
-end
-
-local function arm(t)
-  t:command { rc = { arm = true } }
-  t:within("2 s", function(s) return s.told_armed == 1 end, "armed by the switch")
-  t:wait "2 s" -- the rotors come to idle
-end
-
-local function take_off(t)
-  t:command { rc = { thrust = "100 %" } }
-  t:within("6 s", function(s) return s.height_m > 0.9 end, "0.9 m high")
-  t:command { rc = { thrust = "50 %" } }
-  t:wait "3 s"
-end
+include "include/by_hand.lua"
 
 plan "manual" {
   image = "flight", board = "px4fmu_v1", vehicle = "hp_quad",
   tags = { "quick", "flight" }, timeout = "90 s",
   run = function(t)
-    boot(t)
+    boot_by_hand(t)
     t:step "arming is refused with the throttle up"
     t:command { rc = { thrust = "30 %" } }
     t:wait "0.3 s"
@@ -37,10 +19,10 @@ plan "manual" {
     t:expect(t:value "told_armed", "armed by lowering the throttle"):equal(0)
     t:command { rc = { arm = false } }
     t:wait "0.5 s"
-    arm(t)
+    arm_by_hand(t)
 
     t:step "manual velocity"
-    take_off(t)
+    take_off_by_hand(t)
     local held = t:record({ "height", "north", "east" }, "2 s")
     t:expect(held:max "height", "height holds"):at_most "1.5 m"
     t:expect(held:rms_error("height", string.format("%.3f m", t:value("height", "m"))), "and does not wander"):at_most "4 cm"
@@ -87,9 +69,9 @@ plan "manual landing" {
   image = "flight", board = "px4fmu_v1", vehicle = "hp_quad",
   tags = { "flight" }, timeout = "90 s",
   run = function(t)
-    boot(t)
-    arm(t)
-    take_off(t)
+    boot_by_hand(t)
+    arm_by_hand(t)
+    take_off_by_hand(t)
     t:step "down by throttle"
     t:command { rc = { thrust = "0 %" } }
     t:within("12 s", function(s) return s.on_ground == 1 end, "on the ground")
@@ -104,39 +86,18 @@ plan "manual landing" {
   end,
 }
 
-local losses = {
-  { "the transmitter is switched off", function(t) t:command { rc = { on = false } } end },
-  { "the receiver loses its transmitter", function(t) t:fault { kind = "rc_link_lost", device = "rc" } end },
-}
 for _, mode in ipairs { 1, 2 } do
-  for _, loss in ipairs(losses) do
-    plan("manual " .. (mode == 1 and "attitude" or "velocity") .. ", " .. loss[1]) {
-      image = "flight", board = "px4fmu_v1", vehicle = "hp_quad",
-      tags = { "flight" }, timeout = "90 s",
-      run = function(t)
-        boot(t)
-        arm(t)
-        take_off(t)
-        t:command { rc = { mode = mode } }
-        t:wait "0.5 s"
-        t:always("tilt"):at_most "25 deg"
-        t:step "lost"
-        loss[2](t)
-        t:within("2.5 s", function(s) return s.told_state == 3 end, "landing")
-        t:within("15 s", function(s) return s.told_armed == 0 end, "landed and disarmed")
-        t:expect(t:value "height", "on its gear"):at_most "15 cm"
-      end,
-    }
-  end
+  loss_by_hand("manual", "px4fmu_v1", mode, "the transmitter is switched off", function(t) t:command { rc = { on = false } } end)
+  loss_by_hand("manual", "px4fmu_v1", mode, "the receiver loses its transmitter", function(t) t:fault { kind = "rc_link_lost", device = "rc" } end)
 end
 
 plan "manual, one frame in ten is nonsense" {
   image = "flight", board = "px4fmu_v1", vehicle = "hp_quad",
   tags = { "flight" }, timeout = "90 s",
   run = function(t)
-    boot(t)
-    arm(t)
-    take_off(t)
+    boot_by_hand(t)
+    arm_by_hand(t)
+    take_off_by_hand(t)
     t:fault { kind = "rc_glitch", device = "rc", value = "10 %" }
     local held = t:record({ "height", "tilt" }, "5 s")
     t:expect(held:max "tilt", "tilt"):at_most "8 deg"

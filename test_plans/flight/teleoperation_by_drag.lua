@@ -6,6 +6,15 @@ include "include/parameter.lua"
 
 local ways = { { "0.6 m/s", "0 m/s" }, { "-0.6 m/s", "0 m/s" }, { "0 m/s", "0.6 m/s" }, { "0 m/s", "-0.6 m/s" },
                { "0.4 m/s", "0.4 m/s" }, { "-0.4 m/s", "-0.4 m/s" } }
+
+-- Held is the barometer's height. Where that is nobody but capture can tell: the air and the part wander by 8 Pa
+-- (1 sigma) with 600 s, and 8 Pa are 0.68 m. Of that the best of filters knows no better than 0.27 m after a minute,
+-- 0.29 m without its accelerometer (plant/tests/height_bound_test.cpp), so that two flights in
+-- five keep 0.3 m of true height for a minute. Judged is by three sigma of what the barometer alone allows, and 10 cm for the vehicle.
+local function height_limit(after_s)
+  return string.format("%.3f m", 3 * 0.68 * math.sqrt(1 - math.exp(-2 * after_s / 600)) + 0.1)
+end
+
 local signals = { "velocity_north", "velocity_east", "height", "told_height", "tilt", "velocity_error_north", "velocity_error_east" }
 
 -- Flies the ways, five seconds each, for a time; judges each from when it has been flown up to.
@@ -18,10 +27,8 @@ local function teleoperate(t, legs, words, by_drag)
     local name = words .. ", leg " .. leg
     t:expect(r:max_error { velocity_north = way[1], velocity_east = way[2] }, name .. ": velocity off the command"):at_most "0.3 m/s"
     t:expect(r:rms_error { velocity_error_north = "0 m/s", velocity_error_east = "0 m/s" }, name .. ": velocity believed, RMS error"):at_most "0.15 m/s"
-    -- Held is the barometer's height. Where that is nobody but capture can tell: it wanders by 8 Pa in 10 minutes
-    -- (plant/sensors), 0.3 m in a minute, in one standard deviation; three of them are told apart from a fault.
     t:expect(r:max_error("told_height", "1.1 m"), name .. ": height, by the vehicle's own"):at_most "0.3 m"
-    t:expect(r:max_error("height", "1.1 m"), name .. ": height"):at_most(by_drag and "1.2 m" or "0.3 m")
+    t:expect(r:max_error("height", "1.1 m"), name .. ": height"):at_most(by_drag and height_limit(5 * leg) or "0.3 m")
   end
 end
 

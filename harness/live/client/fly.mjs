@@ -71,10 +71,21 @@ async function read_parameters() {
   return known
 }
 
-async function set_parameter(name, value) {
+async function value_of(request, name) {
+  return (await vehicle.ask(request, common.ParamValue, answer => answer.paramId === name)).paramValue
+}
+
+function asked_for(name) {
+  return value_of(made(common.ParamRequestRead, { ...to_vehicle, paramIndex: -1, paramId: name }), name)
+}
+
+// What it is set to is what it holds, now and when it is asked later; `refused`: what it held before.
+async function set_parameter(name, value, refused = false) {
+  const before = await asked_for(name)
+  assert.notEqual(before, value, `${name} is to change`)
   const set = made(common.ParamSet, { ...to_vehicle, paramId: name, paramValue: value, paramType: 9 })
-  const told = await vehicle.ask(set, common.ParamValue, answer => answer.paramId === name)
-  assert.equal(told.paramValue, value)
+  assert.equal(await value_of(set, name), refused ? before : value)
+  assert.equal(await asked_for(name), refused ? before : value)
 }
 
 // Nothing of this may lose what comes behind it, nor do anything.
@@ -115,6 +126,8 @@ async function go_to(x, y, z) {
 async function fly() {
   await arm()
   await vehicle.next(minimal.Heartbeat, beat => (beat.baseMode & kArmed) !== 0)
+  await set_parameter('EST_FILTER', 0, true)  // not while armed
+  assert.equal(await vehicle.command(22, { 7: 99 }), kDenied, 'higher than it may')
   assert.equal(await vehicle.command(22, { 7: 1.1 }), kAccepted)
   await vehicle.next(common.LocalPositionNed, p => p.z < -1.0)
   await go_to(0.8, -0.5, -1.3)
@@ -131,6 +144,7 @@ async function main() {
     await get_to_know()
     const parameters = await read_parameters()
     await set_parameter('CTL_FEEDFWD', 0)
+    await set_parameter('CTL_FEEDFWD', 0.5, true)  // it is a switch
     await disturb()
     await fly()
     assert.ok(texts.some(text => text.startsWith('boot')), `texts: ${texts}`)

@@ -266,6 +266,18 @@ TEST(Hmc5883lFault, OffsetAndSaturationActOnTheirAxis) {
   }
 }
 
+TEST(Hmc5883lFault, DriftGrowsByItsValueEachMinute) {
+  HmcBench bench;
+  bench.power_up();
+  Counts want = bench.measure();
+  bench.run_us(30'000'000);
+  Fault drift = fault(FaultKind::sensor_drift, 2e-4, 0);  // 1 Ga in half a minute
+  drift.start_ns = bench.now() - 30'000'000'000;
+  bench.faults.add(drift);
+  want[0] += 1090;
+  EXPECT_TRUE(near(bench.measure()[0], want[0], counts(2, 1.0)));
+}
+
 TEST(Hmc5883lFault, WrongIdentityReadsItsValue) {
   HmcBench bench;
   bench.faults.add(fault(FaultKind::sensor_wrong_identity, 0x49));

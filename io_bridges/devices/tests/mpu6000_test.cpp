@@ -307,6 +307,23 @@ TEST(Mpu6000Fault, OffsetRailAndWrongIdentity) {
   EXPECT_TRUE(bench.faults.pending().empty());
 }
 
+TEST(Mpu6000Fault, DriftCountsFromItsStart) {
+  MpuBench bench;
+  bench.wake();
+  bench.run(500);
+  bench.faults.add({.number = 1,
+                    .kind = FaultKind::sensor_drift,
+                    .start_ns = bench.queue.now(),
+                    .axis = 1,
+                    .value = 9.80665 * 60.0});
+  bench.run(2);
+  EXPECT_TRUE(near(bench.word(0x3D), 0.0, counts(66, 1.0)));  // 2 ms of 1 g a second, and a sample
+  bench.run(498);
+  EXPECT_TRUE(
+      near(bench.word(0x3D), 8192.0, counts(33, 1.0)));  // half a second, of samples of 1 ms
+  EXPECT_EQ(bench.word(0x3B), 0);
+}
+
 TEST(Mpu6000, AnAxisOfAnotherScaleReadsByThatShareMore) {
   MpuBench bench;
   bench.wake();

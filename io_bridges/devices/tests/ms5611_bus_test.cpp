@@ -143,6 +143,15 @@ TEST(Ms5611Fault, OffsetIsAddedToItsAxis) {
   EXPECT_TRUE(near(warm.measure().temperature_cdegC, 3350.0, kResolution_cdegC));
 }
 
+TEST(Ms5611Fault, DriftGrowsByItsValueEachMinute) {
+  Ms5611Bench bench;
+  bench.faults.add(fault(FaultKind::sensor_drift, 240.0, 0));
+  bench.queue.run_until(30'000'000'000);
+  EXPECT_TRUE(near(bench.measure().pressure_Pa, 95120.0, kResolution_Pa));
+  bench.queue.run_until(90'000'000'000);
+  EXPECT_TRUE(near(bench.measure().pressure_Pa, 95360.0, kResolution_Pa));
+}
+
 TEST(Ms5611Fault, SaturatedReadsAllOnesOfItsAxis) {
   for (int axis = 0; axis < 2; ++axis) {
     Ms5611Bench bench;

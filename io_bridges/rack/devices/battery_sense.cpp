@@ -1,5 +1,9 @@
 // The battery's voltage at an ADC pin: a divider with a capacitor at its tap. What the firmware knows is
 // the nominal ratio; the resistors are drawn from their tolerance.
+//
+//   Faults   sensor_offset (value V that the divider sees more, never below 0: a wire that is off sees none)
+#include <algorithm>
+
 #include "io_bridges/rack/devices/table.hpp"
 #include "io_bridges/rack/models/sense_line.hpp"
 
@@ -8,14 +12,23 @@ namespace {
 
 class BatterySenseDevice final : public RackDevice {
  public:
-  explicit BatterySenseDevice(DeviceSlot& slot) : divider_(divider_of(slot)), line_(line_of(slot)) {
+  explicit BatterySenseDevice(DeviceSlot& slot)
+      : divider_(divider_of(slot)),
+        line_(line_of(slot)),
+        faults_(&slot.rack().faults()),
+        number_(slot.number()) {
     line_.set_V(tap_V(io::BodyMotion{}.bus_voltage_V), slot.rack().events().now());
     slot.set_analog(slot.text("bus"), [this](Nanoseconds now) { return line_.sample_V(now); });
   }
 
   std::vector<Intake> intakes() const override { return {{io::Kind::body_motion}}; }
   void on_message(const io::Reader& message) override {
-    line_.set_V(tap_V(message.as<io::BodyMotion>().bus_voltage_V), message.header().t_ns);
+    const io::Nanoseconds now = message.header().t_ns;
+    double battery_V = message.as<io::BodyMotion>().bus_voltage_V;
+    const io::Fault* offset =
+        faults_->apply(io::FaultKind::sensor_offset, io::kAnywhere, number_, now);
+    if (offset != nullptr) battery_V = std::max(battery_V + offset->value, 0.0);
+    line_.set_V(tap_V(battery_V), now);
   }
 
  private:
@@ -44,6 +57,8 @@ class BatterySenseDevice final : public RackDevice {
 
   Divider divider_;
   SenseLine line_;
+  io::FaultBook* faults_;
+  int number_;
 };
 
 }  // namespace

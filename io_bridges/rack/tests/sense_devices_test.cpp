@@ -55,6 +55,24 @@ TEST(BatterySense, LagsByTheDividersResistanceAndItsCapacitor) {
   EXPECT_TRUE(near(share, 0.6321206, stated(1e-5, "1 - 1/e, time to a nanosecond")));
 }
 
+TEST(BatterySense, AnOffsetIsOfTheBatterysVoltageAndAWireThatIsOffSeesNone) {
+  BenchRack rack;
+  ASSERT_NE(rack.add(divider(true)), nullptr);
+  io::Fault off{.number = 1, .kind = io::FaultKind::sensor_offset, .address = 0, .value = -2.0};
+  off.end_ns = 30'000'000;
+  rack.book.add(off);
+  rack.send(fed(16.0, 0.0));
+  rack.run_ms(20.0);
+  EXPECT_TRUE(near(pin_V(rack) * 5.7, 14.0, stated(1e-3, "24 time constants")));
+  rack.run_ms(20.0);
+  off = {.number = 2, .kind = io::FaultKind::sensor_offset, .address = 0, .value = -20.0};
+  rack.book.add(off);
+  rack.send(fed(16.0, 0.0));
+  rack.run_ms(20.0);
+  EXPECT_TRUE(near(pin_V(rack), 0.0, stated(1e-3, "24 time constants")));
+  EXPECT_TRUE(rack.book.pending().empty());
+}
+
 TEST(BatterySense, EachBoardsResistorsDifferWithinTheirTolerance) {
   std::set<double> ratios;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
