@@ -91,8 +91,10 @@ void set_parts(BoardDescription& board, const FlightParams& params) {
     WHIRL_CHECK(device.set(key, all), key);
   };
   for (BoardDevice& device : board.devices) {
-    if (device.type != "mpu6000") continue;
-    for (const auto& [key, value] : params.imu) WHIRL_CHECK(device.set(key, value), key);
+    if (!device.type.starts_with("mpu6000")) continue;  // on SPI or as a node of a CAN bus
+    for (const auto& [key, value] : params.imu) {
+      if (!device.value(key)) WHIRL_CHECK(device.set(key, value), key);
+    }
     add(device, "params.place", params.imu_place_m);
     add(device, "params.misalignment", params.imu_turn_rad);
   }
