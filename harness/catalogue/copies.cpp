@@ -95,10 +95,7 @@ Result<Copies> read_copies(const std::string& path, std::optional<ToleranceClass
     if (!propeller) return propeller.error();
     return copies_of(alone(plant::name(*propeller.value().blade), "rotors", tolerance));
   }
-  if (kind.value() != "vehicle") {
-    return Error{ErrorKind::bad_input, path, "is no propeller, motor, stand or vehicle",
-                 R"(kind = "propeller", "motor", "calibration" (a stand) or "vehicle")"};
-  }
+  if (kind.value() != "vehicle") return no_part(path);
   auto vehicle = read_vehicle(path);
   if (!vehicle) return vehicle.error();
   choose(vehicle.value().tolerance, plant::vehicle_groups(), tolerance);

@@ -154,10 +154,7 @@ Result<Swept> sweep_file(const std::string& path, const std::vector<std::string>
   if (kind.value() == "propeller") return sweep_propeller(path, measured, options);
   if (kind.value() == "motor") return sweep_motor(path, measured, options);
   if (kind.value() == "calibration") return sweep_stand(path, measured, options, composition);
-  if (kind.value() != "vehicle") {
-    return Error{ErrorKind::bad_input, path, "is no propeller, motor, stand or vehicle",
-                 R"(kind = "propeller", "motor", "calibration" (a stand) or "vehicle")"};
-  }
+  if (kind.value() != "vehicle") return catalogue::no_part(path);
   if (!measured.empty()) {
     return Error{ErrorKind::bad_input, "--measured", path + " is a vehicle",
                  "lay measured points over its propeller, its motor or a stand"};
