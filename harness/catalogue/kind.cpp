@@ -10,4 +10,9 @@ Result<std::string> read_kind(const std::string& path) {
   return file.value().text_or("kind", "");
 }
 
+Error no_part(const std::string& path) {
+  return {ErrorKind::bad_input, path, "is no propeller, motor, stand or vehicle",
+          R"(kind = "propeller", "motor", "calibration" (a stand) or "vehicle")"};
+}
+
 }  // namespace whirl::catalogue

@@ -8,4 +8,7 @@ namespace whirl::catalogue {
 
 Result<std::string> read_kind(const std::string& path);
 
+// What is said of a file whose kind has neither curves nor copies.
+Error no_part(const std::string& path);
+
 }  // namespace whirl::catalogue

@@ -13,6 +13,8 @@ struct SweepOptions {
   std::string top_speed = "6000 rpm";
   std::string voltage;                // of the bus; empty: the full pack
   std::vector<std::string> measured;  // of all but a vehicle: files to lay over
+  std::string seeds;                  // "1..100": the spread of its copies instead
+  std::string tolerance;              // of these; empty: the file's, or typical
 };
 int sweep_command(const SweepOptions& options, const Composition& composition);
 

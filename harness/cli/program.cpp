@@ -142,6 +142,17 @@ CLI::App* add_sweep(CLI::App& app, SweepOptions& options) {
       "--measured", options.measured,
       "measured points to lay over: of a propeller columns rpm J CT CP, of a motor or "
       "stand V rpm A, and Nm N duty prop");
+  auto* seeds = sweeps->add_option("--seeds", options.seeds,
+                                   "instead of curves, what its copies of these seeds are: 1..100");
+  seeds->check(seeds_complaint);
+  for (const char* other : {"--speed", "--top-speed", "--voltage", "--measured"}) {
+    seeds->excludes(sweeps->get_option(other));
+  }
+  sweeps
+      ->add_option("--tolerance", options.tolerance,
+                   "of the copies: typical or worst (default: the file's, else typical)")
+      ->check(CLI::IsMember({"typical", "worst"}))
+      ->needs(seeds);
   return sweeps;
 }
 

@@ -6,11 +6,6 @@
 namespace whirl::cli {
 namespace {
 
-std::string seeds_complaint(const std::string& text) {
-  const auto seeds = read_seeds(text);
-  return seeds ? "" : seeds.error().what;
-}
-
 // "vehicle.motor.inertia=3e-5": of a plan, its stand or its vehicle.
 std::string setting_complaint(const std::string& text) {
   const Setting setting{text.substr(0, text.find('=')), ""};
@@ -35,6 +30,11 @@ void add_plan_options(CLI::App& command, RunOptions& options) {
 std::string seed_complaint(const std::string& text) {
   const auto seed = read_seed(text);
   return seed ? "" : seed.error().what;
+}
+
+std::string seeds_complaint(const std::string& text) {
+  const auto seeds = read_seeds(text);
+  return seeds ? "" : seeds.error().what;
 }
 
 RunCommand::RunCommand(CLI::App& app) {

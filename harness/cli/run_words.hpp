@@ -11,6 +11,7 @@ namespace whirl::cli {
 
 void add_plan_options(CLI::App& command, RunOptions& options);
 std::string seed_complaint(const std::string& text);  // "": it is one
+std::string seeds_complaint(const std::string& text);
 
 class RunCommand {
  public:

@@ -5,6 +5,7 @@
 
 #include "base/output_file.hpp"
 #include "base/text.hpp"
+#include "harness/catalogue/copies.hpp"
 #include "harness/catalogue/kind.hpp"
 #include "harness/catalogue/motor_file.hpp"
 #include "harness/catalogue/propeller_file.hpp"
@@ -14,8 +15,10 @@
 #include "harness/cli/find_plans.hpp"
 #include "harness/cli/option_quantity.hpp"
 #include "harness/cli/page_command.hpp"
+#include "harness/cli/seeds.hpp"
 #include "harness/sweep/forward_sweep.hpp"
 #include "harness/sweep/motor_sweep.hpp"
+#include "harness/sweep/parts_spread.hpp"
 #include "harness/sweep/stand_sweep.hpp"
 #include "harness/sweep/sweep.hpp"
 #include "results/folder.hpp"
@@ -151,10 +154,7 @@ Result<Swept> sweep_file(const std::string& path, const std::vector<std::string>
   if (kind.value() == "propeller") return sweep_propeller(path, measured, options);
   if (kind.value() == "motor") return sweep_motor(path, measured, options);
   if (kind.value() == "calibration") return sweep_stand(path, measured, options, composition);
-  if (kind.value() != "vehicle") {
-    return Error{ErrorKind::bad_input, path, "is no propeller, motor, stand or vehicle",
-                 R"(kind = "propeller", "motor", "calibration" (a stand) or "vehicle")"};
-  }
+  if (kind.value() != "vehicle") return catalogue::no_part(path);
   if (!measured.empty()) {
     return Error{ErrorKind::bad_input, "--measured", path + " is a vehicle",
                  "lay measured points over its propeller, its motor or a stand"};
@@ -212,10 +212,15 @@ Result<Done> write_csv(const std::string& path, const std::vector<results::Chart
   return Done{};
 }
 
-Result<Done> put_out(const Swept& swept, const std::string& file, const Composition& composition) {
+fs::path folder_of(const std::string& file, const Composition& composition) {
   const fs::path folder = fs::path(composition.results) / "sweeps" / fs::path(file).stem();
-  std::error_code status;
+  std::error_code status;  // what could not be made is told by who writes there
   fs::create_directories(folder, status);
+  return folder;
+}
+
+Result<Done> put_out(const Swept& swept, const std::string& file, const Composition& composition) {
+  const fs::path folder = folder_of(file, composition);
   const std::string about =
       "Steady behaviour by the plant's own models, standard air at sea level.";
   std::vector<results::ChartTable> tables;
@@ -239,9 +244,37 @@ Result<Done> put_out(const Swept& swept, const std::string& file, const Composit
   return Done{};
 }
 
+Result<Done> put_out_copies(const SweepOptions& given, const Composition& composition) {
+  const auto seeds = read_seeds(given.seeds);
+  if (!seeds) return seeds.error();
+  const auto copies = catalogue::read_copies(given.file, plant::tolerance_named(given.tolerance),
+                                             composition.root + "/test_plans/propellers");
+  if (!copies) return copies.error();
+  sweep::PartsSpread spread(copies.value().numbers, copies.value().tolerance);
+  for (const std::uint64_t seed : seeds.value()) {
+    for (const DrawnPart& part : copies.value().of_seed(seed)) spread.add(part.name, part.value);
+  }
+  const fs::path folder = folder_of(given.file, composition);
+  const std::string page = (folder / "copies.html").string();
+  const std::string about = "Copies of seeds " + given.seeds + ", and what their class allows.";
+  for (const auto& written :
+       {write_text(page, results::charts_html(copies.value().name, about, {}, {spread.table()})),
+        write_text((folder / "copies.csv").string(), spread.csv())}) {
+    if (!written) return written.error();
+  }
+  std::printf("%s\n", printable_line(copies.value().name).c_str());
+  std::fputs(spread.text().c_str(), stdout);
+  std::printf("\n%s\n", shown_path(page).c_str());
+  return Done{};
+}
+
 }  // namespace
 
 int sweep_command(const SweepOptions& given, const Composition& composition) {
+  if (!given.seeds.empty()) {
+    const auto done = put_out_copies(given, composition);
+    return done ? 0 : complain(done.error());
+  }
   const auto options = read_options(given);
   if (!options) return complain(options.error());
   const auto swept = sweep_file(given.file, given.measured, options.value(), composition);

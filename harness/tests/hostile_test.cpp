@@ -173,6 +173,32 @@ TEST(HostileOptions, SweepsEnd) {
   }
 }
 
+TEST(HostileOptions, SweepsOfCopiesRefuseWhatTheyCannotDraw) {
+  FakeRoot root;
+  root.write("neither.lua", "return { kind = \"boat\" }");
+  root.write("motor.lua",
+             "return { kind = 'motor', name = 'm', kv_rpm_per_V = 950, resistance = '120 mohm', "
+             "no_load_current = '1 A', inertia = '4e-5 kg m2', pole_pairs = 7 }");
+  const std::string motor = root.path() + "/motor.lua";
+  const auto swept = [&](const std::string& file, const std::vector<std::string>& more) {
+    std::vector<std::string> words{"sweep", file};
+    words.insert(words.end(), more.begin(), more.end());
+    return whirl(root, words);
+  };
+  EXPECT_EQ(swept(motor, {"--seeds", "1..3"}).code, 0);
+  EXPECT_NE(swept(root.path() + "/neither.lua", {"--seeds", "1..3"}).err.find("is no propeller"),
+            std::string::npos);
+  for (const std::vector<std::string>& bad : {std::vector<std::string>{"--seeds", "x"},
+                                              {"--seeds", "4..2"},
+                                              {"--seeds", ""},
+                                              {"--tolerance", "worst"},
+                                              {"--seeds", "1..3", "--tolerance", "none"},
+                                              {"--seeds", "1..3", "--voltage", "5 V"},
+                                              {"--seeds", "1..3", "--measured", motor}}) {
+    EXPECT_EQ(swept(motor, bad).code, 2) << bad.back();
+  }
+}
+
 TEST(HostileResults, ADamagedHistoryIsNoBadUsage) {
   const FakeRoot root;
   root.write("results/history.sqlite", std::string(5000, 'x'));

@@ -34,4 +34,10 @@ struct Spread {
 double draw(const Spread& spread, ToleranceClass tolerance, std::uint64_t seed,
             const std::string& stream);
 
+// Between what every draw lies. Pre: tolerance is not none.
+struct Bounds {
+  double low, high;
+};
+Bounds bounds(const Spread& spread, ToleranceClass tolerance);
+
 }  // namespace whirl::plant

@@ -85,5 +85,20 @@ TEST(EscStandParts, DividerIsOffByItsLowerResistorsShareOfTheDifference) {
   EXPECT_TRUE(near(divider_error(0.01, 0.01), 0.0, round_off(8, 1.0)));
 }
 
+TEST(Spread, EveryDrawLiesWithinItsBoundsAndComesNearThem) {
+  for (const Spread::Law law : {Spread::Law::normal, Spread::Law::even, Spread::Law::level}) {
+    for (const auto tolerance : {ToleranceClass::typical, ToleranceClass::worst}) {
+      const Spread spread{law, 10.0, 1.0, 2.0};
+      const Moments m = moments(spread, tolerance);
+      const Bounds b = bounds(spread, tolerance);
+      EXPECT_GE(m.least, b.low);
+      EXPECT_LE(m.most, b.high);
+      EXPECT_TRUE(
+          near(m.least, b.low, stated(0.01, "of 4000 draws the last hundredth holds some")));
+      EXPECT_TRUE(near(m.most, b.high, stated(0.01, "the same")));
+    }
+  }
+}
+
 }  // namespace
 }  // namespace whirl::plant

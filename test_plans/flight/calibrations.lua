@@ -84,13 +84,14 @@ plan "calibrations find what the parts are off" {
     judge(t, truth, { "CAL_ACC_XSCALE", "CAL_ACC_YSCALE", "CAL_ACC_ZSCALE" }, 0.004)
     judge(t, truth, { "CAL_MAG_XOFF", "CAL_MAG_YOFF", "CAL_MAG_ZOFF" }, 0.15)
 
-    -- What the vehicle says it feels, standing: 30 samples of each.
+    -- What the vehicle says it feels, standing: 30 samples of each. Along the floor the axes' lean and the board's turn bring
+    -- in gravity, which no side tells: 0.065 and 0.051 m/s2 (1 sigma), three times 0.083 beside the 0.08 of the rest.
     t:step "standing"
     local errors = { "accel_error_x", "accel_error_y", "accel_error_z", "gyro_error_x", "gyro_error_y", "gyro_error_z",
                      "field_error_x", "field_error_y", "field_error_z" }
     local still = t:record(errors, "15 s")
     for i, name in ipairs(errors) do
-      local limit = i <= 3 and "0.08 m/s2" or i <= 6 and "0.1 deg/s" or "0.4 uT"
+      local limit = i <= 2 and "0.26 m/s2" or i == 3 and "0.08 m/s2" or i <= 6 and "0.1 deg/s" or "0.4 uT"
       t:expect(still:mean(name), "standing: " .. name):within("-" .. limit, limit)
     end
 

@@ -41,24 +41,20 @@ plan "gps: the same hover on motion capture" {
   end,
 }
 
--- What its calibration leaves of the zero points is a quarter: 0.04 m/s2. With what gusts leave in the filters, and
--- the motors' fields, 2 degrees.
+-- What six sides leave of the zero points is 0.04 m/s2. They tell nothing of how axes lean: 0.67 % of one in another is
+-- 0.065 m/s2 of gravity, a board that sits 0.3 degrees askew 0.051. Together 0.092 (1 sigma), 0.54 degrees about each level
+-- axis, and across a field that dips by 66 degrees 1.2 of heading: 1.44, three times 4.3. What gusts leave in the filters and
+-- the motors' fields turn the heading by another 0.3.
 plan "gps: with its accelerometer calibrated" {
   image = "flight", board = "px4fmu_v1", vehicle = "hp_quad",
   tags = { "flight" }, timeout = "240 s",
   outdoors = true, air = wind, fence = { radius = "40 m", height = "20 m" },
   run = function(t)
-    t:step "six sides"
-    t:within("8 s", function(s) return s.heartbeat_age_s < 1.5 end, "the first heartbeat")
-    t:wait "3 s"
-    begin_calibration(t, "accelerometer")
-    show_sides(t, 6)
-    end_calibration(t, "accelerometer", "3 s", 0)
-    put_down(t)
+    calibrate_accelerometer(t)
     t:step "hover"
     hover_by_gps(t)
     local hover = t:record({ "attitude_error", "heading_error", "receiver_north", "receiver_east" }, "40 s")
-    t:expect(hover:rms "attitude_error", "hover: RMS error of attitude"):at_most "2 deg"
-    t:expect(hover:mean "heading_error", "hover: mean error of heading"):within("-2 deg", "2 deg")
+    t:expect(hover:rms "attitude_error", "hover: RMS error of attitude"):at_most "4.3 deg"
+    t:expect(hover:mean "heading_error", "hover: mean error of heading"):within("-4 deg", "4 deg")
   end,
 }

@@ -29,6 +29,7 @@ return {
     pole_pairs = 7,
   },
   battery = "4s_2200",
+  tolerance = "typical", -- each seed is another copy; "none" (--set vehicle.tolerance=none) is this drawing itself
   esc = { mode = "thrust_by_rpm", max_current = "20 A", arming_voltage = "15.7 V" },
   capture = { camera_rate = "200 Hz", rate = "40 Hz", latency = "8 ms", position_noise = "1 mm", angle_noise = "0.002 rad" },
 }

@@ -81,5 +81,27 @@ TEST(VehicleParts, ImuDrawsFromItsDataSheet) {
   EXPECT_TRUE(near(number("params.accelerometer.scale_error"), 0.02, round_off(8, 1.0)));
 }
 
+TEST(VehicleParts, WhatTheBoardsFileStatesOfItsImuStays) {
+  FlightParams params = quad(plant::ToleranceClass::typical);
+  draw_parts(params, 2);
+  BoardDescription board = board_with_imu();
+  board.devices[0].keys["params.gyroscope.turn_on_bias"] = 0.0;
+  set_parts(board, params);
+  const BoardDevice& imu = board.devices[0];
+  EXPECT_EQ(std::get<double>(*imu.value("params.gyroscope.turn_on_bias")), 0.0);
+  EXPECT_TRUE(imu.value("params.accelerometer.turn_on_bias"));
+}
+
+TEST(VehicleParts, AnImuOnCanIsACopyLikeOneOnSpi) {
+  FlightParams params = quad(plant::ToleranceClass::typical);
+  draw_parts(params, 2);
+  BoardDescription spi = board_with_imu(), can = board_with_imu();
+  can.devices[0].type = "mpu6000_dronecan";
+  set_parts(spi, params);
+  set_parts(can, params);
+  EXPECT_FALSE(params.imu.empty());
+  EXPECT_EQ(can.devices[0].keys, spi.devices[0].keys);
+}
+
 }  // namespace
 }  // namespace whirl::flight

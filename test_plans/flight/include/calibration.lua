@@ -31,6 +31,21 @@ function show_sides(t, sides)
   end
 end
 
+-- From power-up: the accelerometer's six sides, and down again with that heading (north, where nothing is said).
+function calibrate_accelerometer(t, yaw)
+  t:step "six sides"
+  t:within("8 s", function(s) return s.heartbeat_age_s < 1.5 end, "the first heartbeat")
+  t:wait "3 s"
+  begin_calibration(t, "accelerometer")
+  show_sides(t, 6)
+  end_calibration(t, "accelerometer", "3 s", 0)
+  if yaw then
+    t:hold { yaw = yaw, over = "2 s" }
+    t:wait "2 s"
+  end
+  put_down(t)
+end
+
 -- From meridian to meridian, 30 degrees apart, nose up on one and down on the next.
 function turn_round(t, first_deg, last_deg)
   local pitch = -80

@@ -22,9 +22,9 @@ function judged_gps(t)
   t:expect(hover:rms_error("height", "6.1 m"), "hover: height RMS error in truth"):at_most "1.7 m"
   t:expect(hover:rms_error { velocity_error_north = "0 m/s", velocity_error_east = "0 m/s" }, "hover: RMS error of velocity over ground"):at_most "0.4 m/s"
   t:expect(hover:rms "velocity_error_down", "hover: RMS error of its climb"):at_most "0.2 m/s"
-  -- Not calibrated: 0.15 m/s2 of zero point (1 sigma) is 0.9 degrees about each axis, and across a field that dips by
-  -- 66 degrees turns the heading by 2.0: together 2.4, three times.
-  t:expect(hover:rms "attitude_error", "hover: RMS error of attitude"):at_most "7.1 deg"
+  -- Not calibrated: 0.196 m/s2 of zero point, 0.065 of axes that lean and 0.051 of a board askew make 0.21 (1 sigma), 1.24
+  -- degrees about each level axis, and across a field that dips by 66 degrees 2.8 of heading: together 3.3, three times.
+  t:expect(hover:rms "attitude_error", "hover: RMS error of attitude"):at_most "10 deg"
   t:expect(hover:max "tilt", "hover: tilt"):at_most "25 deg"
 
   t:step "10 m away and back"
