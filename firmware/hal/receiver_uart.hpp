@@ -1,4 +1,4 @@
-// USART1's input (PB7, J1's pin 8), where a receiver's SBUS comes in: 100000 baud, 8E2. An interrupt hands each byte
+// USART1's input (PB7, J1's pin 7), where a receiver's SBUS comes in: 100000 baud, 8E2. An interrupt hands each byte
 // on as it ends, for a frame begins behind a pause, and each byte's parity counts.
 //
 //   Line     inverted on copper, which this UART cannot undo: an inverter stands before the pin, in the

@@ -1,4 +1,4 @@
--- PX4FMU v1 whose receiver speaks SBUS on USART1 (J1, pin 8). The board has no inverter: one stands in the cable.
+-- PX4FMU v1 whose receiver speaks SBUS on USART1 (J1, pin 7). The board has no inverter: one stands in the cable.
 local board = include "px4fmu_v1.lua"
 board.board = "px4fmu_v1_sbus"
 for _, device in ipairs(board.devices) do
