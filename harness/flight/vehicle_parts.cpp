@@ -91,7 +91,7 @@ void set_parts(BoardDescription& board, const FlightParams& params) {
     WHIRL_CHECK(device.set(key, all), key);
   };
   for (BoardDevice& device : board.devices) {
-    // On SPI, as a node of a CAN bus, or behind a pod.
+    // On SPI, as a node of a CAN bus, or played by a pod.
     if (!device.type.starts_with("mpu6000") && device.type != "pod_parts") continue;
     for (const auto& [key, value] : params.imu) {
       if (!device.value(key)) WHIRL_CHECK(device.set(key, value), key);
