@@ -41,6 +41,7 @@ TEST(Parity, MarksWhatMovesByMoreThanFivePercentEitherWay) {
                         figure("more", -20.0, true), figure("none", 0.0, true)};
   second.expectations = {figure("same", -20.9, true), figure("less", 18.9, true),
                          figure("more", -18.9, true), figure("none", 9.0, true)};
+  first.verdict = Verdict::pass;
   second.versions = {{"flight/image", "a"}, {"esc1/image", "b"}};
   const auto rows = parity(first, second);
   EXPECT_FALSE(rows[0].marked());
