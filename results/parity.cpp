@@ -35,11 +35,17 @@ std::string met(const ParityRow& row) {
   return "neither";
 }
 
+std::string marked(const ParityRow& row) {
+  return percent(row.difference) + (row.marked() ? " *" : "");
+}
+
 std::string named(const Report& report) {
+  int images = 0;
   for (const auto& [what, version] : report.versions) {
     if (what == "bench") return version;
+    if (what.ends_with("/image")) ++images;
   }
-  return "virtual board";
+  return images > 1 ? std::to_string(images) + " virtual boards" : "virtual board";
 }
 
 std::string escaped(const std::string& text) {
@@ -96,13 +102,13 @@ std::string parity_text(const Report& first, const Report& second) {
   std::string text = first.plan + ": " + named(first) + " (" + name(first.verdict) + ") beside " +
                      named(second) + " (" + name(second.verdict) + ")\n";
   char line[400];
-  std::snprintf(line, sizeof line, "  %-44s %10s %10s %10s  %-16s %s\n", "", "first", "second",
+  std::snprintf(line, sizeof line, "  %-44s %10s %10s %11s  %-16s %s\n", "", "first", "second",
                 "differ", "limit met by", "limit");
   text += line;
   for (const ParityRow& row : parity(first, second)) {
-    std::snprintf(line, sizeof line, "  %-44.44s %10s %10s %10s  %-16s %s\n", row.name.c_str(),
-                  number(row.first).c_str(), number(row.second).c_str(),
-                  percent(row.difference).c_str(), met(row).c_str(), row.limit.c_str());
+    std::snprintf(line, sizeof line, "  %-44.44s %10s %10s %11s  %-16s %s\n", row.name.c_str(),
+                  number(row.first).c_str(), number(row.second).c_str(), marked(row).c_str(),
+                  met(row).c_str(), row.limit.c_str());
     text += line;
   }
   return text;
@@ -118,12 +124,13 @@ std::string parity_page(const Report& first, const Report& second) {
       escaped(first.plan) + "</h1><p>First: " + escaped(named(first)) + ", " + name(first.verdict) +
       ". Second: " + escaped(named(second)) + ", " + name(second.verdict) +
       (second.reason.empty() ? "" : " (" + escaped(second.reason) + ")") +
-      ".</p><table><tr><th>Figure<th>First<th>Second<th>Difference<th>Limit met by<th>Limit";
+      ". Differences of more than 5 % are "
+      "marked.</p><table><tr><th>Figure<th>First<th>Second<th>Difference<th>Limit met by<th>Limit";
   for (const ParityRow& row : parity(first, second)) {
     const std::string by = met(row);
     page += "<tr><td>" + escaped(row.name) + "<td>" + number(row.first) + "<td>" +
-            number(row.second) + "<td>" + percent(row.difference) + "<td" +
-            (by == "both" ? "" : " class=\"no\"") + ">" + by + "<td>" + escaped(row.limit);
+            number(row.second) + "<td" + (row.marked() ? " class=\"no\"" : "") + ">" + marked(row) +
+            "<td" + (by == "both" ? "" : " class=\"no\"") + ">" + by + "<td>" + escaped(row.limit);
   }
   return page + "</table></html>\n";
 }

@@ -35,6 +35,25 @@ TEST(Parity, FiguresMeetByNameAndOrder) {
   EXPECT_FALSE(rows[4].in_both);
 }
 
+TEST(Parity, MarksWhatMovesByMoreThanFivePercentEitherWay) {
+  Report first, second;
+  first.expectations = {figure("same", -20.0, true), figure("less", 20.0, true),
+                        figure("more", -20.0, true), figure("none", 0.0, true)};
+  second.expectations = {figure("same", -20.9, true), figure("less", 18.9, true),
+                         figure("more", -18.9, true), figure("none", 9.0, true)};
+  first.verdict = Verdict::pass;
+  second.versions = {{"flight/image", "a"}, {"esc1/image", "b"}};
+  const auto rows = parity(first, second);
+  EXPECT_FALSE(rows[0].marked());
+  EXPECT_TRUE(rows[1].marked());
+  EXPECT_TRUE(rows[2].marked());
+  EXPECT_FALSE(rows[3].marked());  // of 0 there is no share
+  const std::string text = parity_text(first, second), page = parity_page(first, second);
+  EXPECT_NE(text.find("-5.50 % *"), std::string::npos);
+  EXPECT_NE(page.find("class=\"no\">-5.50 % *"), std::string::npos);
+  EXPECT_NE(text.find("virtual board (pass) beside 2 virtual boards"), std::string::npos) << text;
+}
+
 TEST(Parity, PageAndTextNameWhatDiffersAndEscapeWhatUsersWrote) {
   Report first, second;
   first.plan = "a <plan>";

@@ -3,27 +3,6 @@
 include "include/chain.lua"
 include "include/flights.lua"
 
--- No rotor but the lost one's is driven any more 100 ms after it is known, as test_plans/flight/fail_safes.lua has it,
--- and it ends on the ground.
-local function cuts(t, words, lost)
-  t:within("100 ms", function(s)
-    for motor = 1, 4 do
-      if motor ~= lost and s["winding_current_" .. motor .. "_A"] > 0.5 then return false end
-    end
-    return true
-  end, "no other rotor is driven")
-  local currents = {}
-  for motor = 1, 4 do
-    if motor ~= lost then currents[#currents + 1] = "winding_current_" .. motor end
-  end
-  local after = t:record(currents, "500 ms")
-  for _, current in ipairs(currents) do t:expect(after:max(current), current .. " from then on"):at_most "0.5 A" end
-  t:told("3 s", words)
-  t:within("30 s", function(s) return s.told_armed == 0 and s.on_ground == 1 end, "on the ground, disarmed")
-  t:wait "1 s"
-  for motor = 1, 4 do t:expect(t:value("speed_" .. motor), "speed of rotor " .. motor):at_most "5 rad/s" end
-end
-
 -- It turns on until its own time-out for set-points has passed.
 chain_plan("chain loses an ESC's bus", { timeout = "60 s" }, function(t)
   hovers(t)

@@ -2,7 +2,7 @@
 include "include/chain.lua"
 include "include/flights.lua"
 
-chain_plan("chain figure 8", { timeout = "90 s" }, function(t)
+chain_plan("chain figure 8", { timeout = "90 s", parity = true }, function(t)
   hovers(t)
   t:step "to its start"
   t:command { position = { north = "1 m" } }

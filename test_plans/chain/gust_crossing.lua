@@ -28,7 +28,7 @@ local function crosses(t, jet)
 end
 
 for _, jet in ipairs { "up", "down" } do
-  chain_plan("chain gust crossing " .. jet, { timeout = "60 s" }, function(t)
+  chain_plan("chain gust crossing " .. jet, { timeout = "60 s", parity = true }, function(t)
     local strength = t:quantity(t:drawn("3.3 m/s", "3.7 m/s"))
     local from = t:quantity(t:drawn("1.3 m", "1.5 m"))
     t:step "to the start"

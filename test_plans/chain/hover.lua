@@ -3,7 +3,7 @@
 include "include/chain.lua"
 include "include/flights.lua"
 
-chain_plan("chain hover", { timeout = "60 s", of_escs = { "fw::esc::control_task" } }, function(t)
+chain_plan("chain hover", { timeout = "60 s", parity = true, of_escs = { "fw::esc::control_task" } }, function(t, boards)
   t:step "boot"
   heartbeat(t)
   t:command { arm = true }
@@ -15,8 +15,10 @@ chain_plan("chain hover", { timeout = "60 s", of_escs = { "fw::esc::control_task
   for _, esc in ipairs(escs) do
     t:bus { device = "flight/" .. esc, direction = "write", period = "20 ms", tolerance = "0.5 ms", during = "20 s" }
     t:bus { device = "flight/" .. esc, direction = "read", period = "50 ms", tolerance = "1 ms", during = "20 s" }
-    t:budget(esc .. "/fw::esc::control_task") { period = "1 ms", jitter = "50 us", response = "600 us", during = "20 s" }
-    t:budget(esc .. "/cpu") { busy = "85 %", during = "20 s" }
+    if boards then
+      t:budget(esc .. "/fw::esc::control_task") { period = "1 ms", jitter = "50 us", response = "600 us", during = "20 s" }
+      t:budget(esc .. "/cpu") { busy = "85 %", during = "20 s" }
+    end
   end
   t:latency { from = "flight/imu", through = { "flight/fw::imu_task", "flight/fw::attitude_task" },
               to = "flight/esc", at_most = "7 ms", during = "20 s" }

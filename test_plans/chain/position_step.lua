@@ -2,7 +2,7 @@
 include "include/chain.lua"
 include "include/flights.lua"
 
-chain_plan("chain position step", {}, function(t)
+chain_plan("chain position step", { parity = true }, function(t)
   hovers(t)
   t:step "1 m north"
   local r = t:record({ "north", "height", "tilt" }, "6 s", function()

@@ -195,6 +195,7 @@ void FollowerI2c::end(Nanoseconds now) {
   ours_ = false;
 }
 
+// A hold whose end is known beforehand (a fault on this board's end of the wire) is only said.
 WireAnswer FollowerI2c::reply(Clock clock, Nanoseconds now) {
   if (clock == Clock::released && ahead_) {
     answer_.byte = bus_.fetch(now);

@@ -2,14 +2,21 @@
 escs = { "esc1", "esc2", "esc3", "esc4" }
 
 -- Every flight of the chain ends by what the five have kept of the energy. (Before, the charging of their capacitors is all.)
+-- `parity`: the same is also flown by the flight controller alone, with the control core of the ESCs on the host, as all
+-- other flights are; `whirl parity` lays the two side by side. `run` is told whether the controllers are boards.
 function chain_plan(name, more, run)
   plan(name) {
     nodes = chain_nodes(more.watch, more.of_escs), wires = chain_wires(), vehicle = "hp_quad",
     tags = more.tags or { "chain", "nightly" }, timeout = more.timeout or "60 s",
     run = function(t)
-      run(t)
+      run(t, true)
       if more.energy ~= false then judged_energy(t) end
     end,
+  }
+  if not more.parity then return end
+  plan(name .. ", native controllers") {
+    nodes = { chain_nodes(more.watch)[1] }, vehicle = "hp_quad",
+    tags = { "parity" }, timeout = more.timeout or "60 s", run = function(t) run(t, false) end,
   }
 end
 
@@ -33,4 +40,25 @@ function lands(t)
   t:command { land = true }
   t:within("10 s", function(s) return s.on_ground == 1 end, "on the ground")
   t:within("7 s", function(s) return s.told_armed == 0 end, "disarmed")
+end
+
+-- No rotor but the lost one's is driven any more 100 ms after it is known, as test_plans/flight/fail_safes.lua has it,
+-- and it ends on the ground.
+function cuts(t, words, lost)
+  t:within("100 ms", function(s)
+    for motor = 1, 4 do
+      if motor ~= lost and s["winding_current_" .. motor .. "_A"] > 0.5 then return false end
+    end
+    return true
+  end, "no other rotor is driven")
+  local currents = {}
+  for motor = 1, 4 do
+    if motor ~= lost then currents[#currents + 1] = "winding_current_" .. motor end
+  end
+  local after = t:record(currents, "500 ms")
+  for _, current in ipairs(currents) do t:expect(after:max(current), current .. " from then on"):at_most "0.5 A" end
+  t:told("3 s", words)
+  t:within("30 s", function(s) return s.told_armed == 0 and s.on_ground == 1 end, "on the ground, disarmed")
+  t:wait "1 s"
+  for motor = 1, 4 do t:expect(t:value("speed_" .. motor), "speed of rotor " .. motor):at_most "5 rad/s" end
 end
