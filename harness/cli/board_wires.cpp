@@ -1,5 +1,6 @@
 #include "harness/cli/board_wires.hpp"
 
+#include <algorithm>
 #include <map>
 #include <set>
 
@@ -14,9 +15,9 @@ Error wrong(const plan::Plan& plan, const std::string& what, const std::string& 
 Result<Done> check_circles(const plan::Plan& plan, const std::vector<Node>& nodes) {
   std::map<std::size_t, std::size_t> leader_of;
   for (const plan::PlanBoardWire& wire : plan.board_wires) {
-    if (!leader_of.emplace(wire.follower, wire.leader).second) {
-      return wrong(plan, nodes[wire.follower].name + " takes the place of two devices",
-                   "a board follows one master");
+    if (leader_of.emplace(wire.follower, wire.leader).first->second != wire.leader) {
+      return wrong(plan, nodes[wire.follower].name + " takes the place of devices of two boards",
+                   "a board follows one");
     }
   }
   for (const auto& [first, leader] : leader_of) {
@@ -35,6 +36,60 @@ Result<Done> check_circles(const plan::Plan& plan, const std::vector<Node>& node
   return Done{};
 }
 
+// Both ends are of one kind.
+Result<Done> check_buses(const plan::Plan& plan, const plan::PlanBoardWire& wire,
+                         const BoardDevice& device, const std::string& name) {
+  const bool i2c = device.bus.starts_with("i2c") && device.address >= 0;
+  const bool spi = device.bus.starts_with("spi");
+  if (!i2c && !spi) return wrong(plan, name + " is no target on an I2C or SPI bus", "");
+  if (spi != wire.bus.starts_with("spi")) {
+    return wrong(plan, name + " is on " + device.bus + ", the other end on " + wire.bus,
+                 "both are I2C, or both SPI");
+  }
+  return Done{};
+}
+
+// A bus of the follower carries one of the leader's.
+Result<Done> check_one_to_one(const plan::Plan& plan, const std::vector<Node>& nodes) {
+  std::map<std::pair<std::size_t, std::string>, std::string> masters;
+  std::map<std::size_t, int> motors;
+  for (const plan::PlanBoardWire& wire : plan.board_wires) {
+    const BoardDevice& device = *nodes[wire.leader].board.find(wire.device);
+    const std::string& follower = nodes[wire.follower].name;
+    const bool spi = wire.bus.starts_with("spi");
+    const std::string master = spi ? wire.device : device.bus;
+    const auto [place, fresh] = masters.emplace(std::pair(wire.follower, wire.bus), master);
+    if (!fresh && (spi || place->second != master)) {
+      return wrong(plan, follower + "." + wire.bus + " has two masters",
+                   "each bus of a board follows one");
+    }
+    if (device.motor == 0) continue;
+    if (!motors.emplace(wire.follower, device.motor).second) {
+      return wrong(plan, follower + " takes the place of two motors' devices",
+                   "a board turns one motor");
+    }
+  }
+  return Done{};
+}
+
+// What joins the same two boards is one wire.
+struct Pair {
+  std::size_t leader, follower;
+  std::vector<const plan::PlanBoardWire*> wires;
+};
+
+std::vector<Pair> pairs_of(const plan::Plan& plan) {
+  std::vector<Pair> pairs;
+  for (const plan::PlanBoardWire& wire : plan.board_wires) {
+    const auto same = std::find_if(pairs.begin(), pairs.end(), [&](const Pair& pair) {
+      return pair.leader == wire.leader && pair.follower == wire.follower;
+    });
+    Pair& pair = same != pairs.end() ? *same : pairs.emplace_back(wire.leader, wire.follower);
+    pair.wires.push_back(&wire);
+  }
+  return pairs;
+}
+
 }  // namespace
 
 Result<Done> check_board_wires(const plan::Plan& plan, const std::vector<Node>& nodes) {
@@ -48,31 +103,46 @@ Result<Done> check_board_wires(const plan::Plan& plan, const std::vector<Node>& 
           plan, leader.board.name + " has no device '" + wire.device + "'",
           "from = \"NODE.DEVICE\" names the device that the other board takes the place of");
     }
-    if (!device->bus.starts_with("i2c") || device->address < 0) {
-      return wrong(plan, name + " is no target on an I2C bus", "");
-    }
+    if (const auto good = check_buses(plan, wire, *device, name); !good) return good.error();
     if (!taken.insert({wire.leader, wire.device}).second) {
       return wrong(plan, "two boards take the place of " + name, "");
     }
   }
-  return check_circles(plan, nodes);
+  if (const auto led = check_circles(plan, nodes); !led) return led.error();
+  return check_one_to_one(plan, nodes);
 }
 
 Result<std::vector<BoardWireLink>> join_boards(const plan::Plan& plan,
                                                const std::vector<Node>& nodes,
                                                std::vector<Setup>& setups) {
   std::vector<BoardWireLink> links;
-  for (const plan::PlanBoardWire& wire : plan.board_wires) {
+  for (Pair& pair : pairs_of(plan)) {
     auto made = io::BoardWire::create(static_cast<int>(nodes.size()));
     if (!made) return made.error();
     const int fd = made.value().fd();
-    setups[wire.leader].wires.push_back({.device = wire.device, .fd = fd});
-    setups[wire.follower].wires.push_back({.bus = wire.bus, .fd = fd});
-    const BoardDescription& led = nodes[wire.leader].board;
-    const int motor = led.find(wire.device)->motor;
-    setups[wire.follower].motor = motor;
-    setups[wire.leader].far.push_back({wire.follower, motor, &nodes[wire.follower].board});
-    links.push_back({wire.leader, wire.follower, std::move(made.value())});
+    std::vector<std::string> ports;  // buses of the follower
+    for (const plan::PlanBoardWire* wire : pair.wires) {
+      const BoardDevice& device = *nodes[wire->leader].board.find(wire->device);
+      auto port = std::find(ports.begin(), ports.end(), wire->bus);
+      const bool fresh = port == ports.end();
+      if (fresh) port = ports.insert(port, wire->bus);
+      WireEnd end{.device = wire->device,
+                  .fd = fd,
+                  .port = static_cast<int>(port - ports.begin()),
+                  .latency_ns = wire->latency_ns};
+      setups[pair.leader].wires.push_back(end);
+      end.device.clear();
+      end.bus = wire->bus;
+      end.select = wire->select;
+      end.ready = wire->ready;
+      if (fresh) setups[pair.follower].wires.push_back(end);
+      if (device.motor != 0) setups[pair.follower].motor = device.motor;
+      setups[pair.leader].far.push_back({pair.follower, device.motor, &nodes[pair.follower].board});
+    }
+    for (WireEnd& end : setups[pair.follower].wires) {
+      if (end.fd == fd) end.shared = ports.size() > 1 || ports.front().starts_with("spi");
+    }
+    links.push_back({pair.leader, pair.follower, std::move(made.value())});
   }
   return links;
 }

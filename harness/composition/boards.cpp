@@ -146,6 +146,20 @@ Result<std::vector<flight::FarShaft>> far_shafts(const cli::Setup& setup,
   return shafts;
 }
 
+// Parts that sense what the vehicle does are on the first board, or behind a board in the place of one.
+bool has_far_parts(const BoardDescription& board) {
+  return std::any_of(board.devices.begin(), board.devices.end(),
+                     [](const BoardDevice& device) { return device.type == "pod_parts"; });
+}
+
+std::vector<std::uint8_t> sensing_boards(const cli::Setup& setup) {
+  std::set<std::uint8_t> boards;
+  for (const cli::FarBoard& far : setup.far) {
+    if (has_far_parts(*far.board)) boards.insert(static_cast<std::uint8_t>(far.node));
+  }
+  return {boards.begin(), boards.end()};
+}
+
 Result<std::unique_ptr<World>> make_world(const cli::Setup& setup) {
   if (setup.plan.stand) {
     const auto params = stand_of(setup);
@@ -163,6 +177,7 @@ Result<std::unique_ptr<World>> make_world(const cli::Setup& setup) {
   auto far = far_shafts(setup, params.value());
   if (!far) return far.error();
   params.value().far_shafts = std::move(far.value());
+  params.value().sensing_boards = sensing_boards(setup);
   return std::unique_ptr<World>(std::make_unique<flight::FlightWorld>(params.value(), setup.seed));
 }
 
@@ -264,10 +279,12 @@ Result<Done> set_copy(const cli::Setup& setup, BoardDescription& board) {
     return stand::set_parts(board, params.value());
   }
   const bool flies = setup.node == 0 && !setup.vehicle_file.empty();
-  if (!flies && setup.motor == 0) return Done{};
-  const auto params = vehicle_of(setup);
+  const bool senses = !setup.vehicle_file.empty() && has_far_parts(setup.board);
+  if (!flies && !senses && setup.motor == 0) return Done{};
+  auto params = vehicle_of(setup);
   if (!params) return params.error();
-  if (flies) flight::set_parts(board, params.value());
+  if (!flies) params.value().hse_error = 0.0;  // of the flight controller's crystal
+  if (flies || senses) flight::set_parts(board, params.value());
   if (setup.motor == 0) return Done{};
   const BoardDevice* stage = power_stage(setup.board);
   WHIRL_CHECK(stage != nullptr, setup.board.name);  // the world was made with it

@@ -45,7 +45,8 @@ struct FlightParams {
   Eigen::Vector3d imu_place_m = Eigen::Vector3d::Zero(), imu_turn_rad = Eigen::Vector3d::Zero();
   double hse_error = 0.0;
   std::vector<DrawnPart> drawn;
-  std::vector<FarShaft> far_shafts;  // index: motor number - 1; empty: native controllers
+  std::vector<FarShaft> far_shafts;          // index: motor number - 1; empty: native controllers
+  std::vector<std::uint8_t> sensing_boards;  // of the run, besides the first, with parts that sense
 };
 
 }  // namespace whirl::flight

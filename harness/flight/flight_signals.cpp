@@ -1,6 +1,7 @@
 // The names of a flight's signals: truth of the vehicle, then what the ground station was told.
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "harness/flight/flight_world.hpp"
 
@@ -219,6 +220,18 @@ void FlightWorld::name_estimate_signals() {
   add_signal("baro_height_error", D::length, "", [=] { return told().baro_height_error_m; });
   add_signal("told_baro_climb", D::speed, "", [=] { return told().baro_climb_mps; });
   add_signal("baro_climb_error", D::speed, "", [=] { return told().baro_climb_error_mps; });
+}
+
+// ---- In a line
+
+std::string FlightWorld::status() const {
+  const Telemetry reported = station_.telemetry(now_ns_);
+  const plant::VehicleState& s = vehicle_.state();
+  const char* state = s.on_ground ? "on the ground" : "in the air";
+  if (!(reported.frames > 0)) state = "silent";
+  char text[80];
+  std::snprintf(text, sizeof text, "%s, %.2f m", state, -s.p_WB_W_m.z());
+  return text;
 }
 
 }  // namespace whirl::flight

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "base/check.hpp"
 #include "harness/flight/teleoperation.hpp"
@@ -35,6 +34,7 @@ FlightWorld::FlightWorld(const FlightParams& params, plant::RotorSet rotors, std
     : place_(params.place),
       has_load_(params.vehicle.load.has_value()),
       ears_(params.ears),
+      far_parts_(params.sensing_boards),
       vehicle_(make_vehicle(params, std::move(rotors), seed)),
       airframe_(params.vehicle.airframe),
       obstacles_(params.vehicle.obstacles),
@@ -102,6 +102,8 @@ void FlightWorld::on_messages(const io::Batch& happened) {
     const io::Header& header = reader.header();
     if (far_ && far_->hears(header)) {
       far_->on_message(reader);
+    } else if (far_parts_.hears(header)) {
+      far_parts_.on_message(reader);
     } else if (header.kind == io::Kind::esc_setpoint) {
       WHIRL_CHECK(header.port >= 1 && header.port <= airframe_.rotors.size(), header.port);
       const auto setpoint = reader.as<io::EscSetpoint>();
@@ -159,6 +161,7 @@ void FlightWorld::send(std::int64_t t_ns, io::Batch& sensed) {
   const double q_WB[4] = {s.q_WB.w(), s.q_WB.x(), s.q_WB.y(), s.q_WB.z()};
   std::copy(std::begin(q_WB), std::end(q_WB), std::begin(motion.q_WB));
   sensed.add(io::Kind::body_motion, 0, t_ns, motion);
+  far_parts_.send(t_ns, motion, sensed);
 
   for (std::size_t i = 0; i < controllers_.size(); ++i) {
     sensed.add(io::Kind::esc_state, static_cast<std::uint16_t>(i + 1), t_ns,
@@ -385,16 +388,6 @@ void FlightWorld::apply_faults(std::int64_t t_ns) {
   });
   // The vehicle itself lowers its supply; here is only kept that it did.
   faults_.apply(kSupply_dip, t_ns, [](const FaultSpec&) {});
-}
-
-std::string FlightWorld::status() const {
-  const Telemetry reported = station_.telemetry(now_ns_);
-  const plant::VehicleState& s = vehicle_.state();
-  const char* state = s.on_ground ? "on the ground" : "in the air";
-  if (!(reported.frames > 0)) state = "silent";
-  char text[80];
-  std::snprintf(text, sizeof text, "%s, %.2f m", state, -s.p_WB_W_m.z());
-  return text;
 }
 
 }  // namespace whirl::flight

@@ -21,6 +21,7 @@
 #include "harness/flight/controllers.hpp"
 #include "harness/flight/drag_truth.hpp"
 #include "harness/flight/estimates.hpp"
+#include "harness/flight/far_parts.hpp"
 #include "harness/flight/far_shafts.hpp"
 #include "harness/flight/flight_params.hpp"
 #include "harness/flight/guest_radio.hpp"
@@ -45,11 +46,15 @@ class FlightWorld : public World {
 
   const std::vector<Signal>& signals() const override { return signals_; }
   void read(std::span<double> values) const override;
-  bool hears(const io::Header& head) const override { return far_ && far_->hears(head); }
+  bool hears(const io::Header& head) const override {
+    return (far_ && far_->hears(head)) || far_parts_.hears(head);
+  }
   void step(std::int64_t t_ns, const io::Batch& happened, io::Batch& sensed) override;
   Result<Done> command(const Command& command, std::int64_t now_ns) override;
   Result<Done> disturb(const Disturbance& disturbance, std::int64_t now_ns) override;
   const std::vector<std::string>& told_texts() const override { return station_.texts(); }
+  Result<Done> say(const std::string& line) override { return far_parts_.say(line); }
+  const std::vector<std::string>& heard() const override { return far_parts_.heard(); }
   std::int64_t command_on_wire_ns() const override { return station_.on_wire_ns(); }
   Result<bool> take_fault(const FaultSpec& fault) override;
   std::vector<std::uint32_t> applied_faults() const override { return faults_.acted(); }
@@ -107,6 +112,7 @@ class FlightWorld : public World {
   Surroundings place_;
   bool has_load_;
   BoardEars ears_;
+  FarParts far_parts_;
   plant::RemotePowertrain* remote_ = nullptr;  // the vehicle's, where boards turn its shafts
   plant::Vehicle vehicle_;
   std::optional<FarShafts> far_;

@@ -91,7 +91,7 @@ void set_parts(BoardDescription& board, const FlightParams& params) {
     WHIRL_CHECK(device.set(key, all), key);
   };
   for (BoardDevice& device : board.devices) {
-    if (device.type != "mpu6000") continue;
+    if (device.type != "mpu6000" && device.type != "pod_parts") continue;
     for (const auto& [key, value] : params.imu) WHIRL_CHECK(device.set(key, value), key);
     add(device, "params.place", params.imu_place_m);
     add(device, "params.misalignment", params.imu_turn_rad);

@@ -16,6 +16,9 @@ namespace {
 
 constexpr std::size_t kMost_nodes = 16;
 constexpr std::int64_t kDefaultTimeout_ns = 120'000'000'000;
+// Of a line from a follower to its leader.
+constexpr std::int64_t kLeastLatency_ns = 2000, kUsualLatency_ns = 100'000,
+                       kMostLatency_ns = 1'000'000;
 const std::vector<std::string> kSurroundings = {"start",     "room",  "outdoors", "fence",
                                                 "obstacles", "field", "air",      "load"};
 
@@ -68,13 +71,22 @@ void read_board_wire(const lua::Table& t, Plan& plan) {
   if (!to) t.refuse("to", "'" + t.text("to") + "' is on no node", "write NODE.i2c2");
   if (!from || !to) return;
   if (from->first == to->first) t.refuse("to", "a wire joins two boards");
-  plan.board_wires.push_back({from->first, from->second, to->first, to->second});
+  PlanBoardWire wire{from->first, from->second, to->first, to->second};
+  if (to->second.starts_with("spi")) {
+    wire.select = t.text("select");
+    wire.ready = t.text_or("ready", "");
+    wire.latency_ns = t.duration_ns_or("latency", kUsualLatency_ns);
+    if (wire.latency_ns < kLeastLatency_ns || wire.latency_ns > kMostLatency_ns) {
+      t.refuse("latency", "a line's latency is 2 us to 1 ms");
+    }
+  }
+  plan.board_wires.push_back(std::move(wire));
 }
 
 void read_wires(const lua::Table& t, Plan& plan) {
   for (const lua::Table& entry : t.tables("wires")) {
     const std::string to = entry.text("to");
-    if (to.find(".i2c") != std::string::npos) {
+    if (to.find(".i2c") != std::string::npos || to.find(".spi") != std::string::npos) {
       read_board_wire(entry, plan);
       continue;
     }

@@ -18,12 +18,16 @@ struct Rig {
       board.devices = {
           {.name = "esc1", .type = "esc_i2c", .bus = "i2c3", .address = 0x29, .motor = 1},
           {.name = "esc2", .type = "esc_i2c", .bus = "i2c3", .address = 0x2A, .motor = 2},
-          {.name = "imu", .type = "mpu6000", .bus = "spi1"}};
+          {.name = "imu", .type = "mpu6000", .bus = "spi1"},
+          {.name = "imu2", .type = "mpu6000", .bus = "spi1"},
+          {.name = "baro", .type = "ms5611", .bus = "i2c1", .address = 0x76},
+          {.name = "gps", .type = "ublox_6", .bus = "usart6"}};
       nodes.push_back({std::string(1, static_cast<char>('a' + i)), board});
     }
   }
-  Rig& wire(std::size_t leader, const std::string& device, std::size_t follower) {
-    plan.board_wires.push_back({leader, device, follower, "i2c2"});
+  Rig& wire(std::size_t leader, const std::string& device, std::size_t follower,
+            const std::string& bus = "i2c2") {
+    plan.board_wires.push_back({leader, device, follower, bus});
     return *this;
   }
   std::string refused() const {
@@ -47,13 +51,23 @@ TEST(BoardWires, BoardsThatLeadEachOtherInACircleAreRefused) {
 
 TEST(BoardWires, ABoardHasOneMasterAndADeviceOneBoardInItsPlace) {
   EXPECT_EQ(Rig(3).wire(0, "esc1", 2).wire(1, "esc1", 2).refused(),
-            "wires: c takes the place of two devices");
+            "wires: c takes the place of devices of two boards");
+  EXPECT_EQ(Rig(2).wire(0, "esc1", 1).wire(0, "esc2", 1).refused(),
+            "wires: b takes the place of two motors' devices");
   EXPECT_EQ(Rig(3).wire(0, "esc1", 1).wire(0, "esc1", 2).refused(),
             "wires: two boards take the place of a.esc1");
 }
 
-TEST(BoardWires, OnlyATargetOnAnI2cBusHasAPlaceForABoard) {
-  EXPECT_EQ(Rig(2).wire(0, "imu", 1).refused(), "wires: a.imu is no target on an I2C bus");
+TEST(BoardWires, BothEndsAreI2cOrBothSpiAndEachBusHasOneMaster) {
+  EXPECT_EQ(Rig(2).wire(0, "imu", 1, "spi1").wire(0, "esc1", 1).refused(), "");
+  EXPECT_EQ(Rig(2).wire(0, "imu", 1).refused(), "wires: a.imu is on spi1, the other end on i2c2");
+  EXPECT_EQ(Rig(2).wire(0, "esc1", 1, "spi1").refused(),
+            "wires: a.esc1 is on i2c3, the other end on spi1");
+  EXPECT_EQ(Rig(2).wire(0, "imu", 1, "spi1").wire(0, "imu2", 1, "spi1").refused(),
+            "wires: b.spi1 has two masters");
+  EXPECT_EQ(Rig(2).wire(0, "esc1", 1).wire(0, "baro", 1).refused(),
+            "wires: b.i2c2 has two masters");
+  EXPECT_EQ(Rig(2).wire(0, "gps", 1).refused(), "wires: a.gps is no target on an I2C or SPI bus");
   EXPECT_EQ(Rig(2).wire(0, "esc7", 1).refused(), "wires: board has no device 'esc7'");
 }
 
@@ -74,10 +88,32 @@ TEST(BoardWires, EachBoardGetsItsEndOfOneMemory) {
   EXPECT_EQ(setups[2].wires[0].device, "");
   EXPECT_EQ(setups[2].wires[0].bus, "i2c2");
   EXPECT_EQ(setups[0].wires[0].fd, setups[2].wires[0].fd);
+  EXPECT_FALSE(setups[2].wires[0].shared);
   EXPECT_EQ(setups[2].motor, 2);
   ASSERT_EQ(setups[0].far.size(), 1u);
   EXPECT_EQ(setups[0].far[0].node, 2u);
   EXPECT_EQ(setups[0].far[0].motor, 2);
+}
+
+// So the one that follows sees all of it in one order.
+TEST(BoardWires, WhatJoinsTheSameTwoBoardsIsOneMemoryWithAPortForEachBus) {
+  Rig rig(2);
+  rig.wire(0, "imu", 1, "spi1").wire(0, "esc1", 1);
+  std::vector<cli::Setup> setups;
+  for (std::size_t i = 0; i < 2; ++i) {
+    setups.push_back({rig.plan, i, rig.nodes[i].board, "", "", ""});
+  }
+  const auto links = join_boards(rig.plan, rig.nodes, setups);
+  ASSERT_TRUE(links) << links.error().message();
+  ASSERT_EQ(links.value().size(), 1u);
+  for (const cli::Setup& setup : setups) {
+    ASSERT_EQ(setup.wires.size(), 2u);
+    EXPECT_EQ(setup.wires[0].fd, setup.wires[1].fd);
+    EXPECT_EQ(setup.wires[0].port, 0);
+    EXPECT_EQ(setup.wires[1].port, 1);
+  }
+  EXPECT_EQ(setups[1].wires[0].bus, "spi1");
+  EXPECT_TRUE(setups[1].wires[0].shared);
 }
 
 }  // namespace

@@ -50,7 +50,10 @@ class Keys {
     asked_.insert(key);
     const auto found = object_.find(key);
     if (found == object_.end()) return;
-    if constexpr (std::integral<T>) {
+    if constexpr (std::same_as<T, bool>) {
+      if (!found->is_boolean()) return fail(key, "has the wrong type: " + shown(*found));
+      into = found->get<bool>();
+    } else if constexpr (std::integral<T>) {
       if (!read_whole(*found, into)) {
         fail(key, "is not a whole number in range: " + shown(*found));
       }
@@ -153,6 +156,11 @@ WireEnd read_wire(const json& object, const std::string& place, Error& first) {
   keys.read("device", wire.device);
   keys.read("bus", wire.bus);
   keys.read("fd", wire.fd);
+  keys.read("port", wire.port);
+  keys.read("shared", wire.shared);
+  keys.read("select", wire.select);
+  keys.read("ready", wire.ready);
+  keys.read("latency_ns", wire.latency_ns);
   keys.refuse_others();
   return wire;
 }
@@ -227,7 +235,14 @@ std::string board_text(const BoardStart& start) {
               {"watch", board.watch}};
   for (const BoardDevice& device : board.devices) out["devices"].push_back(json_of(device));
   for (const WireEnd& wire : start.run.wires) {
-    out["wires"].push_back({{"device", wire.device}, {"bus", wire.bus}, {"fd", wire.fd}});
+    out["wires"].push_back({{"device", wire.device},
+                            {"bus", wire.bus},
+                            {"fd", wire.fd},
+                            {"port", wire.port},
+                            {"shared", wire.shared},
+                            {"select", wire.select},
+                            {"ready", wire.ready},
+                            {"latency_ns", wire.latency_ns}});
   }
   for (const BoardPin& pin : board.pins) {
     out["pins"].push_back({{"name", pin.name},

@@ -34,6 +34,9 @@ class SpiTarget {
  public:
   virtual ~SpiTarget() = default;
   virtual void select(bool selected, Nanoseconds now) = 0;
+  // The first clock of a frame. A part that answers by what it knows when the frame is over needs none of it.
+  virtual void begin(std::uint8_t /*mosi*/, std::uint32_t /*sck_Hz*/, int /*mode*/,
+                     Nanoseconds /*now*/) {}
   // One frame has passed, full duplex, at sck_Hz and in mode (CPOL << 1 | CPHA). Returns MISO.
   virtual std::uint8_t transfer(std::uint8_t mosi, std::uint32_t sck_Hz, int mode,
                                 Nanoseconds now) = 0;

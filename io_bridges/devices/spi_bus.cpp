@@ -11,6 +11,12 @@ void SpiBus::add(SpiTarget& target, Wire& chip_select) {
   });
 }
 
+void SpiBus::begin(std::uint8_t mosi, std::uint32_t sck_Hz, int mode, Nanoseconds now) {
+  for (const auto& seat : seats_) {
+    if (seat->selected) seat->target->begin(mosi, sck_Hz, mode, now);
+  }
+}
+
 std::uint8_t SpiBus::transfer(std::uint8_t mosi, std::uint32_t sck_Hz, int mode, Nanoseconds now) {
   std::uint8_t miso = 0xFF;
   const Wire* selected = nullptr;

@@ -35,7 +35,8 @@ class SpiBus {
   void on_byte(Log log) { log_ = std::move(log); }
   using Clash = std::function<void(const Wire& first, const Wire& second, Nanoseconds now)>;
   void on_clash(Clash clash) { clash_ = std::move(clash); }  // with each byte
-  // The controller: one byte has passed.
+  // The controller: a frame of a byte begins; one byte has passed.
+  void begin(std::uint8_t mosi, std::uint32_t sck_Hz, int mode, Nanoseconds now);
   std::uint8_t transfer(std::uint8_t mosi, std::uint32_t sck_Hz, int mode, Nanoseconds now);
 
   const std::string& name() const { return name_; }

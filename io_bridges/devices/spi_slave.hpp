@@ -11,6 +11,23 @@
 
 namespace whirl::io {
 
+// How long what went out had waited for its first bit.
+struct SpiSlack {
+  struct Bytes {
+    std::uint64_t bytes = 0, late = 0;  // late: there was nothing in time
+    Nanoseconds least_ns = kNever;
+    void add(Nanoseconds waited_ns) {
+      ++bytes;
+      if (waited_ns < 0) {
+        ++late;
+      } else if (waited_ns < least_ns) {
+        least_ns = waited_ns;
+      }
+    }
+  };
+  Bytes first, others;  // of a transfer
+};
+
 class SpiSlave {
  public:
   static constexpr Nanoseconds kNothing = -1;
@@ -21,6 +38,8 @@ class SpiSlave {
   // `bits`: how many clocks there were, 8 of a whole byte, fewer where the master broke it off. Returns
   // what they read from MISO, in the low bits.
   virtual std::uint8_t sampled(std::uint8_t mosi, int bits, Nanoseconds now) = 0;
+  virtual int mode() const = 0;                  // that it is set to: CPOL << 1 | CPHA
+  virtual SpiSlack slack() const { return {}; }  // so far
 };
 
 }  // namespace whirl::io

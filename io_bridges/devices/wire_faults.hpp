@@ -43,6 +43,9 @@ class SpiWireFaults : public SpiTarget {
       : book_(book), target_(target), bus_(bus), device_(device) {}
 
   void select(bool selected, Nanoseconds now) override;
+  void begin(std::uint8_t mosi, std::uint32_t sck_Hz, int mode, Nanoseconds now) override {
+    target_.begin(mosi, sck_Hz, mode, now);
+  }
   std::uint8_t transfer(std::uint8_t mosi, std::uint32_t sck_Hz, int mode,
                         Nanoseconds now) override;
   void passed_by(std::uint8_t mosi, Nanoseconds now) override { target_.passed_by(mosi, now); }

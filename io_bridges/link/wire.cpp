@@ -9,13 +9,14 @@
 #include <cstring>
 #include <new>
 
+#include "base/check.hpp"
 #include "io_bridges/link/futex.hpp"
 #include "io_bridges/link/spin_policy.hpp"
 
 namespace whirl::io {
 namespace {
 
-constexpr std::uint64_t kWire_magic = 0x3130657269776877;  // "whwire01"
+constexpr std::uint64_t kWire_magic = 0x3230657269776877;  // "whwire02"
 constexpr std::uint32_t kRing = 256;                       // messages
 constexpr int kFew_turns = 4 * SpinPolicy::kLeast;
 // A sleeper looks again so often: close() may come between its look and its sleep.
@@ -40,7 +41,10 @@ struct BoardWire::Page {
   std::atomic<std::uint32_t> answered, follower_sleeps;
   std::uint32_t asked;  // the leader's own
   WireAnswer answer;
+  alignas(64) std::atomic<std::uint32_t> told;
+  alignas(64) std::atomic<std::uint32_t> heard;
   alignas(64) WireMessage ring[kRing];
+  WireEdge edges[kMost_edges];
 };
 
 Result<BoardWire> BoardWire::create(int boards) {
@@ -148,9 +152,28 @@ void BoardWire::answer(const WireAnswer& answer) {
   }
 }
 
+std::optional<WireEdge> BoardWire::next_edge() {
+  const std::uint32_t heard = page_->heard.load(std::memory_order_relaxed);
+  const auto any = [heard](std::uint32_t told) { return told != heard; };
+  if (!await(page_->told, page_->leader_sleeps, any)) return std::nullopt;
+  const WireEdge edge = page_->edges[heard % kMost_edges];
+  page_->heard.store(heard + 1, std::memory_order_release);
+  return edge;
+}
+
+void BoardWire::tell(const WireEdge& edge) {
+  const std::uint32_t told = page_->told.load(std::memory_order_relaxed);
+  WHIRL_CHECK(told - page_->heard.load(std::memory_order_acquire) < kMost_edges, edge.t_ns);
+  page_->edges[told % kMost_edges] = edge;
+  page_->told.store(told + 1, std::memory_order_seq_cst);
+  if (page_->leader_sleeps.load(std::memory_order_seq_cst) != 0) {
+    futex(page_->told, FUTEX_WAKE, 1, nullptr);
+  }
+}
+
 void BoardWire::close() {
   page_->closed.store(1, std::memory_order_seq_cst);
-  for (auto* word : {&page_->posted, &page_->taken, &page_->answered}) {
+  for (auto* word : {&page_->posted, &page_->taken, &page_->answered, &page_->told}) {
     futex(*word, FUTEX_WAKE, INT32_MAX, nullptr);
   }
 }

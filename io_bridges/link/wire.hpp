@@ -1,6 +1,8 @@
-// A wire between two boards' processes: one page of shared memory, a ring of messages down, one answer up.
-// The bus master's board leads, the slave's board follows behind it in virtual time.
+// A wire between two boards' processes: one page of shared memory, a ring of messages down, one answer and a
+// ring of edges up. The bus master's board leads, the slave's board follows behind it in virtual time.
 //
+//   Ports     what two boards have between them is one wire, so that the follower sees all of it in one order: a bus
+//             each, and what belongs to it
 //   Order     messages carry the leader's virtual time, which never falls. Every read blocks and none
 //             polls, so what happens depends on the messages and not on who was faster
 //   Waiting   as long as a core is free for it, then a futex: long turns where there are more cores than
@@ -25,12 +27,22 @@ enum class WireAct : std::uint8_t {
   fetch,        // answer: the byte
   acked,        // flag: the master's acknowledge; with it an answer: the next byte, else none
   still_held,   // after an answer that the clock is held. Answer: of the act that it was for
+  select,       // of SPI. flag: selected. No answer
+  spi_begin,    // the first clock of a byte. byte: the mode. No answer
+  spi_end,      // its last bit has passed. byte: MOSI. Answer: MISO
+  mark,         // no answer, but a mark in the ring up: all edges until then are in it
 };
 
 struct WireMessage {
   std::int64_t t_ns = 0;
   WireAct act = WireAct::start;
-  std::uint8_t byte = 0, flag = 0;
+  std::uint8_t byte = 0, flag = 0, port = 0;
+};
+
+// A line from the follower to the leader.
+struct WireEdge {
+  std::int64_t t_ns = 0;
+  std::uint8_t port = 0, level = 0, mark = 0;  // mark: no edge, see WireAct
 };
 
 struct WireAnswer {
@@ -59,11 +71,15 @@ class BoardWire {
   // Leader. False, nothing: the wire is closed.
   bool post(const WireMessage& message);  // waits for room, and never for long: the follower drains
   std::optional<WireAnswer> ask(const WireMessage& message);
+  std::optional<WireEdge> next_edge();  // waits for one
 
   // Follower.
   const WireMessage* front();  // waits for one; null: closed
   void pop();
   void answer(const WireAnswer& answer);
+  // Pre: fewer than kMost_edges are there that the leader has not taken.
+  static constexpr std::uint32_t kMost_edges = 1024;
+  void tell(const WireEdge& edge);
 
   // The harness, when one of the two is gone or the run has ended otherwise.
   void close();

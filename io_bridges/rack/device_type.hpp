@@ -124,6 +124,7 @@ class DeviceSlot {
   struct NoSlave final : io::SpiSlave {
     Nanoseconds shift_out(Nanoseconds) override { return kNothing; }
     std::uint8_t sampled(std::uint8_t, int, Nanoseconds) override { return 0xFF; }
+    int mode() const override { return 0; }
   } no_slave_;
 };
 

@@ -86,7 +86,7 @@ DiscLoads disc_loads(const Blade& blade, const DiscFlow& flow,
   double speed2 = 0.0;
   for (std::size_t i = 0; i < kRing_count; ++i) {
     const Ring& ring = blade.rings[i];
-    d.rings[i] = ring_loads(ring, flow, u[i], v[i]);
+    ring_loads(ring, flow, u[i], v[i], d.rings[i]);
     const RingLoads& l = d.rings[i];
     d.thrust_N += l.thrust_N;
     d.torque_Nm += l.drive_N * ring.r_m;

@@ -45,6 +45,15 @@ WHIRL_INLINE double sum(const Vec& x) {
   return (x[0] + x[1]) + (x[2] + x[3]);
 }
 
+// The same of four, in the same order.
+WHIRL_INLINE void sum_four(const Vec& a, const Vec& b, const Vec& c, const Vec& d, Vec& out) {
+  const Vec ab =
+      __builtin_shufflevector(a, b, 0, 4, 2, 6) + __builtin_shufflevector(a, b, 1, 5, 3, 7);
+  const Vec cd =
+      __builtin_shufflevector(c, d, 0, 4, 2, 6) + __builtin_shufflevector(c, d, 1, 5, 3, 7);
+  out = __builtin_shufflevector(ab, cd, 0, 1, 4, 5) + __builtin_shufflevector(ab, cd, 2, 3, 6, 7);
+}
+
 // atan2(y, x) to 2e-9 rad, without branches: arctangent of the smaller over the larger by a
 // polynomial (Chebyshev interpolation over 0..1, odd, ten terms), then unfolded by octants.
 WHIRL_INLINE void angle_of(const Vec& y, const Vec& x, Vec& out) {
@@ -146,17 +155,18 @@ struct Sums {
   Vec stalled{};
 };
 
-WHIRL_INLINE void add_forces(const Ring& ring, const ReynoldsSlot& slot, double blade_angle,
+WHIRL_INLINE void angle_of_attack(double blade_angle, const Winds& w, int g, Vec& alpha) {
+  Vec phi;
+  angle_of(w.axial[g], w.tangential[g], phi);
+  alpha = blade_angle - phi;
+  alpha = alpha > kPi ? alpha - 2.0 * kPi : alpha;
+  alpha = alpha < -kPi ? alpha + 2.0 * kPi : alpha;
+}
+
+WHIRL_INLINE void add_forces(const Ring& ring, const Coefficients& k, const Vec& alpha,
                              const Winds& w, int g, Sums& sums) {
   const Vec& ut = w.tangential[g];
   const Vec& up = w.axial[g];
-  Vec phi;
-  angle_of(up, ut, phi);
-  Vec alpha = blade_angle - phi;
-  alpha = alpha > kPi ? alpha - 2.0 * kPi : alpha;
-  alpha = alpha < -kPi ? alpha + 2.0 * kPi : alpha;
-  Coefficients k;
-  look_up_four(ring.table, slot, alpha, k);
   Vec speed = ut * ut + up * up;
   square_root(speed);
   const Vec lift = speed * (k.cl * ut - k.cd * up);
@@ -178,26 +188,32 @@ WHIRL_INLINE void add_forces(const Ring& ring, const ReynoldsSlot& slot, double 
 }  // namespace
 
 WHIRL_VECTOR_CLONES
-RingLoads ring_loads(const Ring& ring, const DiscFlow& f, double u, double v) {
+void ring_loads(const Ring& ring, const DiscFlow& f, double u, double v, RingLoads& out) {
   Winds w;
   find_winds(ring, f, u, v, w);
   const ReynoldsSlot slot =
       reynolds_slot(f.density_kgpm3 * w.mean_speed_mps * ring.chord_m / f.viscosity_Pas);
   const double angle = ring.angle_rad + ring.twist_share * f.tip_twist_rad;
+  // One kind of work after the other: the groups' long chains of operations then run side by side.
+  Vec alpha[kGroups];
+  Coefficients coefficients[kGroups];
+  for (int g = 0; g < kGroups; ++g) angle_of_attack(angle, w, g, alpha[g]);
+  for (int g = 0; g < kGroups; ++g) look_up_four(ring.table, slot, alpha[g], coefficients[g]);
   Sums sums;
-  for (int g = 0; g < kGroups; ++g) add_forces(ring, slot, angle, w, g, sums);
+  for (int g = 0; g < kGroups; ++g) add_forces(ring, coefficients[g], alpha[g], w, g, sums);
 
   const double k = 0.5 * f.density_kgpm3 * ring.chord_m * ring.dr_m * f.blade_count / kAzimuths;
-  RingLoads out;
-  out.thrust_N = k * sum(sums.up);
-  out.drive_N = k * sum(sums.back);
-  out.fx_N = k * (-f.spin * sum(sums.back_s) - sum(sums.tilt_c));
-  out.fy_N = k * (f.spin * sum(sums.back_c) - sum(sums.tilt_s));
-  out.lift_N = {out.thrust_N, k * sum(sums.up_c), k * sum(sums.up_s)};
+  Vec lift, back;
+  sum_four(sums.up, sums.up_c, sums.up_s, sums.back, lift);
+  sum_four(sums.back_s, sums.back_c, sums.tilt_c, sums.tilt_s, back);
+  out.thrust_N = k * lift[0];
+  out.drive_N = k * lift[3];
+  out.fx_N = k * (-f.spin * back[0] - back[2]);
+  out.fy_N = k * (f.spin * back[1] - back[3]);
+  out.lift_N = {out.thrust_N, k * lift[1], k * lift[2]};
   out.stalled = sum(sums.stalled) / kAzimuths;
   out.sin_phi = (f.climb_mps + f.ground_factor * u) / std::max(w.mean_speed_mps, 1e-6);
   out.lift_slope_N_per_mps = k * kAzimuths * w.mean_speed_mps * 2.0 * kPi;
-  return out;
 }
 
 }  // namespace whirl::plant

@@ -45,7 +45,8 @@ struct RingLoads {
   double lift_slope_N_per_mps = 0.0;  // -d(thrust)/d(inflow), positive estimate for the integrator
 };
 
-// u, v: axial and swirl velocity of this ring.
-RingLoads ring_loads(const Ring& ring, const DiscFlow& flow, double u_mps, double v_mps);
+// u, v: axial and swirl velocity of this ring. Writes every field of `out`, in place: a copy of it would wait for
+// what was just stored.
+void ring_loads(const Ring& ring, const DiscFlow& flow, double u_mps, double v_mps, RingLoads& out);
 
 }  // namespace whirl::plant

@@ -13,7 +13,8 @@ namespace {
 
 RingPoint solve_ring(const Blade& blade, const Ring& ring, const DiscFlow& flow, RingPoint start) {
   const auto force_at = [&](double u, double v) {
-    const RingLoads l = ring_loads(ring, flow, u, v);
+    RingLoads l;
+    ring_loads(ring, flow, u, v, l);
     return RingForce{l.thrust_N, l.drive_N, l.sin_phi};
   };
   return balance_ring(ring_wake(blade, ring, flow), force_at, start);

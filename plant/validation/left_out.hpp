@@ -9,7 +9,8 @@
 //   Band     stated 90 %: share of measured points inside, half-width over the mean of the measured
 //   In view  the form of the section, the length and shares of the likeness, the first belief and the discrepancy
 //            were chosen on these scores of all 32; traits, their spread and the mean of the left-out
-//            one are not. The four of data/unseen had no part in anything: validate_strangers().
+//            one are not. The four of data/unseen and the twelve of data/third had no part in anything:
+//            validate_strangers(), validate_third().
 //   Source   [UiucProp]
 #pragma once
 #include <string>
@@ -36,6 +37,8 @@ KnownBlades know(const std::vector<MeasuredBlade>& blades);
 Report validate_left_out(const std::vector<MeasuredBlade>& all, const KnownBlades& known);
 Report validate_in_view(const std::vector<MeasuredBlade>& all, const KnownBlades& known);
 Report validate_strangers(const std::vector<MeasuredBlade>& strangers, const KnownBlades& known);
+// Nobody had seen these twelve when the form, the band and the limits of a row in flight were set.
+Report validate_third(const std::vector<MeasuredBlade>& strangers, const KnownBlades& known);
 // That data/propellers/known.txt is what these measurements give.
 Report validate_known(const KnownBlades& known, const std::string& text);
 

@@ -18,6 +18,7 @@ struct Recorder final : SpiSlave {
     seen.push_back(mosi);
     return static_cast<std::uint8_t>(0xA0 + seen.size());
   }
+  int mode() const override { return 0; }
   EventQueue& queue;
   std::vector<Nanoseconds> out_ns, in_ns;
   std::vector<std::uint8_t> seen;

@@ -99,14 +99,7 @@ Result<Done> Board::build_devices() {
 Result<Done> Board::follow_wires() {
   for (const WireEnd& end : setup_.run.wires) {
     if (!end.device.empty()) continue;  // led by the rack, in place of that device
-    io::I2cBus* bus = devices_.i2c(bus_number(end.bus).value_or(0));
-    if (bus == nullptr) {
-      return Error{ErrorKind::bad_input, setup_.description.name,
-                   "the part has no '" + end.bus + "' for the wire to another board", ""};
-    }
-    auto wire = io::BoardWire::attach(end.fd);
-    if (!wire) return wire.error();
-    wires_.follow(*bus, std::move(wire.value()));
+    if (auto followed = devices_.follow(end); !followed) return followed.error();
   }
   return Done{};
 }

@@ -7,7 +7,9 @@
 #include "io_bridges/devices/wire_faults.hpp"
 #include "io_bridges/qemu/board/board_pins.hpp"
 #include "io_bridges/qemu/board/empty_can.hpp"
+#include "io_bridges/qemu/board/i2c_wire.hpp"
 #include "io_bridges/qemu/board/spi_log.hpp"
+#include "io_bridges/qemu/board/spi_wire.hpp"
 #include "io_bridges/qemu/stm32/bxcan.hpp"
 #include "io_bridges/rack/can_log.hpp"
 #include "io_bridges/rack/check_board.hpp"
@@ -26,6 +28,7 @@ class DeviceRack::Wiring final : public rack::Rack {
   }
 
   Result<Done> build(const BoardDescription& board);
+  Result<Done> follow(const WireEnd& end);
   bool on_message(const io::Reader& message);
   void report(io::Nanoseconds now) {
     for (const auto& device : devices_) device->report(now);
@@ -58,7 +61,10 @@ class DeviceRack::Wiring final : public rack::Rack {
   Result<Done> check_pins(const BoardDevice& device) const;
   std::string bus_of(const std::string& pin) const;
   Result<Done> add(const BoardDescription& board, int number);
-  Result<Done> lead(const BoardDevice& device, std::unique_ptr<io::I2cBus> ear);
+  Result<Done> lead(const BoardDevice& device, int number, const WireEnd& end,
+                    std::unique_ptr<io::I2cBus> ear);
+  io::Wire* pin_of(const BoardDevice& device, const char* key);  // null: it has none
+  void tell_ready(io::Wire& ready, int number);
   const WireEnd* far_end(const BoardDevice& device) const;
   Result<Done> subscribe(rack::RackDevice& device, const std::string& place);
   io::SpiBus* spi(int number);
@@ -147,16 +153,19 @@ Result<Done> DeviceRack::Wiring::add(const BoardDescription& board, int number) 
   const BoardDevice& device = board.devices[static_cast<std::size_t>(number)];
   const rack::DeviceType* type = rack::find_type(site_.types, device.type);
   WHIRL_CHECK(type != nullptr, device.type);
+  const WireEnd* far = far_end(device);
+  // A part that senses has nothing to tell where another board stands in its place.
+  if (far != nullptr && !type->senses.empty()) return lead(device, number, *far, nullptr);
   rack::DeviceSlot slot(*this, board.name, device, *type, number);
   std::unique_ptr<io::I2cBus> ear;
-  if (far_end(device) != nullptr) ear = std::make_unique<io::I2cBus>(device.name);
+  if (far != nullptr) ear = std::make_unique<io::I2cBus>(device.name);
   ear_ = ear.get();
   auto made = type->make(slot);
   ear_ = nullptr;
   if (slot.error()) return *slot.error();
   WHIRL_CHECK(made != nullptr, device.type);
-  if (ear != nullptr) {
-    if (const auto led = lead(device, std::move(ear)); !led) return led.error();
+  if (far != nullptr) {
+    if (const auto led = lead(device, number, *far, std::move(ear)); !led) return led.error();
   }
   devices_.push_back(std::move(made));
   return subscribe(*devices_.back(), slot.place());
@@ -169,19 +178,65 @@ const WireEnd* DeviceRack::Wiring::far_end(const BoardDevice& device) const {
   return nullptr;
 }
 
-Result<Done> DeviceRack::Wiring::lead(const BoardDevice& device, std::unique_ptr<io::I2cBus> ear) {
-  io::I2cBus* bus = i2c(bus_number(device.bus).value_or(0));
-  if (bus == nullptr || device.address < 0 || !device.bus.starts_with("i2c")) {
-    return Error{ErrorKind::bad_input, device.place + ": " + device.name,
-                 "is no I2C device of this part: no board can take its place", ""};
-  }
-  auto wire = io::BoardWire::attach(far_end(device)->fd);
+Result<Done> DeviceRack::Wiring::lead(const BoardDevice& device, int number, const WireEnd& end,
+                                      std::unique_ptr<io::I2cBus> ear) {
+  const auto wire = site_.wires->lead(end.fd);
   if (!wire) return wire.error();
-  site_.wires->lead(*bus, std::move(ear), static_cast<std::uint8_t>(device.address),
-                    std::move(wire.value()));
-  return Done{};
+  const auto port = static_cast<std::uint8_t>(end.port);
+  const int bus_of_device = bus_number(device.bus).value_or(0);
+  if (device.bus.starts_with("i2c") && device.address >= 0) {
+    if (io::I2cBus* bus = i2c(bus_of_device)) {
+      auto& led = wire.value()->port<LeaderI2c>(port, *bus);
+      led.add(static_cast<std::uint8_t>(device.address), std::move(ear));
+      return Done{};
+    }
+  } else if (io::Wire* select = pin_of(device, "cs");
+             device.bus.starts_with("spi") && select != nullptr) {
+    io::Wire* ready = pin_of(device, "int");
+    auto& led = wire.value()->port<LeaderSpi>(port, device.name, ready, end.latency_ns);
+    if (ready != nullptr) tell_ready(*ready, number);
+    if (join_spi(bus_of_device, *select, led, device, number)) return Done{};
+  }
+  return Error{ErrorKind::bad_input, device.place + ": " + device.name,
+               "is no device on I2C or SPI of this part: no board can take its place", ""};
 }
 
+io::Wire* DeviceRack::Wiring::pin_of(const BoardDevice& device, const char* key) {
+  const auto value = device.value(key);
+  return value ? pin(std::get<std::string>(*value)) : nullptr;
+}
+
+// As the part itself would.
+void DeviceRack::Wiring::tell_ready(io::Wire& ready, int number) {
+  ready.watch([this, number](bool level, io::Nanoseconds now) {
+    const auto place = static_cast<std::uint16_t>(number);
+    if (level) site_.happened.add(Kind::data_ready, place, now, nullptr, 0);
+  });
+}
+
+Result<Done> DeviceRack::Wiring::follow(const WireEnd& end) {
+  const auto wire = site_.wires->follow(end.fd, end.shared);
+  if (!wire) return wire.error();
+  const auto port = static_cast<std::uint8_t>(end.port);
+  const int number = bus_number(end.bus).value_or(0);
+  if (end.bus.starts_with("i2c")) {
+    if (io::I2cBus* bus = i2c(number)) return wire.value()->port<FollowerI2c>(port, *bus), Done{};
+  } else if (io::SpiSlave* slave = spi_slave(number);
+             end.bus.starts_with("spi") && slave != nullptr) {
+    io::Wire* select = pin(end.select);
+    io::Wire* ready = end.ready.empty() ? nullptr : pin(end.ready);
+    if (select == nullptr || (ready == nullptr && !end.ready.empty())) {
+      return Error{ErrorKind::bad_input, end.bus,
+                   "the part has no pin '" + (select == nullptr ? end.select : end.ready) +
+                       "' for the wire to another board",
+                   ""};
+    }
+    wire.value()->port<FollowerSpi>(port, end.bus, *slave, *select, ready);
+    return Done{};
+  }
+  return Error{ErrorKind::bad_input, end.bus,
+               "the part has no such bus for the wire to another board", ""};
+}
 Result<Done> DeviceRack::Wiring::subscribe(rack::RackDevice& device, const std::string& place) {
   for (const rack::Intake& intake : device.intakes()) {
     if (!intake.port) {
@@ -333,8 +388,8 @@ void DeviceRack::report(io::Nanoseconds now) {
   wiring_->report(now);
 }
 
-io::I2cBus* DeviceRack::i2c(int number) {
-  return wiring_->i2c(number);
+Result<Done> DeviceRack::follow(const WireEnd& end) {
+  return wiring_->follow(end);
 }
 
 void DeviceRack::run_ends(io::Nanoseconds now) {

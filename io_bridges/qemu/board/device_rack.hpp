@@ -45,8 +45,8 @@ class DeviceRack {
   // At a boundary, before what happened is posted: what devices tell at each one.
   void report(io::Nanoseconds now);
   void run_ends(io::Nanoseconds now);
-  // With its faults and its log; null: the part has none of that number.
-  io::I2cBus* i2c(int number);
+  // A bus on which another board is the master.
+  Result<Done> follow(const WireEnd& end);
 
  private:
   class Wiring;

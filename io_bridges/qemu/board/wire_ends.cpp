@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "base/check.hpp"
-#include "base/text.hpp"
 
 namespace whirl::board {
 
@@ -12,115 +11,71 @@ using io::WireAnswer;
 using io::WireMessage;
 using Clock = io::WireAnswer::Clock;
 
-LeaderEnd::LeaderEnd(const WireSite& site, io::I2cBus& bus, std::unique_ptr<io::I2cBus> ear,
-                     std::uint8_t address, io::BoardWire wire)
-    : site_(site),
-      bus_(bus),
-      ear_(std::move(ear)),
-      address_(address),
-      wire_(std::move(wire)),
-      again_(
-          site.events,
-          [this] {
-            ask({site_.events.now(), WireAct::still_held});
-          },
-          io::Rank::wire),
-      handle_(bus.scl().add_driver("the board at " + hex(address))) {
-  bus_.add(*this);
-  bus_.on_start([this](Nanoseconds now) { began(now); });
-  bus_.on_free([this](Nanoseconds now) { ended(now); });
-}
+// ---- Leader
 
-void LeaderEnd::post(const WireMessage& message) {
+LeaderWire::LeaderWire(const WireSite& site, io::BoardWire wire)
+    : site_(site),
+      wire_(std::move(wire)),
+      mark_(
+          site.events, [this] { mark(); }, io::Rank::wire) {}
+
+void LeaderWire::post(const WireMessage& message) {
   if (!wire_.post(message)) site_.closed();
 }
 
-WireAnswer LeaderEnd::ask(const WireMessage& message) {
+WireAnswer LeaderWire::ask(const WireMessage& message) {
   const auto answer = wire_.ask(message);
-  if (!answer) {
-    site_.closed();
-    return {};
-  }
-  held_ = answer->clock != Clock::released;
-  far_at_boundary_ = answer->clock == Clock::held_to_boundary;
-  has_next_ = answer->has_byte;
-  next_ = answer->byte;
-  if (!held_) bus_.hold_until(answer->t_ns);
-  hold(held_);
-  if (answer->clock == Clock::held) again_.at(answer->t_ns);
-  return *answer;
+  if (answer) return *answer;
+  site_.closed();
+  return {};
 }
 
-void LeaderEnd::hold(bool low) {
-  bus_.scl().drive(handle_, low ? io::Drive::low : io::Drive::none, site_.events.now());
+void LeaderWire::hear_lines(Nanoseconds latency_ns) {
+  const Nanoseconds grain_ns = latency_ns / 2;
+  WHIRL_CHECK(grain_ns > 0, latency_ns);
+  grain_ns_ = grain_ns_ == 0 ? grain_ns : std::min(grain_ns_, grain_ns);
+  mark_.at(site_.events.now() + grain_ns_);
 }
 
-void LeaderEnd::began(Nanoseconds now) {
-  has_next_ = false;
-  ear_->start(now);
-  post({now, WireAct::start});
-}
-
-// Also a master that gives up while the far slave holds the clock ends so.
-void LeaderEnd::ended(Nanoseconds now) {
-  held_ = has_next_ = false;
-  again_.cancel();
-  hold(false);
-  ear_->stop(now);
-  post({now, WireAct::stop});
-}
-
-bool LeaderEnd::start(std::uint8_t address_7bit, bool read, Nanoseconds now) {
-  ++addressed_;
-  const bool ack =
-      ask({now, WireAct::address, address_7bit, static_cast<std::uint8_t>(read ? 1 : 0)}).ack != 0;
-  if (!ack) return false;
-  ++acknowledged_;
-  ear_->address(address_7bit, read, now);
-  return true;
-}
-
-bool LeaderEnd::write(std::uint8_t byte, Nanoseconds now) {
-  const bool ack = ask({now, WireAct::write, byte}).ack != 0;
-  if (ack) ear_->write(byte, now);
-  return ack;
-}
-
-std::uint8_t LeaderEnd::read(Nanoseconds now) {
-  if (!has_next_) return ask({now, WireAct::fetch}).byte;
-  has_next_ = false;
-  return next_;
-}
-
-void LeaderEnd::acked(bool ack, Nanoseconds now) {
-  if (ack) {
-    ask({now, WireAct::acked, 0, 1});
-  } else {
-    post({now, WireAct::acked});  // the slave lets go of the lines
+// What changed until the mark before this one.
+void LeaderWire::mark() {
+  const Nanoseconds now = site_.events.now();
+  post({now, WireAct::mark});
+  mark_.at(now + grain_ns_);
+  if (!std::exchange(marked_, true)) return;
+  for (;;) {
+    const auto edge = wire_.next_edge();
+    if (!edge) return site_.closed();
+    if (edge->mark != 0) return;
+    ports_.at(edge->port)->edge(*edge);
   }
 }
 
-void LeaderEnd::at_boundary(Nanoseconds now) {
-  WHIRL_CHECK(!held_ || far_at_boundary_, now);
-  if (!far_at_boundary_) post({now, WireAct::to_boundary});
+void LeaderWire::at_boundary(Nanoseconds now) {
+  for (const auto& port : ports_) {
+    if (port != nullptr && port->far_at_boundary()) return;  // it says so itself
+  }
+  post({now, WireAct::to_boundary});
 }
 
-void LeaderEnd::after_boundary(Nanoseconds now) {
-  far_at_boundary_ = false;
-  if (held_) ask({now, WireAct::still_held});
+void LeaderWire::after_boundary(Nanoseconds now) {
+  for (const auto& port : ports_) {
+    if (port != nullptr) port->after_boundary(now);
+  }
 }
 
-void LeaderEnd::run_ends(Nanoseconds now) {
-  if (addressed_ == 0 || acknowledged_ != 0) return;
-  site_.finding({now, bus_.name(),
-                 "no board answered at " + hex(address_) + ", asked " + std::to_string(addressed_) +
-                     " times: has it another address?"});
+void LeaderWire::run_ends(Nanoseconds now) {
+  for (const auto& port : ports_) {
+    if (port != nullptr) port->run_ends(now);
+  }
 }
 
-FollowerEnd::FollowerEnd(const WireSite& site, io::I2cBus& bus, io::BoardWire wire)
+// ---- Follower
+
+FollowerWire::FollowerWire(const WireSite& site, io::BoardWire wire, bool shared)
     : site_(site),
-      bus_(bus),
       wire_(std::move(wire)),
+      shared_(shared),
       pause_(
           site.events, [this] { pause(); }, io::Rank::wire),
       cap_(
@@ -129,23 +84,12 @@ FollowerEnd::FollowerEnd(const WireSite& site, io::I2cBus& bus, io::BoardWire wi
             answer(Clock::held, site_.events.now());
             pause();
           },
-          io::Rank::wire) {
-  bus_.scl().watch([this](bool level, Nanoseconds now) {
-    if (level && waiting_) clock_rose(now);
-  });
-  bus_.on_start([this](Nanoseconds now) {
-    if (acting_ || start_told_) return;
-    start_told_ = true;
-    site_.finding({now, bus_.name(),
-                   "a START of this board's own is not carried over the wire to the other board: "
-                   "its bus has one master"});
-  });
-}
+          io::Rank::wire) {}
 
 // What comes is acted on at its time; then until the next one is known nothing more may happen here.
-void FollowerEnd::pause() {
+void FollowerWire::pause() {
   const Nanoseconds now = site_.events.now();
-  for (;;) {
+  while (!waiting_) {
     const WireMessage* message = wire_.front();
     if (message == nullptr) return site_.closed();
     if (message->act != WireAct::to_boundary && message->t_ns > now) {
@@ -154,139 +98,95 @@ void FollowerEnd::pause() {
     const WireMessage taken = *message;
     wire_.pop();
     count_late(taken, now);
-    acting_ = true;
-    const Next next = act(taken, now);
-    acting_ = false;
-    if (next == Next::boundary) return;
-    if (next == Next::go_on) continue;
-    if (bus_.scl().level()) {
-      answer(Clock::released, now);
-      continue;
-    }
-    waiting_ = true;  // the core runs on until it lets go
-    if (now + kHeld_ns < next_boundary_ns_) cap_.at(now + kHeld_ns);
-    return;
+    if (taken.act == WireAct::to_boundary) return;
+    take(taken, now);
   }
 }
 
-FollowerEnd::Next FollowerEnd::act(const WireMessage& message, Nanoseconds now) {
-  const bool flag = message.flag != 0;
-  switch (message.act) {
-    case WireAct::to_boundary:
-      return Next::boundary;
-    case WireAct::start:
-      begin(now);
-      return Next::go_on;
-    case WireAct::stop:
-      end(now);
-      return Next::go_on;
-    case WireAct::address:
-      answer_ = {};
-      ours_ = true;
-      answer_.ack = bus_.address(message.byte, flag, now) ? 1 : 0;
-      ahead_ = flag && answer_.ack != 0;
-      return Next::wait_for_scl;
-    case WireAct::write:
-      answer_ = {};
-      answer_.ack = bus_.write(message.byte, now) ? 1 : 0;
-      return Next::wait_for_scl;
-    case WireAct::fetch:
-      answer_ = {};
-      answer_.byte = bus_.fetch(now);
-      return Next::wait_for_scl;
-    case WireAct::acked:
-      bus_.answer(flag, now);
-      answer_ = {};
-      ahead_ = flag;
-      return flag ? Next::wait_for_scl : Next::go_on;
-    case WireAct::still_held:
-      return Next::wait_for_scl;
-  }
-  return Next::go_on;
+void FollowerWire::take(const WireMessage& message, Nanoseconds now) {
+  if (message.act == WireAct::mark) return wire_.tell({.t_ns = now, .mark = 1});
+  FollowerPort& port = *ports_.at(message.port);
+  if (!port.act(message, now)) return;
+  asked_ = &port;
+  if (!port.held()) return answer(Clock::released, now);
+  if (shared_) return answer(Clock::held, now);
+  waiting_ = true;  // the core runs on until it lets go
+  if (now + kHeld_ns < next_boundary_ns_) cap_.at(now + kHeld_ns);
 }
 
-void FollowerEnd::begin(Nanoseconds now) {
-  if (!ours_) bus_.stop_unseen(now);  // what a repeated START ends was for others
-  ours_ = false;
-  bus_.start(now);
-}
-
-void FollowerEnd::end(Nanoseconds now) {
-  ahead_ = false;
-  if (ours_) {
-    bus_.stop(now);
-  } else {
-    bus_.stop_unseen(now);
-  }
-  ours_ = false;
-}
-
-void FollowerEnd::count_late(const WireMessage& message, Nanoseconds now) {
+void FollowerWire::count_late(const WireMessage& message, Nanoseconds now) {
   if (message.t_ns >= now) return;
   ++late_;
   latest_ns_ = std::max(latest_ns_, now - message.t_ns);
 }
 
-void FollowerEnd::answer(Clock clock, Nanoseconds now) {
+void FollowerWire::answer(Clock clock, Nanoseconds now) {
   cap_.cancel();
   waiting_ = false;
-  answer_.t_ns = now;
-  answer_.clock = clock;
-  if (clock == Clock::released && ahead_) {
-    answer_.byte = bus_.fetch(now);
-    answer_.has_byte = true;
-    ahead_ = false;
-  }
-  wire_.answer(answer_);
+  WireAnswer told = asked_->reply(clock, now);
+  told.clock = clock;
+  told.t_ns = clock == Clock::held && shared_ ? now + kLook_ns : now;
+  wire_.answer(told);
 }
 
-void FollowerEnd::clock_rose(Nanoseconds now) {
+void FollowerWire::clock_rose(const FollowerPort& port, Nanoseconds now) {
+  if (!waiting_ || asked_ != &port) return;
   answer(Clock::released, now);
   pause_.at(now);
 }
 
-void FollowerEnd::at_boundary(Nanoseconds now) {
+void FollowerWire::at_boundary(Nanoseconds now) {
   if (waiting_) answer(Clock::held_to_boundary, now);
 }
 
-void FollowerEnd::after_boundary(Nanoseconds now, Nanoseconds next) {
+void FollowerWire::after_boundary(Nanoseconds now, Nanoseconds next) {
   next_boundary_ns_ = next;
   pause_.at(now);
 }
 
-void FollowerEnd::run_ends(Nanoseconds now) {
+void FollowerWire::run_ends(Nanoseconds now) {
   if (late_ == 0) return;
-  site_.finding({now, bus_.name(),
+  site_.finding({now, "wire",
                  std::to_string(late_) + " conditions came late, the worst by " +
                      std::to_string(latest_ns_) +
                      " ns: the master gave up while this board held the clock"});
 }
 
+// ---- All of a board
+
 WireEnds::WireEnds(WireSite site) : site_(std::move(site)) {}
 
-void WireEnds::lead(io::I2cBus& bus, std::unique_ptr<io::I2cBus> ear, std::uint8_t address,
-                    io::BoardWire wire) {
-  leaders_.push_back(
-      std::make_unique<LeaderEnd>(site_, bus, std::move(ear), address, std::move(wire)));
+Result<LeaderWire*> WireEnds::lead(int fd) {
+  if (const auto there = leaders_.find(fd); there != leaders_.end()) return there->second.get();
+  auto wire = io::BoardWire::attach(fd);
+  if (!wire) return wire.error();
+  auto& place = leaders_[fd];
+  place = std::make_unique<LeaderWire>(site_, std::move(wire.value()));
+  return place.get();
 }
 
-void WireEnds::follow(io::I2cBus& bus, io::BoardWire wire) {
-  followers_.push_back(std::make_unique<FollowerEnd>(site_, bus, std::move(wire)));
+Result<FollowerWire*> WireEnds::follow(int fd, bool shared) {
+  if (const auto there = followers_.find(fd); there != followers_.end()) return there->second.get();
+  auto wire = io::BoardWire::attach(fd);
+  if (!wire) return wire.error();
+  auto& place = followers_[fd];
+  place = std::make_unique<FollowerWire>(site_, std::move(wire.value()), shared);
+  return place.get();
 }
 
 void WireEnds::at_boundary(Nanoseconds now) {
-  for (const auto& leader : leaders_) leader->at_boundary(now);
-  for (const auto& follower : followers_) follower->at_boundary(now);
+  for (const auto& [key, leader] : leaders_) leader->at_boundary(now);
+  for (const auto& [key, follower] : followers_) follower->at_boundary(now);
 }
 
 void WireEnds::after_boundary(Nanoseconds now, Nanoseconds next) {
-  for (const auto& leader : leaders_) leader->after_boundary(now);
-  for (const auto& follower : followers_) follower->after_boundary(now, next);
+  for (const auto& [key, leader] : leaders_) leader->after_boundary(now);
+  for (const auto& [key, follower] : followers_) follower->after_boundary(now, next);
 }
 
 void WireEnds::run_ends(Nanoseconds now) {
-  for (const auto& leader : leaders_) leader->run_ends(now);
-  for (const auto& follower : followers_) follower->run_ends(now);
+  for (const auto& [key, leader] : leaders_) leader->run_ends(now);
+  for (const auto& [key, follower] : followers_) follower->run_ends(now);
 }
 
 }  // namespace whirl::board

@@ -1,30 +1,29 @@
 // The ends of a board's wires to other boards. The bus master's board leads: for each byte it asks the slave's
-// board, whose answer has ACK or byte and when that lets go of the clock. The slave's board follows: it acts as
-// the controller on its own bus at the times that it is told, and blocks where it does not know what comes next.
+// board. The slave's board follows: it acts as the master on its own buses at the times that it is told, and
+// blocks where it does not know what comes next. What a bus carries: i2c_wire.hpp, spi_wire.hpp.
 //
-//   Exact     START, STOP, addresses, ACK and NACK, bytes, begin and end of stretching, BUSY; SR2 of both
-//   Waiting   a leader waits for answers only, a follower for messages only, and posts its answer at the act,
-//             when SCL rises, kHeld_ns after, or at its boundary: so none waits for ever
-//   Ahead     while it holds the clock a follower runs on, at most kHeld_ns beyond what the leader knows.
-//             A master that gives up meanwhile has its STOP seen by so much too late: counted, a finding
+//   Waiting   a leader waits for answers and marks only, a follower for messages only, and posts its answer at the
+//             act, when the clock is free, kHeld_ns after, or at its boundary: so none waits for ever
+//   Ahead     while a follower holds an I2C clock and nothing else is on its wire it runs on, at most kHeld_ns beyond what
+//             the leader knows. A master that gives up meanwhile has its STOP seen by so much too late: counted, a finding
+//   Shared    a follower with several buses on its wire never runs ahead, for what comes on another one would be
+//             late: the leader looks each kLook_ns whether the clock is free, and sees it by so much too late
+//   Lines     from follower to leader have a latency that the plan states. Half of it is the grain at which the leader
+//             asks for what changed, and each has until the next one to come there: so both run at the same time
 //   Events    only where something passes the wire: an event that says no more than "nothing came" would let a board's
 //             execution pause there, and by cycles its time then differs: so nor is there one for the end of a hold
 //   Faults    of the leader's bus act between master and slave; so both see what they spoil
-//   Findings  late messages; a START by the follower; an address at which no far board ever answered
-//   Left out  a low SDA on one side as seen from the other: a stuck line is the side's where it is injected, and a
-//             slave whose clock is gone (I2cTarget::abandoned) frees nothing here; general call
-//   Fetched   ahead: a follower's byte is taken as soon as its clock is free, so its log of a read that the
-//             master broke off has one byte more
 #pragma once
+#include <array>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "io_bridges/devices/bus.hpp"
 #include "io_bridges/devices/event_queue.hpp"
-#include "io_bridges/devices/i2c_bus.hpp"
 #include "io_bridges/link/wire.hpp"
 
 namespace whirl::board {
@@ -37,80 +36,99 @@ struct WireSite {
   std::function<void()> closed;  // the run ends: does not return, in a board
 };
 
-// A far slave as the master's bus sees it.
-class LeaderEnd final : io::I2cTarget {
+inline constexpr std::size_t kMost_ports = 16;
+
+// What of one bus is at the master's end.
+class LeaderPort {
  public:
-  // `ear` repeats what was written and acknowledged: who listens there is a device that the far board takes
-  // the place of, and tells what it was sent.
-  LeaderEnd(const WireSite& site, io::I2cBus& bus, std::unique_ptr<io::I2cBus> ear,
-            std::uint8_t address, io::BoardWire wire);
+  virtual ~LeaderPort() = default;
+  virtual bool far_at_boundary() const { return false; }  // and so was nothing more before it
+  virtual void after_boundary(Nanoseconds /*now*/) {}
+  virtual void run_ends(Nanoseconds /*now*/) {}
+  virtual void edge(const io::WireEdge& /*edge*/) {}  // of the far board's line
+};
+
+class LeaderWire {
+ public:
+  LeaderWire(const WireSite& site, io::BoardWire wire);
+
+  const WireSite& site() const { return site_; }
+  // The port of that number; made by `make` where there is none.
+  template <typename Port, typename... Args>
+  Port& port(std::uint8_t number, Args&&... args) {
+    auto& place = ports_.at(number);
+    if (place == nullptr) {
+      place = std::make_unique<Port>(*this, number, std::forward<Args>(args)...);
+    }
+    return static_cast<Port&>(*place);
+  }
+
+  void post(const io::WireMessage& message);
+  io::WireAnswer ask(const io::WireMessage& message);
+  // The far board's lines are heard, by the shortest latency that is asked for.
+  void hear_lines(Nanoseconds latency_ns);
 
   void at_boundary(Nanoseconds now);
   void after_boundary(Nanoseconds now);
   void run_ends(Nanoseconds now);
 
  private:
-  bool answers(std::uint8_t address_7bit) const override { return address_7bit == address_; }
-  bool start(std::uint8_t address_7bit, bool read, Nanoseconds now) override;
-  bool write(std::uint8_t byte, Nanoseconds now) override;
-  std::uint8_t read(Nanoseconds now) override;
-  void acked(bool ack, Nanoseconds now) override;
-  void stop(Nanoseconds) override {}  // on_free tells of all
-
-  void began(Nanoseconds now);
-  void ended(Nanoseconds now);
-  void post(const io::WireMessage& message);
-  io::WireAnswer ask(const io::WireMessage& message);
-  void hold(bool low);
+  void mark();
 
   WireSite site_;
-  io::I2cBus& bus_;
-  std::unique_ptr<io::I2cBus> ear_;
-  std::uint8_t address_;
   io::BoardWire wire_;
-  io::Event again_;
-  int handle_;
-  bool held_ = false;
-  bool far_at_boundary_ = false;  // and so was nothing more before it
-  bool has_next_ = false;
-  std::uint8_t next_ = 0;
-  std::int64_t addressed_ = 0, acknowledged_ = 0;
+  io::Event mark_;
+  Nanoseconds grain_ns_ = 0;
+  bool marked_ = false;
+  std::array<std::unique_ptr<LeaderPort>, kMost_ports> ports_;
 };
 
-// The far master as the slave's bus sees it.
-class FollowerEnd {
+// What of one bus is at the slave's end.
+class FollowerPort {
  public:
-  static constexpr Nanoseconds kHeld_ns = 50'000;
+  virtual ~FollowerPort() = default;
+  // What came acts; true: it is a question.
+  virtual bool act(const io::WireMessage& message, Nanoseconds now) = 0;
+  virtual bool held() const { return false; }  // the answer waits for the clock
+  virtual io::WireAnswer reply(io::WireAnswer::Clock clock, Nanoseconds now) = 0;
+};
 
-  FollowerEnd(const WireSite& site, io::I2cBus& bus, io::BoardWire wire);
+class FollowerWire {
+ public:
+  static constexpr Nanoseconds kHeld_ns = 50'000, kLook_ns = 1000;
+
+  // shared: there are several buses on it.
+  FollowerWire(const WireSite& site, io::BoardWire wire, bool shared);
+
+  const WireSite& site() const { return site_; }
+  template <typename Port, typename... Args>
+  Port& port(std::uint8_t number, Args&&... args) {
+    auto& place = ports_.at(number);
+    place = std::make_unique<Port>(*this, number, std::forward<Args>(args)...);
+    return static_cast<Port&>(*place);
+  }
+
+  void tell(const io::WireEdge& edge) { wire_.tell(edge); }
+  void clock_rose(const FollowerPort& port, Nanoseconds now);
 
   void at_boundary(Nanoseconds now);
   void after_boundary(Nanoseconds now, Nanoseconds next);
   void run_ends(Nanoseconds now);
-  std::int64_t late() const { return late_; }
 
  private:
-  enum class Next : std::uint8_t { go_on, wait_for_scl, boundary };
-
   void pause();
-  Next act(const io::WireMessage& message, Nanoseconds now);
-  void begin(Nanoseconds now);
-  void end(Nanoseconds now);
+  void take(const io::WireMessage& message, Nanoseconds now);
   void count_late(const io::WireMessage& message, Nanoseconds now);
   void answer(io::WireAnswer::Clock clock, Nanoseconds now);
-  void clock_rose(Nanoseconds now);
 
   WireSite site_;
-  io::I2cBus& bus_;
   io::BoardWire wire_;
+  bool shared_;
   io::Event pause_, cap_;
-  io::WireAnswer answer_;
   Nanoseconds next_boundary_ns_ = 0;
-  bool waiting_ = false;  // for SCL: a question is open
-  bool ahead_ = false;    // the answer takes the next byte with it
-  bool ours_ = false;     // this board was addressed since the START
-  bool acting_ = false;   // a START is the far master's
-  bool start_told_ = false;
+  std::array<std::unique_ptr<FollowerPort>, kMost_ports> ports_;
+  FollowerPort* asked_ = nullptr;  // a question is open
+  bool waiting_ = false;           // for its clock
   std::int64_t late_ = 0;
   Nanoseconds latest_ns_ = 0;
 };
@@ -120,9 +138,9 @@ class WireEnds {
  public:
   explicit WireEnds(WireSite site);
 
-  void lead(io::I2cBus& bus, std::unique_ptr<io::I2cBus> ear, std::uint8_t address,
-            io::BoardWire wire);
-  void follow(io::I2cBus& bus, io::BoardWire wire);
+  // The wire of that descriptor, which is attached to when it is first asked for. Not null.
+  Result<LeaderWire*> lead(int fd);
+  Result<FollowerWire*> follow(int fd, bool shared);
 
   // Before what happened is posted, and after orders until `next` have come.
   void at_boundary(Nanoseconds now);
@@ -131,8 +149,8 @@ class WireEnds {
 
  private:
   WireSite site_;
-  std::vector<std::unique_ptr<LeaderEnd>> leaders_;
-  std::vector<std::unique_ptr<FollowerEnd>> followers_;
+  std::map<int, std::unique_ptr<LeaderWire>> leaders_;  // by descriptor
+  std::map<int, std::unique_ptr<FollowerWire>> followers_;
 };
 
 }  // namespace whirl::board

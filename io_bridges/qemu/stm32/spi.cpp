@@ -25,7 +25,10 @@ Spi::Spi(std::string name, Chip chip, int irq, bool on_apb2, SpiPins pins)
       bus_(name),
       frame_end_(chip_.events, [this] { end_frame(); }) {
   chip_.clocks.on_change([this] { clocks_changed(); });
-  pins_.nss.watch([this](bool, Nanoseconds) { check_mode_fault(); });
+  pins_.nss.watch([this](bool level, Nanoseconds) {
+    slave_first_ = !level;
+    check_mode_fault();
+  });
   clocks_changed();
 }
 
@@ -153,6 +156,10 @@ void Spi::check_mode_fault() {
   update();
 }
 
+int Spi::mode() const {
+  return static_cast<int>(((cr1_ & CPOL) != 0 ? 2 : 0) | ((cr1_ & CPHA) != 0 ? 1 : 0));
+}
+
 bool Spi::receive_only() const {
   if ((cr1_ & BIDIMODE) != 0) return (cr1_ & BIDIOE) == 0;
   return (cr1_ & RXONLY) != 0;
@@ -190,6 +197,8 @@ void Spi::begin_frame(std::uint16_t value) {
   shift_ = value;
   shifting_ = true;
   frame_end_.in(frame_ns_);
+  if (!pins_.sck.routed() || (cr1_ & DFF) != 0) return;
+  bus_.begin(static_cast<std::uint8_t>(on_wire(value)), sck_Hz_, mode(), chip_.events.now());
 }
 
 void Spi::end_frame() {
@@ -202,6 +211,12 @@ void Spi::end_frame() {
   update();
 }
 
+// What is on MOSI, the first bit highest.
+std::uint16_t Spi::on_wire(std::uint16_t mosi) const {
+  const std::uint16_t out = pins_.mosi.routed() ? mosi : 0xFFFF;
+  return (cr1_ & LSBFIRST) != 0 ? reversed(out, (cr1_ & DFF) != 0 ? 16 : 8) : out;
+}
+
 // The frame on the wire, as far as the pins carry it.
 std::uint16_t Spi::shift(std::uint16_t mosi) {
   const Nanoseconds now = chip_.events.now();
@@ -211,14 +226,12 @@ std::uint16_t Spi::shift(std::uint16_t mosi) {
     return 0xFFFF;
   }
   if (!receive_only() && !pins_.mosi.routed()) report_once(2, "transfer with no pin muxed to MOSI");
-  std::uint16_t out = pins_.mosi.routed() ? mosi : 0xFFFF;
+  const std::uint16_t out = on_wire(mosi);
   const bool lsb_first = (cr1_ & LSBFIRST) != 0;
-  if (lsb_first) out = reversed(out, bits);
-  const int mode = static_cast<int>(((cr1_ & 2) != 0 ? 2 : 0) | (cr1_ & 1));
   std::uint16_t in = 0;
   for (int at = bits - 8; at >= 0; at -= 8) {
     const auto byte = static_cast<std::uint8_t>(out >> at);
-    in = static_cast<std::uint16_t>((in << 8) | bus_.transfer(byte, sck_Hz_, mode, now));
+    in = static_cast<std::uint16_t>((in << 8) | bus_.transfer(byte, sck_Hz_, mode(), now));
   }
   const bool one_line = (cr1_ & BIDIMODE) != 0;
   if (receives() && !one_line && !pins_.miso.routed()) in = 0xFFFF;

@@ -39,6 +39,8 @@ class Spi final : public WordBlock, public io::SpiSlave {
   // An external master's clock. 0xFF: this slave is not selected.
   Nanoseconds shift_out(Nanoseconds now) override;
   std::uint8_t sampled(std::uint8_t mosi, int bits, Nanoseconds now) override;
+  int mode() const override;
+  io::SpiSlack slack() const override { return slack_; }
 
   void reset() override;
 
@@ -56,6 +58,7 @@ class Spi final : public WordBlock, public io::SpiSlave {
   void next_frame();
   void begin_frame(std::uint16_t value);
   void end_frame();
+  std::uint16_t on_wire(std::uint16_t mosi) const;
   std::uint16_t shift(std::uint16_t mosi);
   void received(std::uint16_t value);
   void update();
@@ -83,6 +86,8 @@ class Spi final : public WordBlock, public io::SpiSlave {
   Nanoseconds written_ns_ = 0;  // DR, last
   int slave_bits_ = 0;          // clocks since the shift register was loaded
   bool slave_loaded_ = false, slave_shifting_ = false;
+  bool slave_first_ = false;  // no byte has begun since NSS fell
+  io::SpiSlack slack_;
   std::uint8_t slave_in_ = 0;  // bits sampled so far
   Nanoseconds frame_ns_ = 0;
   std::uint32_t sck_Hz_ = 0;

@@ -16,9 +16,10 @@ enum Offset : std::uint32_t {
   I2SPR = 0x20,
 };
 // CR1
-inline constexpr std::uint32_t MSTR = 1u << 2, SPE = 1u << 6, LSBFIRST = 1u << 7, SSI = 1u << 8,
-                               SSM = 1u << 9, RXONLY = 1u << 10, DFF = 1u << 11, CRCNEXT = 1u << 12,
-                               CRCEN = 1u << 13, BIDIOE = 1u << 14, BIDIMODE = 1u << 15;
+inline constexpr std::uint32_t CPHA = 1u << 0, CPOL = 1u << 1, MSTR = 1u << 2, SPE = 1u << 6,
+                               LSBFIRST = 1u << 7, SSI = 1u << 8, SSM = 1u << 9, RXONLY = 1u << 10,
+                               DFF = 1u << 11, CRCNEXT = 1u << 12, CRCEN = 1u << 13,
+                               BIDIOE = 1u << 14, BIDIMODE = 1u << 15;
 // CR2
 inline constexpr std::uint32_t RXDMAEN = 1u << 0, TXDMAEN = 1u << 1, SSOE = 1u << 2,
                                ERRIE = 1u << 5, RXNEIE = 1u << 6, TXEIE = 1u << 7;

@@ -1,4 +1,6 @@
 // SPI as a slave: clocked by an external master; see spi.hpp.
+#include <utility>
+
 #include "io_bridges/qemu/stm32/spi.hpp"
 #include "io_bridges/qemu/stm32/spi_bits.hpp"
 
@@ -35,7 +37,9 @@ Nanoseconds Spi::shift_out(Nanoseconds now) {
   slave_shifting_ = true;
   const bool waited = slave_loaded_ || tx_full_;
   if (!slave_loaded_) load_slave_shift();
-  return waited ? now - written_ns_ : kNothing;
+  const Nanoseconds waited_ns = waited ? now - written_ns_ : kNothing;
+  (std::exchange(slave_first_, false) ? slack_.first : slack_.others).add(waited_ns);
+  return waited_ns;
 }
 
 std::uint8_t Spi::sampled(std::uint8_t mosi, int bits, Nanoseconds) {

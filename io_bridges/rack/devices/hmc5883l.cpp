@@ -9,8 +9,7 @@
 #include "io_bridges/devices/field_node.hpp"
 #include "io_bridges/rack/devices/can_node_keys.hpp"
 #include "io_bridges/rack/devices/table.hpp"
-#include "io_bridges/rack/models/inertial_sensor.hpp"
-#include "plant/sensors/magnetometer.hpp"
+#include "io_bridges/rack/models/sensed_field.hpp"
 
 namespace whirl::rack {
 namespace {
@@ -48,43 +47,22 @@ Eigen::Matrix3d soft_iron_of(DeviceSlot& slot) {
   return soft;
 }
 
-// The field where the part is, as it is soldered.
-class SensedField {
- public:
-  explicit SensedField(DeviceSlot& slot)
-      : mounting_(mounting_of(slot.axes("axes"))),
-        hard_iron_B_T_(slot.triple("params.hard_iron").data()),
-        pack_per_ampere_T_(slot.triple("params.pack_field").data()),
-        soft_iron_(soft_iron_of(slot)) {
-    for (std::size_t i = 0; i < per_ampere_T_.size(); ++i) {
-      per_ampere_T_[i] = Eigen::Vector3d(slot.triple(motor_field(i + 1)).data());
-    }
+FieldParams field_of(DeviceSlot& slot) {
+  FieldParams params{.mounting = mounting_of(slot.axes("axes")),
+                     .hard_iron_B_T = Eigen::Vector3d(slot.triple("params.hard_iron").data()),
+                     .pack_per_ampere_T = Eigen::Vector3d(slot.triple("params.pack_field").data()),
+                     .soft_iron = soft_iron_of(slot),
+                     .per_ampere_T = {}};
+  for (std::size_t i = 0; i < params.per_ampere_T.size(); ++i) {
+    params.per_ampere_T[i] = Eigen::Vector3d(slot.triple(motor_field(i + 1)).data());
   }
-
-  void set(const io::BodyMotion& motion) {
-    field_B_T_ = soft_iron_ * Eigen::Vector3d(motion.magnetic_field_B_T) +
-                 pack_per_ampere_T_ * motion.battery_current_A;
-    for (std::size_t i = 0; i < per_ampere_T_.size(); ++i) {
-      field_B_T_ += per_ampere_T_[i] * motion.rotor_bus_current_A[i];
-    }
-  }
-  std::array<double, 3> along_part_T() const {
-    return turned(mounting_, field_B_T_ + hard_iron_B_T_);
-  }
-  const Mounting& mounting() const { return mounting_; }
-
- private:
-  Mounting mounting_;
-  Eigen::Vector3d hard_iron_B_T_, pack_per_ampere_T_;
-  Eigen::Matrix3d soft_iron_;
-  std::array<Eigen::Vector3d, io::kMostMotors> per_ampere_T_;  // index: motor number - 1
-  Eigen::Vector3d field_B_T_ = Eigen::Vector3d::Zero();
-};
+  return params;
+}
 
 class Hmc5883lDevice final : public RackDevice {
  public:
   explicit Hmc5883lDevice(DeviceSlot& slot)
-      : field_(slot),
+      : field_(field_of(slot)),
         part_(
             slot.rack().events(), part_of(slot),
             [this](Nanoseconds) { return field_.along_part_T(); },
@@ -109,7 +87,7 @@ class Hmc5883lDevice final : public RackDevice {
 class FieldNodeDevice final : public RackDevice {
  public:
   explicit FieldNodeDevice(DeviceSlot& slot)
-      : field_(slot),
+      : field_(field_of(slot)),
         node_(
             slot.rack().events(), slot.can(),
             {.node = can_node_of(slot, "org.whirlstand.field", kNode),
@@ -146,12 +124,10 @@ void add_physics(std::vector<DeviceKey>& keys) {
                      .with(std::vector<double>{0.0, 0.0, 0.0}));
   keys.push_back(per_ampere_key("params.pack_field", Eigen::Vector3d::Zero(),
                                 "that each ampere out of the pack adds"));
-  const auto usual = plant::MagnetometerParams{}.per_ampere_T;
+  const auto usual_T = usual_motor_fields_T();
   for (std::size_t motor = 1; motor <= io::kMostMotors; ++motor) {
-    const Eigen::Vector3d field_T =
-        motor <= usual.size() ? usual[motor - 1] : Eigen::Vector3d::Zero();
-    keys.push_back(
-        per_ampere_key(motor_field(motor), field_T, "that each ampere of this motor's adds"));
+    keys.push_back(per_ampere_key(motor_field(motor), usual_T[motor - 1],
+                                  "that each ampere of this motor's adds"));
   }
 }
 

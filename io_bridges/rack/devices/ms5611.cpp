@@ -4,17 +4,13 @@
 //   Rotors    their thrust over the area of their discs, of which the frame feels rotor_share: a step
 //             when they start (plant/sensors/barometer.hpp)
 //   Left out  self-heating: the part is as warm as the air
-#include <algorithm>
-
 #include "io_bridges/devices/air_node.hpp"
 #include "io_bridges/rack/devices/can_node_keys.hpp"
 #include "io_bridges/rack/devices/table.hpp"
-#include "plant/sensors/barometer.hpp"
+#include "io_bridges/rack/models/sensed_air.hpp"
 
 namespace whirl::rack {
 namespace {
-
-constexpr double kDryAir_JpkgK = 287.05287;  // [USSA76]
 
 bool on_i2c(const DeviceSlot& slot) {
   return slot.text("bus").starts_with("i2c");
@@ -64,37 +60,10 @@ io::Ms5611::Params part_of(DeviceSlot& slot) {
   return params;
 }
 
-// The air about the part and what the part makes of it.
-class SensedAir {
- public:
-  explicit SensedAir(DeviceSlot& slot)
-      : barometer_(physics_of(slot), slot.rack().seed(), slot.name()) {}
-
-  void set(const io::BodyMotion& motion) {
-    temperature_K_ = motion.air_temperature_K;
-    truth_.static_pressure_Pa = motion.static_pressure_Pa;
-    truth_.air_density_kgpm3 = motion.static_pressure_Pa / (kDryAir_JpkgK * temperature_K_);
-    for (int i = 0; i < 3; ++i) truth_.v_AB_B_mps[i] = motion.v_AB_B_mps[i];
-    std::copy(std::begin(motion.rotor_thrust_N), std::end(motion.rotor_thrust_N),
-              truth_.thrust_N.begin());
-  }
-  io::Ms5611::Truth sense(Nanoseconds now) {
-    const double dt_s = static_cast<double>(now - sensed_ns_) * 1e-9;
-    sensed_ns_ = now;
-    return {barometer_.sample_Pa(dt_s, truth_), temperature_K_};
-  }
-
- private:
-  plant::Barometer barometer_;
-  plant::Truth truth_;
-  double temperature_K_ = io::BodyMotion{}.air_temperature_K;
-  Nanoseconds sensed_ns_ = 0;
-};
-
 class Ms5611Device final : public RackDevice {
  public:
   explicit Ms5611Device(DeviceSlot& slot)
-      : air_(slot),
+      : air_(physics_of(slot), slot.rack().seed(), slot.name()),
         part_(
             slot.rack().events(), part_of(slot),
             [this](Nanoseconds now) { return air_.sense(now); }, &slot.rack().faults(),
@@ -117,7 +86,7 @@ class Ms5611Device final : public RackDevice {
 class AirNodeDevice final : public RackDevice {
  public:
   explicit AirNodeDevice(DeviceSlot& slot)
-      : air_(slot),
+      : air_(physics_of(slot), slot.rack().seed(), slot.name()),
         node_(
             slot.rack().events(), slot.can(), can_node_of(slot, "org.whirlstand.air", kNode),
             part_of(slot), [this](Nanoseconds now) { return air_.sense(now); },

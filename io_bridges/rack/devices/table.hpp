@@ -30,6 +30,7 @@
   TYPE(can_port)                 \
   TYPE(pod_replay)               \
   TYPE(pod_host)                 \
+  TYPE(pod_parts)                \
   TYPE(power_stage)              \
   TYPE(pulse_source)             \
   TYPE(volts)                    \

@@ -152,7 +152,9 @@ struct NearIdeal {
     f.tip_radius_m = R;
     f.blade_count = 2;
     f.flap_rad.mean = coning_rad;
-    return ring_loads(ring, f, 0.0, 0.0);
+    RingLoads loads;
+    ring_loads(ring, f, 0.0, 0.0, loads);
+    return loads;
   }
 };
 

@@ -1,6 +1,6 @@
 // Two boards' buses joined by a wire: a master that is driven by hand leads, a slave of a part follows, each
 // with its own events and in a thread of its own, as their processes would be.
-#include "io_bridges/qemu/board/wire_ends.hpp"
+#include "io_bridges/qemu/board/i2c_wire.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -161,10 +161,10 @@ class FarBus : public ::testing::Test {
     slave_ = std::make_unique<SlowSlave>(there_.events, there_.bus, hold_ns);
     auto ear = std::make_unique<io::I2cBus>("ear");
     ear_ = ear.get();
-    here_.ends.lead(here_.bus, std::move(ear), kAddress, end());
-    there_.ends.follow(there_.bus, end());
+    here_.ends.lead(end()).value()->port<LeaderI2c>(0, here_.bus).add(kAddress, std::move(ear));
+    there_.ends.follow(end(), shared_).value()->port<FollowerI2c>(0, there_.bus);
   }
-  io::BoardWire end() { return std::move(io::BoardWire::attach(dup(wire_.value().fd())).value()); }
+  int end() { return dup(wire_.value().fd()); }
   void run(int grains) {
     for (int k = 0; k < grains; ++k, now_ns_ += kGrain_ns) {
       std::thread follower([this] { there_.step(now_ns_, now_ns_ + kGrain_ns); });
@@ -178,6 +178,7 @@ class FarBus : public ::testing::Test {
   io::I2cBus* ear_ = nullptr;
   std::unique_ptr<SlowSlave> slave_;
   Nanoseconds now_ns_ = 0;
+  bool shared_ = false;
 };
 
 TEST_F(FarBus, AWriteArrivesToTheNanosecondAndItsAcknowledgesComeBack) {
@@ -211,6 +212,21 @@ TEST_F(FarBus, AReadHasTheBytesThatWereReadyWhenTheClockRose) {
   EXPECT_EQ(master_.rose_at, (std::vector<Nanoseconds>{129'500, 159'000, 188'500}));
 }
 
+// For it does not know what comes on its other buses.
+TEST_F(FarBus,
+       WithOtherBusesOnItsWireTheFollowerNeverRunsAheadAndTheEndOfAHoldIsSeenAtTheNextLook) {
+  shared_ = true;
+  join(7'300);
+  master_.at(100'000, false, {1, 2});
+  run(2);
+  EXPECT_EQ(slave_->log, "AwwP");
+  // 7.3 us are seen after 8; the next byte follows from there.
+  EXPECT_EQ(master_.rose_at, (std::vector<Nanoseconds>{130'500, 161'000, 191'500}));
+  EXPECT_EQ(slave_->at, (std::vector<Nanoseconds>{122'500, 153'000, 183'500, 214'000}));
+  there_.ends.run_ends(now_ns_);
+  EXPECT_TRUE(there_.findings.empty());
+}
+
 // 0.3 ms are six questions; the one at 0.85 ms is held across the boundary.
 TEST_F(FarBus, ALongHoldEndsWhenTheSlaveLetsGoAlsoBeyondABoundary) {
   join(300'000);
@@ -228,7 +244,7 @@ TEST_F(FarBus, AMasterThatGivesUpIsHeardLateByTheCapAtMostAndThatIsTold) {
   EXPECT_EQ(master_.stopped_at, 100'000 + 130'000);
   ASSERT_EQ(slave_->log, "AP");
   EXPECT_GT(slave_->at[1], master_.stopped_at);
-  EXPECT_LE(slave_->at[1], master_.stopped_at + FollowerEnd::kHeld_ns);
+  EXPECT_LE(slave_->at[1], master_.stopped_at + FollowerWire::kHeld_ns);
   there_.ends.run_ends(now_ns_);
   ASSERT_EQ(there_.findings.size(), 1u);
   EXPECT_NE(there_.findings[0].what.find("1 conditions came late"), std::string::npos)

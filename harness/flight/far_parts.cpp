@@ -1,0 +1,51 @@
+#include "harness/flight/far_parts.hpp"
+
+#include <span>
+
+namespace whirl::flight {
+namespace {
+
+constexpr std::uint16_t kLine = 1;  // the UART of a pod's host
+
+}  // namespace
+
+bool FarParts::hears(const io::Header& head) const {
+  return head.kind == io::Kind::uart_received && head.port == kLine && !boards_.empty() &&
+         head.board == boards_.front();
+}
+
+void FarParts::on_message(const io::Reader& message) {
+  for (const std::uint8_t byte : message.payload()) {
+    if (byte != '\n') {
+      coming_ += static_cast<char>(byte);
+      continue;
+    }
+    heard_.push_back(coming_);
+    coming_.clear();
+    open_ = false;
+  }
+}
+
+void FarParts::send(std::int64_t t_ns, const io::BodyMotion& motion, io::Batch& sensed) {
+  for (const std::uint8_t board : boards_) {
+    const io::Header head{t_ns, io::Kind::body_motion, board, 0, 0};
+    sensed.add(head, {{reinterpret_cast<const std::uint8_t*>(&motion), sizeof motion}});
+  }
+  if (to_send_.empty()) return;
+  const io::Header head{t_ns, io::Kind::uart_frame, boards_.front(), kLine, 0};
+  sensed.add(head, {{reinterpret_cast<const std::uint8_t*>(to_send_.data()), to_send_.size()}});
+  to_send_.clear();
+}
+
+Result<Done> FarParts::say(const std::string& line) {
+  if (boards_.empty()) {
+    return Error{ErrorKind::bad_input, "", "nobody listens to lines here",
+                 "t:ask is for stands, and for the host of a pod"};
+  }
+  if (open_) return Error{ErrorKind::bad_input, "", "the line before is not answered yet", ""};
+  open_ = true;
+  to_send_ = line + "\n";
+  return Done{};
+}
+
+}  // namespace whirl::flight
