@@ -6,8 +6,10 @@
 #                                               host: needs the images, QEMU or a fast build, so no sanitizers;
 #                                               guest: needs the guest's kernel, fails outside (./whirl test --guest);
 #                                               COST: the longest ones start first
-#   whirl_guest_script(name SCRIPT file [USES target ...] [ARGUMENTS ...] [TIMEOUT s])   a script of label guest;
-#                                               it is given the paths of the programs that it uses, then the arguments
+#   whirl_guest_script(name SCRIPT file [USES target ...] [ARGUMENTS ...] [TIMEOUT s] [OWN_CLOCK])   a script of label
+#                                               guest; it is given the paths of the programs that it uses, then the
+#                                               arguments. OWN_CLOCK: of label guest_clock, in a guest whose time is
+#                                               its instructions (cmake/guest/run.sh), and TIMEOUT is of that time
 include_guard()
 include(cmake/mutate.cmake)
 
@@ -124,7 +126,7 @@ function(whirl_test name)
 endfunction()
 
 function(whirl_guest_script name)
-  cmake_parse_arguments(ARG "" "TIMEOUT;SCRIPT" "USES;ARGUMENTS" ${ARGN})
+  cmake_parse_arguments(ARG "OWN_CLOCK" "TIMEOUT;SCRIPT" "USES;ARGUMENTS" ${ARGN})
   if(NOT ARG_TIMEOUT)
     set(ARG_TIMEOUT 300)
   endif()
@@ -135,5 +137,9 @@ function(whirl_guest_script name)
   endforeach()
   add_test(NAME ${name} COMMAND ${PROJECT_SOURCE_DIR}/cmake/guest/inside.sh
                                 ${CMAKE_CURRENT_SOURCE_DIR}/${ARG_SCRIPT} ${programs} ${ARG_ARGUMENTS})
-  set_tests_properties(${name} PROPERTIES TIMEOUT ${ARG_TIMEOUT} LABELS guest)
+  set(label guest)
+  if(ARG_OWN_CLOCK)
+    set(label guest_clock)
+  endif()
+  set_tests_properties(${name} PROPERTIES TIMEOUT ${ARG_TIMEOUT} LABELS ${label})
 endfunction()

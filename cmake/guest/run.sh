@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Runs COMMAND as root in a guest of QEMU: Debian's own kernel over this machine's files, read-only, with CAN, uhid and
-# I2C that the machine itself may lack.  run.sh FOLDER SECONDS COMMAND...; FOLDER as prepare.sh left it
+# I2C that the machine itself may lack.  run.sh [--own-clock] FOLDER SECONDS COMMAND...; FOLDER as prepare.sh left it
 #
 #   Exit code  COMMAND's, 0 to 123; 124: it did not end within SECONDS; 125: the guest did not get as far as COMMAND
 #              (no boot, a module missing), and says why
@@ -8,7 +8,15 @@
 #   Speed      QEMU translates (no KVM: a host may offer it and still boot no stock kernel): 2 s to boot; whole
 #              numbers at nearly the machine's speed, floats 26 to 50 times slower. One core: with two, one round
 #              trip of a HID report takes 6.5 ms on a busy host in place of 0.1 ms
+#   Own clock  the guest's time is its instructions, 2 ns each, and leaps to the next timer when it has nothing to do:
+#              a busy machine makes it slow and never late, and waiting costs nothing. It leaps also while it waits for
+#              a file of this machine: who times something there keeps it busy meanwhile (standin_run.sh)
 set -euo pipefail
+clock=()
+if [[ $1 == --own-clock ]]; then
+  clock=(-icount shift=1,sleep=off)
+  shift
+fi
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 folder=$(cd "$1" && pwd)
 seconds=$2
@@ -19,13 +27,13 @@ mkdir "$run/report"
 mkfifo "$run/output"
 printf '%q ' exec "$@" >"$run/report/job"
 modules=$(awk '$1 == "then" { sub(/=/, " ", $2); printf "%s ", $2 }' "$here/modules.txt")
-printf '%s=%q\n' folder "$folder" checkout "$PWD" modules "$modules" >"$run/report/settings"
+printf '%s=%q\n' folder "$folder" checkout "$PWD" modules "$modules" own_clock "${clock:+1}" >"$run/report/settings"
 
 # Reads on when nobody listens any more, for QEMU would wait for ever.
 tee --output-error=warn "$folder/output.txt" <"$run/output" &
 listener=$!
 status=0
-timeout -k 5 "$seconds" qemu-system-x86_64 -accel tcg,tb-size=256 -M q35 -cpu max -smp 1 -m 1024 \
+timeout -k 5 "$seconds" qemu-system-x86_64 -accel tcg,tb-size=256 "${clock[@]}" -M q35 -cpu max -smp 1 -m 1024 \
   -nodefaults -no-user-config -display none -no-reboot \
   -kernel "$folder/kernel.elf" -initrd "$folder/first.cpio" \
   -append "console=ttyS0 quiet panic=-1 reboot=t mitigations=off random.trust_cpu=on cryptomgr.notests audit=0 apparmor=0" \

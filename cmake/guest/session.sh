@@ -11,7 +11,8 @@ give_up() {
 }
 $b mount -t 9p -o trans=virtio,version=9p2000.L,rw,cache=none,msize=524288 report $report ||
   give_up "no folder for the report"
-. $report/settings  # folder: of prepare.sh; checkout; modules
+. $report/settings  # folder: of prepare.sh; checkout; modules; own_clock
+export WHIRL_OWN_CLOCK=$own_clock
 $b mkdir -p /dev/pts /dev/shm
 $b mount -t devpts -o gid=5,mode=620,ptmxmode=666 devpts /dev/pts
 $b mount -t tmpfs shm /dev/shm

@@ -33,6 +33,7 @@ class Pacer {
   // The virtual time of one of the host's. Pre: a wait has set the anchor.
   std::int64_t virtual_ns(std::int64_t host_ns) const;
   const Lateness& lateness() const { return lateness_; }
+  void count_anew() { lateness_ = {}; }  // what was late so far does not matter
 
  private:
   HostClock& clock_;

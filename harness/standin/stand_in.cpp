@@ -26,6 +26,7 @@ Result<Done> StandIn::run() {
   if (const auto started = lockstep_.start(); !started) error = started.error();
   while (!error) {
     pacer_.wait_for(lockstep_.now_ns());
+    tell();
     {
       const std::scoped_lock lock(mutex_);
       if (ending_) break;
@@ -39,7 +40,6 @@ Result<Done> StandIn::run() {
     hand_out();
     if (!state) error = state.error();
     if (!state || state.value() != TargetState::running) break;
-    tell();
   }
   lockstep_.stop();
   const std::scoped_lock lock(mutex_);
@@ -54,6 +54,11 @@ void StandIn::end() {
   ending_ = true;
 }
 
+void StandIn::heard() {
+  if (!heard_) pacer_.count_anew();
+  heard_ = true;
+}
+
 // What came to the wires since the last step is in this one.
 void StandIn::take_in() {
   const std::int64_t now_ns = lockstep_.now_ns();
@@ -61,12 +66,14 @@ void StandIn::take_in() {
   if (options_.serial) {
     const std::size_t size = options_.serial->read(bytes);
     if (size > 0) {
+      heard();
       lockstep_.to_send().add(io::Kind::uart_frame, options_.uart, now_ns, bytes.data(),
                               static_cast<std::uint32_t>(size));
     }
   }
   const std::scoped_lock lock(mutex_);
   for (const std::uint32_t number : fresh_) {
+    heard();
     const bench::Transfer& transfer = open_.at(number).transfer;
     const io::I2cOrder order{transfer.address, transfer.read, number};
     lockstep_.to_send().add(io::Kind::i2c_order, options_.i2c, now_ns, order, transfer.write.data(),
@@ -97,6 +104,7 @@ Result<Done> StandIn::take_in_can(std::int64_t now_ns) {
     if (!got) return got.error();
     if (!got.value()) return Done{};
     if (got.value()->own || got.value()->trouble) continue;
+    heard();
     lockstep_.to_send().add(io::Kind::can_order, options_.can_bus, now_ns,
                             io::to_message(got.value()->frame));
   }
@@ -124,6 +132,7 @@ void StandIn::answer(const io::Reader& reply) {
   changed_.notify_all();
 }
 
+// When it is due: who reads the line takes the time at which it comes for that of the measurement.
 void StandIn::tell() {
   if (!options_.instruments || lockstep_.now_ns() % options_.told_every_ns != 0) return;
   std::string line;

@@ -4,7 +4,8 @@
 //           the board's can_port
 //   Wires   its serial line on a pseudo-terminal, its I2C slave by transfers that wait for their answer, what a load
 //           cell and meters would say as lines of text on another pseudo-terminal
-//   Pace    of the host's clock, as a pacer holds it; a host that is late is told of in lateness()
+//   Pace    of the host's clock, as a pacer holds it; a host that is late is told of in lateness(), from the first byte
+//           or frame on that somebody has sent it: before, nobody waits for it
 //   Thread  run() is one thread's; transfer() and end() may be called by any other
 //   Left out  the wire's own noise; a USB bridge's time, which is its model's
 #pragma once
@@ -59,6 +60,7 @@ class StandIn {
     bench::Transfer transfer;
     std::optional<bench::TransferOutcome> outcome;
   };
+  void heard();
   void take_in();
   Result<Done> take_in_can(std::int64_t now_ns);
   void hand_out_can(const io::Reader& passed);
@@ -77,6 +79,7 @@ class StandIn {
   std::map<std::uint32_t, Waiting> open_;
   std::vector<std::uint32_t> fresh_;  // not yet given to the board
   std::uint32_t number_ = 0;
+  bool heard_ = false;  // somebody is at its wires
   bool ending_ = false, ended_ = false;
 };
 

@@ -50,7 +50,7 @@ void add_controls(msghdr& message, const PlayedKernel::Incoming& in) {
 
 using whirl::io::PlayedKernel;
 
-// The linker's names. NOLINTBEGIN(bugprone-reserved-identifier)
+// Named as the linker's --wrap has them.
 extern "C" {
 
 int __real_socket(int, int, int);
@@ -151,4 +151,3 @@ int __wrap_clock_gettime(clockid_t clock, timespec* out) {
 }
 
 }  // extern "C"
-// NOLINTEND(bugprone-reserved-identifier)
