@@ -284,9 +284,9 @@ void expect_fixes(const GpsClient& gps) {
   EXPECT_EQ(fix.latitude_e7_deg, 473'977'000);
   EXPECT_EQ(fix.longitude_e7_deg, 85'456'000);
   EXPECT_EQ(fix.height_mm, 488'000);
-  EXPECT_EQ(fix.v_north_cmps, 125);
-  EXPECT_EQ(fix.v_east_cmps, -50);
-  EXPECT_EQ(fix.v_down_cmps, 25);
+  EXPECT_EQ(fix.v_north_mmps, 1250);
+  EXPECT_EQ(fix.v_east_mmps, -500);
+  EXPECT_EQ(fix.v_down_mmps, 250);
 }
 
 TEST(PodOutputs, TheFlightImagesDriverSetsUpTheGpsAndReadsItsSolutions) {
