@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # Twenty runs of a flight of five images have one digest, whatever the host does meanwhile: alone, beside processes
 # that compute without end, on one core, on two. Takes some minutes, so nobody runs it but by hand and by night.
-#   chain_digests.sh PROGRAM PLAN_FILE [RUNS_OF_EACH]
+#   chain_digests.sh PROGRAM PLAN_FILE PLAN [RUNS_OF_EACH]
 set -euo pipefail
-program=$1 plan=$2 runs=${3:-5}
+program=$1 plan=$2 name=$3 runs=${4:-5}
 scratch=$(mktemp -d)
 busy=()
 leave() {
@@ -12,16 +12,16 @@ leave() {
 }
 trap leave EXIT
 
-# fly NAME COMMAND...: so many times, by way of that command.
+# fly WAY COMMAND...: so many times, by way of that command.
 fly() {
-  local name=$1 k
+  local way=$1 k
   shift
   for ((k = 0; k < runs; ++k)); do
-    "$@" "$program" run --out "$scratch/out" "$plan" >"$scratch/told" || {
+    "$@" "$program" run --out "$scratch/out" "$plan" --only "$name" >"$scratch/told" || {
       cat "$scratch/told"
       exit 1
     }
-    sed -n "s/^PASS.* \([0-9.]*x\), seed .*, digest \([0-9a-f]*\)$/\2 $name \1/p" "$scratch/told" | tee -a "$scratch/digests"
+    sed -n "s/^PASS.* \([0-9.]*x\), seed .*, digest \([0-9a-f]*\)$/\2 $way \1/p" "$scratch/told" | tee -a "$scratch/digests"
     rm -rf "$scratch/out"
   done
 }
