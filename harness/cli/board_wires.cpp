@@ -84,8 +84,11 @@ std::vector<Pair> pairs_of(const plan::Plan& plan) {
     const auto same = std::find_if(pairs.begin(), pairs.end(), [&](const Pair& pair) {
       return pair.leader == wire.leader && pair.follower == wire.follower;
     });
-    Pair& pair = same != pairs.end() ? *same : pairs.emplace_back(wire.leader, wire.follower);
-    pair.wires.push_back(&wire);
+    if (same != pairs.end()) {
+      same->wires.push_back(&wire);
+    } else {
+      pairs.push_back({wire.leader, wire.follower, {&wire}});
+    }
   }
   return pairs;
 }
