@@ -8,7 +8,7 @@
 #                                               COST: the longest ones start first
 #   whirl_guest_script(name SCRIPT file [USES target ...] [ARGUMENTS ...] [TIMEOUT s] [OWN_CLOCK])   a script of label
 #                                               guest; it is given the paths of the programs that it uses, then the
-#                                               arguments. OWN_CLOCK: of label guest_clock, in a guest whose time is
+#                                               arguments. OWN_CLOCK: of label guest_night, in a guest whose time is
 #                                               its instructions (cmake/guest/run.sh), and TIMEOUT is of that time
 include_guard()
 include(cmake/mutate.cmake)
@@ -139,7 +139,7 @@ function(whirl_guest_script name)
                                 ${CMAKE_CURRENT_SOURCE_DIR}/${ARG_SCRIPT} ${programs} ${ARG_ARGUMENTS})
   set(label guest)
   if(ARG_OWN_CLOCK)
-    set(label guest_clock)
+    set(label guest_night)
   endif()
   set_tests_properties(${name} PROPERTIES TIMEOUT ${ARG_TIMEOUT} LABELS ${label})
 endfunction()
