@@ -35,7 +35,8 @@ TEST(CheckBoard, WhatIsWrongWithADeviceIsSaidWithWhatThereIs) {
       "ms5611_dronecan, hmc5883l_dronecan, ublox_m8_dronecan, battery_dronecan, ublox_6, ublox_m8, "
       "cppm, sbus, "
       "mavlink_link, serial, "
-      "i2c_master, can_port, pod_replay, pod_host, power_stage, pulse_source, volts, jumper)");
+      "i2c_master, can_port, pod_replay, pod_host, pod_parts, power_stage, pulse_source, volts, "
+      "jumper)");
   BoardDevice device = serial("t", "usart1");
   device.keys["colour"] = "red";
   EXPECT_EQ(of({device}), "colour: is no key of the type serial (it has name, type, bus, baud)");
