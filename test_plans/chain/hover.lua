@@ -44,7 +44,7 @@ chain_plan("chain hover", { timeout = "60 s", parity = true, of_escs = { "fw::es
   t:expect(hover:rms_error("offset", "0 m"), "hover: sideways RMS error"):at_most "10 cm"
   t:expect(hover:rms "tilt", "hover: tilt RMS"):at_most "3 deg"
   for motor = 1, 4 do
-    t:expect(hover:mean("bus_current_" .. motor), "hover: bus current of motor " .. motor):within("1.25 A", "1.45 A")
+    t:expect(hover:mean("bus_current_" .. motor), "hover: bus current of motor " .. motor):within("1.27 A", "1.55 A")
   end
   tilt:stop()
   lands(t)
