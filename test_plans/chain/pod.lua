@@ -1,7 +1,7 @@
 -- The flight image on its board, its IMU, barometer and magnetometer played by the pod image on a board of its own: SPI
 -- and I2C join the two, byte by byte in time; the line of data-ready comes 100 us later than the pod puts it out. Limits
--- are those of test_plans/flight/hover.lua. A register's answer has half a period of 656 kHz, 762 ns: as much must be
--- left as the part's own limit of 1 MHz would take of it, 262 ns. Jitter of the IMU's task: hover's 20 us, and the 20 us
+-- are those of test_plans/flight/hover.lua. A register's answer has half a period of 656 kHz, 762 ns: half of that
+-- is to be left. Jitter of the IMU's task: hover's 20 us, and the 20 us
 -- within which the pod's data-ready follows a sample (docs/pod.md).
 include "include/flights.lua"
 
@@ -42,7 +42,7 @@ plan "pod hover" {
     t:expect(figure "spi_other_bytes", "bytes of answers on SPI"):at_least(100e3)
     t:expect(figure "spi_first_late" + figure "spi_other_late", "bytes not prepared in time"):equal(0)
     t:expect(figure "spi_first_least_wait_ns", "slack of being ready again, ns"):at_least(200)
-    t:expect(figure "spi_other_least_wait_ns", "slack of an answer, ns"):at_least(262)
+    t:expect(figure "spi_other_least_wait_ns", "slack of an answer, ns"):at_least(381)
     for _, count in ipairs { "lost", "late", "damaged", "oddities", "overlaps", "late_rearm", "unsent" } do
       t:expect(figure("pod_" .. count), "the pod's count of " .. count):equal(0)
     end
