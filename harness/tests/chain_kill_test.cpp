@@ -34,8 +34,7 @@ std::vector<pid_t> children_of(pid_t pid) {
 
 pid_t start_chain(const std::string& output) {
   const std::string line = std::string("exec ") + WHIRL_PROGRAM + " run " + WHIRL_ROOT +
-                           "/test_plans/chain/hover.lua --only 'chain hover' >" + output +
-                           " 2>&1";
+                           "/test_plans/chain/hover.lua --only 'chain hover' >" + output + " 2>&1";
   const pid_t pid = fork();
   if (pid == 0) {
     execl("/bin/sh", "sh", "-c", line.c_str(), nullptr);
