@@ -279,7 +279,7 @@ TEST(BoardFile, AMistakeIsToldWithItsLineAndWithWhatThereIs) {
       "hmc5883l, sd_card, eeprom_24xx, battery_sense, current_sense, esc_i2c, esc_dronecan, "
       "mpu6000_dronecan, ms5611_dronecan, hmc5883l_dronecan, ublox_m8_dronecan, battery_dronecan, "
       "ublox_6, ublox_m8, cppm, sbus, mavlink_link, serial, i2c_master, can_port, "
-      "pod_replay, pod_host, power_stage, "
+      "pod_replay, pod_host, pod_parts, power_stage, "
       "pulse_source, volts, jumper)");
   EXPECT_EQ(said("{ name = 'b', type = 'serial', bus = 'usart2', baud = '1 baud' }"),
             "b.lua:3: devices[2].baud: 1 baud is outside 50..1.2e+07 baud");

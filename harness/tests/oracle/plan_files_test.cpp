@@ -127,13 +127,32 @@ TEST(PlanFile, ABoardInTheDevicesPlaceAndWhatIsFlashedBesideItsImageAreTaken) {
   EXPECT_NE(refused("b.esc1", "b.i2c2").find("a wire joins two boards"), std::string::npos);
 }
 
+TEST(PlanFile, ABoardInTheDevicesPlaceOnSpiHasItsPinsAndTheLatencyOfItsLine) {
+  const auto wire = [](const std::string& more) {
+    return load(nodes("wires = { { from = 'a.imu', to = 'b.spi1'" + more + " } },"));
+  };
+  const Loaded loaded = wire(", select = 'PA15', ready = 'PC4', latency = '20 us'");
+  ASSERT_EQ(loaded.plans.size(), 1u) << loaded.error;
+  const PlanBoardWire& taken = loaded.plans[0].board_wires.at(0);
+  EXPECT_EQ(taken.select, "PA15");
+  EXPECT_EQ(taken.ready, "PC4");
+  EXPECT_EQ(taken.latency_ns, 20'000);
+  EXPECT_EQ(wire(", select = 'PA15'").plans.at(0).board_wires.at(0).latency_ns, 100'000);
+  EXPECT_NE(wire("").error.find("wires[1].select"), std::string::npos) << wire("").error;
+  for (const char* latency : {"1 us", "2 ms"}) {
+    const std::string error =
+        wire(std::string(", select = 'PA15', latency = '") + latency + "'").error;
+    EXPECT_NE(error.find("a line's latency is 2 us to 1 ms"), std::string::npos) << error;
+  }
+}
+
 TEST(PlanFile, RefusesNodesAndWiresThatLeadNowhere) {
   const auto refused = [](const std::string& from, const std::string& to) {
     return load(nodes("wires = { { from = '" + from + "', to = '" + to + "' } },")).error;
   };
   EXPECT_NE(refused("a.usart1", "a.usart2").find("wires[1].to: a wire joins two boards"),
             std::string::npos);
-  for (const char* end : {"c.usart1", "a.spi1", "a", "a.usart"}) {
+  for (const char* end : {"c.usart1", "a.can1", "a", "a.usart"}) {
     EXPECT_NE(refused("b.usart1", end).find("is no UART of a node"), std::string::npos) << end;
   }
 }
