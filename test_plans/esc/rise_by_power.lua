@@ -29,10 +29,16 @@ local function rise(name, tags, options)
       t:expect(up:response_time "thrust", "command on the wire to 90 %"):at_most "70 ms"
       t:expect(up:overshoot "thrust", "overshoot"):at_most "10 %"
       local band = options.band or "2 %"
+      local share = tonumber(band:match "%d+") / 100
+      local function ends(record, wanted_N, words)
+        t:expect(record:final "thrust", words):within((1 - share) * wanted_N .. " N", (1 + share) * wanted_N .. " N")
+      end
+      ends(up, 3.2, "thrust after the rise")
       t:expect(up:settled("thrust", band), "settled within " .. band):at_most "150 ms"
       t:step "fall"
       local down = t:record(signals, "1 s", function() t:command { thrust = "2 N" } end)
-      t:expect(down:fall_time "thrust", "thrust fall 3.2 to 2.0 N"):at_most(options.fall or "70 ms")
+      t:expect(down:fall_time "thrust", "thrust fall 3.2 to 2.0 N"):at_most "70 ms"
+      ends(down, 2, "thrust after the fall")
       safe(t, up, "rise")
       safe(t, down, "fall")
       t:expect(t:value "armed", "still armed"):equal(1)
@@ -45,7 +51,6 @@ rise("15v7", { "esc" }, { missing = "1.1 V" })
 rise("14v0", { "esc" }, { missing = "2.8 V" })
 rise("heavy", { "esc" }, { motor = { inertia = "+12 %" } })
 rise("light", { "esc" }, { motor = { inertia = "-12 %" } })
--- There the thrust that follows from power wanders with the sensors' noise by 2 to 3 %. Not held on every seed: of 1
--- to 5 the rise holds on 1, 3 and 5; 2 overshoots by 12 %, 4 rises in 115 ms. The fall is limited by the worst of
--- these five (87 ms) and 30 % of it.
-rise("downdraft", { "esc" }, { down = "4 m/s", band = "4 %", fall = "114 ms" })
+-- There the thrust that follows from power wanders with the sensors' noise by 2 to 3 %. A falling rotor coasts, its
+-- current has gaps and power tells nothing: the image carries what it was told of the wind through that.
+rise("downdraft", { "esc" }, { down = "4 m/s", band = "4 %" })
