@@ -9,7 +9,8 @@ constexpr float kElectrical_s = 0.003f;                          // of bus curre
 constexpr Innovation kSpeedGains{.kp = 300.0f, .ki = 22500.0f};  // two poles at 150 rad/s
 constexpr float kSmoothing_s = 0.05f;                            // of CP, at constant speed
 constexpr float kCalming_s = 0.025f;                             // after a step
-constexpr float kHeld_s = 0.25f;  // how long a told inflow outlasts gaps: a rotor that coasts has them
+constexpr float kHeld_s =
+    0.25f;  // how long a told inflow outlasts gaps: a rotor that coasts has them
 constexpr float kMinSpeed_radps = 150.0f;  // below, w^3 makes noise of everything
 
 constexpr float kUsual_change =
@@ -67,7 +68,11 @@ void ThrustEstimator::update(float bus_V, float duty, float bus_A, float speed_r
   const float voltage_V = bus_V * duty_.value(), per_duty = 1.0f / duty_.value();
   current_A_ = bus_A_.update(bus_A) * per_duty;
   carry_to(w);
-  const float shaft_Nm = aerodynamic_power_W(calibration_.losses, voltage_V, current_A_, w) / w;
+  const LossMap& losses = calibration_.losses;
+  const float freed_V = freed_by_bus_V(losses, calibration_.motor.freewheel_V, voltage_V, bus_V);
+  const float shaft_W =
+      aerodynamic_power_W(losses, voltage_V, current_A_, w) + freed_V * current_A_;
+  const float shaft_Nm = shaft_W / w;
   speed_.update(shaft_Nm, w);
   const float acceleration_Nm = calibration_.motor.inertia_kgm2 * speed_.acceleration_radps2();
   const float torque_Nm = shaft_Nm - acceleration_Nm;
@@ -81,7 +86,8 @@ void ThrustEstimator::update(float bus_V, float duty, float bus_A, float speed_r
   const float unrest = share * share < 1.0f ? share * share : 1.0f;
   unrest_ -= calming_ * unrest_;
   if (unrest > unrest_) unrest_ = unrest;
-  if (!(gaps && observable())) {  // else what was told before them is carried on, and nothing mixed in
+  if (!(gaps &&
+        observable())) {  // else what was told before them is carried on, and nothing mixed in
     const float per_still_W = 1.0f / (still_CP * w * w * w);
     watts_per_ampere_ =
         per_duty * power_per_ampere_W(calibration_.losses, voltage_V, current_A_, w);
