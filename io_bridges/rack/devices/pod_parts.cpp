@@ -215,12 +215,11 @@ class PodPartsDevice final : public RackDevice {
   // ---- What is asked of it
 
   void answer(const std::string& name) {
-    for (const auto& [known, value] : figures()) {
-      if (known == name) return link_.tell(name, value);
+    if (!link_.tell(name, figures()) && !link_.tell(name, figures_of(status_))) {
+      link_.tell(name, -1);
     }
-    link_.tell(name, -1);
   }
-  std::vector<std::pair<std::string, std::int64_t>> figures() const {
+  PodFigures figures() const {
     const auto whole = [](auto value) { return static_cast<std::int64_t>(value); };
     const io::SpiSlack slack = slave_ == nullptr ? io::SpiSlack{} : slave_->slack();
     return {{"samples", whole(samples_)},
@@ -229,16 +228,7 @@ class PodPartsDevice final : public RackDevice {
             {"spi_first_least_wait_ns", slack.first.least_ns},
             {"spi_other_bytes", whole(slack.others.bytes)},
             {"spi_other_late", whole(slack.others.late)},
-            {"spi_other_least_wait_ns", slack.others.least_ns},
-            {"pod_samples", status_.samples},
-            {"pod_lost", status_.lost},
-            {"pod_late", status_.late},
-            {"pod_damaged", status_.damaged},
-            {"pod_oddities", status_.oddities},
-            {"pod_overlaps", status_.overlaps},
-            {"pod_late_rearm", status_.late_rearm},
-            {"pod_unsent", status_.unsent},
-            {"pod_turn_us", status_.longest_turn_us}};
+            {"spi_other_least_wait_ns", slack.others.least_ns}};
   }
 
   io::EventQueue& queue_;
