@@ -1,5 +1,7 @@
 #include "harness/board/node.hpp"
 
+#include <algorithm>
+
 namespace whirl {
 
 Result<NodePlace> node_place(const std::vector<Node>& nodes, const std::string& text) {
@@ -18,6 +20,11 @@ Result<NodePlace> node_place(const std::vector<Node>& nodes, const std::string& 
   return Error{ErrorKind::bad_input, "", "'" + text + "' names no board of this plan",
                "write NODE/" + (slash == std::string::npos ? text : text.substr(slash + 1)) +
                    " with NODE of: " + names};
+}
+
+bool plays_parts(const BoardDescription& board) {
+  return std::any_of(board.devices.begin(), board.devices.end(),
+                     [](const BoardDevice& device) { return device.type == "pod_parts"; });
 }
 
 std::string timing_profile(const std::vector<Node>& nodes) {

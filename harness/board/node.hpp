@@ -29,6 +29,9 @@ struct NodePlace {
 // Errors  bad_input: of several nodes none is named, or one that is not there
 Result<NodePlace> node_place(const std::vector<Node>& nodes, const std::string& text);
 
+// Its parts sense what the vehicle does, and play its ESCs: it stands for any number of devices, and turns no motor.
+bool plays_parts(const BoardDescription& board);
+
 // In words: which clock each board's time passes by.
 std::string timing_profile(const std::vector<Node>& nodes);
 

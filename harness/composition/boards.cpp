@@ -8,6 +8,7 @@
 #include <set>
 
 #include "base/check.hpp"
+#include "harness/board/node.hpp"
 #include "harness/catalogue/stand_table.hpp"
 #include "harness/catalogue/surroundings_table.hpp"
 #include "harness/catalogue/vehicle_file.hpp"
@@ -125,7 +126,7 @@ Result<std::vector<flight::FarShaft>> far_shafts(const cli::Setup& setup,
   std::vector<flight::FarShaft> shafts(params.vehicle.airframe.rotors.size());
   std::size_t found = 0;
   for (const cli::FarBoard& far : setup.far) {
-    if (far.motor == 0) continue;
+    if (far.motor == 0 || plays_parts(*far.board)) continue;
     const BoardDevice* stage = power_stage(*far.board);
     if (stage == nullptr) {
       return wrong(far.board->name + " turns no motor", "esc32v2 has a power stage");
@@ -146,18 +147,17 @@ Result<std::vector<flight::FarShaft>> far_shafts(const cli::Setup& setup,
   return shafts;
 }
 
-// Parts that sense what the vehicle does are on the first board, or behind a board in the place of one.
-bool has_far_parts(const BoardDescription& board) {
-  return std::any_of(board.devices.begin(), board.devices.end(),
-                     [](const BoardDevice& device) { return device.type == "pod_parts"; });
-}
-
-std::vector<std::uint8_t> sensing_boards(const cli::Setup& setup) {
+// Parts that sense what the vehicle does are on the first board, or behind a board in the place of one; and so are its
+// ESCs, where they are played.
+void set_far_parts(const cli::Setup& setup, flight::FlightParams& params) {
   std::set<std::uint8_t> boards;
   for (const cli::FarBoard& far : setup.far) {
-    if (has_far_parts(*far.board)) boards.insert(static_cast<std::uint8_t>(far.node));
+    if (!plays_parts(*far.board)) continue;
+    const auto node = static_cast<std::uint8_t>(far.node);
+    boards.insert(node);
+    if (far.motor != 0) params.far_escs[far.motor] = node;
   }
-  return {boards.begin(), boards.end()};
+  params.sensing_boards = {boards.begin(), boards.end()};
 }
 
 Result<std::unique_ptr<World>> make_world(const cli::Setup& setup) {
@@ -177,7 +177,7 @@ Result<std::unique_ptr<World>> make_world(const cli::Setup& setup) {
   auto far = far_shafts(setup, params.value());
   if (!far) return far.error();
   params.value().far_shafts = std::move(far.value());
-  params.value().sensing_boards = sensing_boards(setup);
+  set_far_parts(setup, params.value());
   return std::unique_ptr<World>(std::make_unique<flight::FlightWorld>(params.value(), setup.seed));
 }
 
@@ -279,7 +279,7 @@ Result<Done> set_copy(const cli::Setup& setup, BoardDescription& board) {
     return stand::set_parts(board, params.value());
   }
   const bool flies = setup.node == 0 && !setup.vehicle_file.empty();
-  const bool senses = !setup.vehicle_file.empty() && has_far_parts(setup.board);
+  const bool senses = !setup.vehicle_file.empty() && plays_parts(setup.board);
   if (!flies && !senses && setup.motor == 0) return Done{};
   auto params = vehicle_of(setup);
   if (!params) return params.error();

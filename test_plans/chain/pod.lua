@@ -1,5 +1,6 @@
--- The flight image on its board, its IMU, barometer and magnetometer played by the pod image on a board of its own: SPI
--- and I2C join the two, byte by byte in time; the line of data-ready comes 100 us later than the pod puts it out. Limits
+-- The flight image on its board, its IMU, barometer, magnetometer and four ESCs played by the pod image on a board of its
+-- own: SPI and I2C join the two, byte by byte in time; the line of data-ready comes 100 us later than the pod puts it
+-- out; what an ESC is told reaches the plant by the pod's host alone, and so comes its status back. Limits
 -- are those of test_plans/flight/hover.lua. A register's answer has half a period of 656 kHz, 762 ns: half of that
 -- is to be left. Jitter of the IMU's task: hover's 20 us, and the 20 us within which the pod's data-ready follows a sample
 -- (docs/pod.md).
@@ -16,6 +17,10 @@ local function pod_plan(name, run)
       { from = "flight.imu", to = "pod.spi1", select = "PA15", ready = "PC4", latency = "100 us" },
       { from = "flight.baro", to = "pod.i2c1" },
       { from = "flight.mag", to = "pod.i2c1" },
+      { from = "flight.esc1", to = "pod.i2c2" },
+      { from = "flight.esc2", to = "pod.i2c2" },
+      { from = "flight.esc3", to = "pod.i2c3" },
+      { from = "flight.esc4", to = "pod.i2c3" },
     },
     vehicle = "hp_quad", tags = { "chain", "nightly" }, timeout = "60 s", run = run,
   }
@@ -49,6 +54,8 @@ pod_plan("pod hover", function(t)
   t:expect(figure "spi_first_late" + figure "spi_other_late", "bytes not prepared in time"):equal(0)
   t:expect(figure "spi_first_least_wait_ns", "slack of being ready again, ns"):at_least(200)
   t:expect(figure "spi_other_least_wait_ns", "slack of an answer, ns"):at_least(381)
+  t:expect(figure "setpoints", "set-points of the four ESCs, 15 s of 50 a second each"):at_least(15 * 4 * 50)
+  t:expect(figure "setpoints_refused", "set-points with a wrong checksum"):equal(0)
   for _, count in ipairs { "lost", "late", "damaged", "oddities", "overlaps", "late_rearm", "unsent" } do
     t:expect(figure("pod_" .. count), "the pod's count of " .. count):equal(0)
   end
