@@ -22,9 +22,25 @@ Result<NodePlace> node_place(const std::vector<Node>& nodes, const std::string& 
                    " with NODE of: " + names};
 }
 
+namespace {
+
+const BoardDevice* host_of(const BoardDescription& board) {
+  const auto host = std::find_if(board.devices.begin(), board.devices.end(),
+                                 [](const BoardDevice& d) { return d.type == "pod_parts"; });
+  return host == board.devices.end() ? nullptr : &*host;
+}
+
+}  // namespace
+
 bool plays_parts(const BoardDescription& board) {
-  return std::any_of(board.devices.begin(), board.devices.end(),
-                     [](const BoardDevice& device) { return device.type == "pod_parts"; });
+  return host_of(board) != nullptr;
+}
+
+std::optional<int> can_of_host(const BoardDescription& board) {
+  const BoardDevice* host = host_of(board);
+  const auto can = host == nullptr ? std::nullopt : host->value("params.can");
+  if (!can || *can == KeyValue(0.0)) return std::nullopt;
+  return static_cast<int>(std::get<double>(*can));
 }
 
 std::string timing_profile(const std::vector<Node>& nodes) {

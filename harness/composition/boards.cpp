@@ -24,6 +24,7 @@
 #include "harness/target/bench/bench_target.hpp"
 #include "harness/target/bench/bridge_link.hpp"
 #include "harness/target/bench/node_link.hpp"
+#include "harness/target/bench/pod_line.hpp"
 #include "harness/target/bench/serial_links.hpp"
 #include "harness/target/copper_target.hpp"
 #include "harness/target/virtual_board.hpp"
@@ -229,8 +230,29 @@ Result<Done> add_masters(const cli::Setup& setup, const bench::BridgeMaker& brid
   return Done{};
 }
 
+// A pod's board is another copy of the hardware than the flight controller's.
+Result<Done> add_pods(const cli::Setup& setup, const bench::CanMaker& can, Links& links) {
+  const std::uint64_t seed = setup.seed + (std::uint64_t{1} << 32);
+  for (const bench::PodLink& link : setup.bench->pods) {
+    const auto params = vehicle_of(setup);
+    if (!params) return params.error();
+    BoardDescription board = link.parts;
+    flight::set_parts(board, params.value());
+    if (link.path.empty()) {
+      links.push_back(std::make_unique<bench::NodeLink>(
+          bench::NodeOptions{link.can, board, rack::device_types(), seed, log_of(setup, link.can),
+                             true},
+          can));
+    } else {
+      links.push_back(std::make_unique<bench::PodLine>(
+          bench::PodLineOptions{link, board, rack::device_types(), seed}));
+    }
+  }
+  return Done{};
+}
+
 // Of a vehicle: its nodes, for the flight controller.
-void add_nodes(const cli::Setup& setup, const bench::CanMaker& can, Links& links) {
+Result<Done> add_nodes(const cli::Setup& setup, const bench::CanMaker& can, Links& links) {
   for (const bench::CanBusLink& link : setup.bench->cans) {
     links.push_back(
         std::make_unique<bench::NodeLink>(bench::NodeOptions{.link = link,
@@ -240,18 +262,17 @@ void add_nodes(const cli::Setup& setup, const bench::CanMaker& can, Links& links
                                                              .log = log_of(setup, link)},
                                           can));
   }
+  return add_pods(setup, can, links);
 }
 
 Result<std::unique_ptr<Target>> bench_target(const cli::Setup& setup,
                                              const bench::BridgeMaker& bridge,
-                                             const bench::CanMaker& can) {
+                                             const bench::CanMaker& can, pacing::HostClock& clock) {
   const bench::BenchDescription& bench = *setup.bench;
   Links links;
-  if (!setup.plan.stand) {
-    add_nodes(setup, can, links);
-  } else if (const auto added = add_masters(setup, bridge, can, links); !added) {
-    return added.error();
-  }
+  const auto added =
+      setup.plan.stand ? add_masters(setup, bridge, can, links) : add_nodes(setup, can, links);
+  if (!added) return added.error();
   for (const bench::SerialLink& link : bench.serials) {
     links.push_back(std::make_unique<bench::BoardSerial>(link));
   }
@@ -267,7 +288,7 @@ Result<std::unique_ptr<Target>> bench_target(const cli::Setup& setup,
   }
   return std::unique_ptr<Target>(std::make_unique<bench::BenchTarget>(
       bench::BenchOptions{.bench = bench, .operator_stops = enter_pressed}, std::move(links),
-      host_clock()));
+      clock));
 }
 
 // What this run's copy of the hardware changes on the board: a stand's stage and instruments, a vehicle's IMU
@@ -295,8 +316,8 @@ Result<Done> set_copy(const cli::Setup& setup, BoardDescription& board) {
 
 Result<std::unique_ptr<Target>> make_target(const cli::Setup& setup,
                                             const bench::BridgeMaker& bridge,
-                                            const bench::CanMaker& can) {
-  if (setup.bench != nullptr) return bench_target(setup, bridge, can);
+                                            const bench::CanMaker& can, pacing::HostClock& clock) {
+  if (setup.bench != nullptr) return bench_target(setup, bridge, can, clock);
   VirtualBoardOptions options;
   options.board = {setup.board,
                    {.image = setup.image,
@@ -319,9 +340,13 @@ Result<std::unique_ptr<Target>> make_target(const cli::Setup& setup,
 }  // namespace
 
 cli::Composition boards_and_worlds(const std::string& root, const std::string& results,
-                                   const bench::BridgeMaker& bridge, const bench::CanMaker& can) {
+                                   const bench::BridgeMaker& bridge, const bench::CanMaker& can,
+                                   pacing::HostClock* clock) {
+  pacing::HostClock* held_by = clock == nullptr ? &host_clock() : clock;
   return {make_world,
-          [bridge, can](const cli::Setup& setup) { return make_target(setup, bridge, can); },
+          [bridge, can, held_by](const cli::Setup& setup) {
+            return make_target(setup, bridge, can, *held_by);
+          },
           root,
           results,
           bridge,
