@@ -97,13 +97,13 @@ TEST(BenchFlight, TheRealImageHoversOverItsWiresAsItDoesInLockstep) {
   const Flown lockstep = fly({}, folder.file("lockstep"), nullptr, nullptr);
   ASSERT_EQ(lockstep.code, 0) << std::string(lockstep.file["reason"]);
   const auto want = lockstep.figures();
-  // Which of two that wake at one time is first is the machine's choice: five runs differed by up to 7 % in what is small.
+  // Frames are heard 0.13 ms later than in lockstep: what an error of some millimetres makes of it wanders by 5 %.
   for (const auto& [name, got] : flown.figures()) {
     std::printf("%s: bench %.4g, lockstep %.4g\n", name.c_str(), got, want.at(name));
     const bool current = name.find("current") != std::string::npos;
     const bool error = name.find("RMS") != std::string::npos;
     if (!current && !error) continue;
-    const auto parity = stated((current ? 0.01 : 0.15) * want.at(name), "parity");
+    const auto parity = stated((current ? 0.01 : 0.1) * want.at(name), "parity");
     EXPECT_TRUE(near(got, want.at(name), parity)) << name;
   }
 }
