@@ -4,6 +4,8 @@
 #include <map>
 #include <set>
 
+#include "io_bridges/board_description/bus_kind.hpp"
+
 namespace whirl::cli {
 namespace {
 
@@ -39,12 +41,13 @@ Result<Done> check_circles(const plan::Plan& plan, const std::vector<Node>& node
 // Both ends are of one kind.
 Result<Done> check_buses(const plan::Plan& plan, const plan::PlanBoardWire& wire,
                          const BoardDevice& device, const std::string& name) {
-  const bool i2c = device.bus.starts_with("i2c") && device.address >= 0;
-  const bool spi = device.bus.starts_with("spi");
-  if (!i2c && !spi) return wrong(plan, name + " is no target on an I2C or SPI bus", "");
-  if (spi != wire.bus.starts_with("spi")) {
+  const BusKind kind = bus_kind(device.bus);
+  if (kind == BusKind::none || (kind == BusKind::i2c && device.address < 0)) {
+    return wrong(plan, name + " is no target on an I2C or SPI bus, and on no UART", "");
+  }
+  if (kind != bus_kind(wire.bus)) {
     return wrong(plan, name + " is on " + device.bus + ", the other end on " + wire.bus,
-                 "both are I2C, or both SPI");
+                 "both are I2C, both SPI, or both a UART");
   }
   return Done{};
 }
@@ -56,10 +59,10 @@ Result<Done> check_one_to_one(const plan::Plan& plan, const std::vector<Node>& n
   for (const plan::PlanBoardWire& wire : plan.board_wires) {
     const BoardDevice& device = *nodes[wire.leader].board.find(wire.device);
     const std::string& follower = nodes[wire.follower].name;
-    const bool spi = wire.bus.starts_with("spi");
-    const std::string master = spi ? wire.device : device.bus;
+    const bool one_only = bus_kind(wire.bus) != BusKind::i2c;  // device for the whole bus
+    const std::string master = one_only ? wire.device : device.bus;
     const auto [place, fresh] = masters.emplace(std::pair(wire.follower, wire.bus), master);
-    if (!fresh && (spi || place->second != master)) {
+    if (!fresh && (one_only || place->second != master)) {
       return wrong(plan, follower + "." + wire.bus + " has two masters",
                    "each bus of a board follows one");
     }

@@ -11,7 +11,7 @@
 
 namespace whirl::cli {
 
-// Errors  bad_input: a device that is not there, or on neither I2C nor SPI, or on another kind of bus than the other
+// Errors  bad_input: a device that is not there, or on neither I2C nor SPI nor a UART, or on another kind of bus than the other
 //         end; one that two boards take the place of; a board that two others lead, a bus with two masters, a board for
 //         two motors; leads that come back to where they began (each would wait for the other)
 Result<Done> check_board_wires(const plan::Plan& plan, const std::vector<Node>& nodes);
