@@ -5,6 +5,7 @@
 #include <set>
 
 #include "io_bridges/board_description/bus_kind.hpp"
+#include "io_bridges/board_description/bus_name.hpp"
 
 namespace whirl::cli {
 namespace {
@@ -75,6 +76,23 @@ Result<Done> check_one_to_one(const plan::Plan& plan, const std::vector<Node>& n
   return Done{};
 }
 
+// A UART that a line of the plan is on has no room for another board.
+Result<Done> check_lines(const plan::Plan& plan, const std::vector<Node>& nodes) {
+  std::set<std::pair<std::size_t, int>> lines;
+  for (const plan::PlanWire& line : plan.wires) {
+    for (const auto& end : {line.a, line.b}) lines.insert({end.node, end.uart});
+  }
+  for (const plan::PlanBoardWire& wire : plan.board_wires) {
+    if (!is_uart(wire.bus)) continue;
+    const std::string& there = nodes[wire.leader].board.find(wire.device)->bus;
+    for (const auto& [node, bus] : {std::pair(wire.leader, there), {wire.follower, wire.bus}}) {
+      if (lines.count({node, bus_number(bus).value_or(0)}) == 0) continue;
+      return wrong(plan, nodes[node].name + "." + bus + " has two wires", "");
+    }
+  }
+  return Done{};
+}
+
 // What joins the same two boards is one wire.
 struct Pair {
   std::size_t leader, follower;
@@ -115,6 +133,7 @@ Result<Done> check_board_wires(const plan::Plan& plan, const std::vector<Node>& 
     }
   }
   if (const auto led = check_circles(plan, nodes); !led) return led.error();
+  if (const auto lines = check_lines(plan, nodes); !lines) return lines.error();
   return check_one_to_one(plan, nodes);
 }
 

@@ -81,6 +81,14 @@ TEST(BoardWires, AUartIsJoinedToOneUart) {
             "wires: a.imu is on spi1, the other end on uart4");
   EXPECT_EQ(Rig(2).wire(0, "gps", 1, "usart6").wire(0, "sbus", 1, "usart6").refused(),
             "wires: b.usart6 has two masters");
+  for (const plan::PlanWire& line :
+       {plan::PlanWire{{0, 6}, {1, 1}}, plan::PlanWire{{0, 1}, {1, 2}}}) {
+    Rig rig(2);
+    rig.plan.wires.push_back(line);
+    rig.wire(0, "gps", 1, "usart2");
+    const std::string both = line.a.uart == 6 ? "a.usart6" : "b.usart2";
+    EXPECT_EQ(rig.refused(), "wires: " + both + " has two wires");
+  }
 }
 
 TEST(BoardWires, EachBoardGetsItsEndOfOneMemory) {

@@ -141,8 +141,10 @@ std::optional<UartByte> UartWireFaults::passed(UartByte byte) {
   const Nanoseconds now = queue_.now();
   if (book_.apply(FaultKind::uart_silence, number_, kAnywhere, now) != nullptr) return {};
   const Fault* loss = book_.find(FaultKind::uart_loss, number_, kAnywhere, now);
-  if (loss != nullptr && random_.uniform() < loss->value)
-    return book_.applied(*loss, now), std::nullopt;
+  if (loss != nullptr && random_.uniform() < loss->value) {
+    book_.applied(*loss, now);
+    return {};
+  }
   const Fault* flip = book_.find(FaultKind::uart_flip, number_, kAnywhere, now);
   if (flip != nullptr && random_.uniform() < flip->value) {
     book_.applied(*flip, now);
