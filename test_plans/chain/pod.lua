@@ -1,5 +1,6 @@
--- The flight image on its board, its IMU, barometer and magnetometer played by the pod image on a board of its own: SPI
--- and I2C join the two, byte by byte in time; the line of data-ready comes 100 us later than the pod puts it out. Limits
+-- The flight image on its board, its IMU, barometer, magnetometer and four ESCs played by the pod image on a board of its
+-- own: SPI and I2C join the two, byte by byte in time; the line of data-ready comes 100 us later than the pod puts it
+-- out; what an ESC is told reaches the plant by the pod's host alone, and so comes its status back. Limits
 -- are those of test_plans/flight/hover.lua. A register's answer has half a period of 656 kHz, 762 ns: half of that
 -- is to be left. Jitter of the IMU's task: hover's 20 us, and the 20 us within which the pod's data-ready follows a sample
 -- (docs/pod.md).
@@ -14,13 +15,15 @@ local function sensors()
 end
 
 local function pod_plan(name, run)
+  local wires = sensors()
+  for n = 1, 4 do wires[3 + n] = { from = "flight.esc" .. n, to = n < 3 and "pod.i2c2" or "pod.i2c3" } end
   plan(name) {
     nodes = {
       { name = "flight", image = "flight", board = "px4fmu_v1",
         watch = { "fw::imu_task", "fw::attitude_task", "fw::esc_task" } },
       { name = "pod", image = "pod", board = "pod_with_parts" },
     },
-    wires = sensors(), vehicle = "hp_quad", tags = { "chain", "nightly" }, timeout = "60 s", run = run,
+    wires = wires, vehicle = "hp_quad", tags = { "chain", "nightly" }, timeout = "60 s", run = run,
   }
 end
 
@@ -60,6 +63,8 @@ pod_plan("pod hover", function(t)
   t:expect(figure(t, "spi_other_bytes"), "bytes of answers on SPI"):at_least(100e3)
   t:expect(figure(t, "spi_first_least_wait_ns"), "slack of being ready again, ns"):at_least(200)
   t:expect(figure(t, "spi_other_least_wait_ns"), "slack of an answer, ns"):at_least(381)
+  t:expect(figure(t, "setpoints"), "set-points of the four ESCs, 15 s of 50 a second each"):at_least(15 * 4 * 50)
+  t:expect(figure(t, "setpoints_refused"), "set-points with a wrong checksum"):equal(0)
   nothing_late(t)
   lands(t)
 end)
@@ -93,18 +98,17 @@ end)
 -- the time that it takes. Outdoors nothing but the GPS tells where it is, and nothing but the receiver flies it; each is
 -- shown by being there, and by its wire being cut. Limits of a hover by GPS: test_plans/flight/include/judged_gps.lua,
 -- for a sixth of the time.
+local receivers = sensors()
+receivers[4] = { from = "flight.gps", to = "pod.usart6", fastest = "57600 baud" }
+receivers[5] = { from = "flight.sbus", to = "pod.usart2", fastest = "100000 baud" }
+
 plan "pod receivers" {
   nodes = {
     { name = "flight", image = "flight", board = "px4fmu_v1_sbus",
       watch = { "fw::imu_task", "fw::attitude_task", "fw::gps_task" } },
     { name = "pod", image = "pod", board = "pod_with_receivers" },
   },
-  wires = {
-    sensors()[1], sensors()[2], sensors()[3],
-    { from = "flight.gps", to = "pod.usart6", fastest = "57600 baud" },
-    { from = "flight.sbus", to = "pod.usart2", fastest = "100000 baud" },
-  },
-  vehicle = "hp_quad", tags = { "chain", "nightly" }, timeout = "120 s",
+  wires = receivers, vehicle = "hp_quad", tags = { "chain", "nightly" }, timeout = "120 s",
   outdoors = true, fence = { radius = "40 m", height = "20 m" },
   run = function(t)
     t:step "a fix, and sticks"

@@ -6,7 +6,6 @@
 namespace whirl::rack {
 namespace {
 
-constexpr double kPod_baud = 3e6;
 constexpr std::uint8_t kUrgent = 6, kUsual = 16, kHostNode = 100;
 
 }  // namespace
@@ -42,7 +41,7 @@ PodHostLink::PodHostLink(DeviceSlot& slot, io::PodLinkReader& reader)
       happened_(slot.rack().happened()),
       reader_(reader),
       uart_(slot.whole("params.uart")),
-      line_(queue_, {.baud = kPod_baud},
+      line_(queue_, {.baud = io::kPodBaud},
             [this](const io::UartByte& byte, const io::UartFormat& format) {
               UartPeer::send(byte, format);
             }) {

@@ -1,5 +1,6 @@
 // The host of a pod, and behind it the parts that the pod plays: an MPU-6000, an MS5611 and an HMC5883L, each the
-// model that a board of the house carries, in the plant's motion, air and field; and receivers (pod_receivers.hpp).
+// model that a board of the house carries, in the plant's motion, air and field; the four ESCs (pod_escs.hpp) and receivers
+// (pod_receivers.hpp).
 //
 //   IMU     as it is set, which the pod's status tells; each of its samples is sent as it is ready
 //   Air     PROM at the start and once a second, then pressure and temperature by turns, at the finest oversampling
@@ -14,6 +15,7 @@
 #include "io_bridges/devices/hmc5883l.hpp"
 #include "io_bridges/devices/ms5611.hpp"
 #include "io_bridges/rack/devices/imu_keys.hpp"
+#include "io_bridges/rack/devices/pod_escs.hpp"
 #include "io_bridges/rack/devices/pod_receivers.hpp"
 #include "io_bridges/rack/devices/table.hpp"
 #include "io_bridges/rack/models/inertial_sensor.hpp"
@@ -87,6 +89,8 @@ class PodPartsDevice final : public RackDevice {
         mag_(
             queue_, magnetometer_of(slot), [this](Nanoseconds) { return field_.along_part_T(); },
             &placed_, nullptr, slot.rack().finding()),
+        escs_(slot.rack(),
+              [this](std::vector<std::uint8_t> frame) { send_slow(std::move(frame)); }),
         start_(queue_, [this] { start(); }),
         next_(queue_, [this] { convert(); }) {
     sample_.watch([this](bool level, Nanoseconds now) {
@@ -95,14 +99,20 @@ class PodPartsDevice final : public RackDevice {
     placed_.watch([this](bool level, Nanoseconds now) {
       if (!level) send_field(now);
     });
+    reader_.on_setpoint([this](const io::PodSetpoint& setpoint) { escs_.told(setpoint); });
     start_.at(kStart_ns);
   }
 
   std::vector<Intake> intakes() const override {
-    return {{io::Kind::body_motion}, {io::Kind::rc_channels}, {io::Kind::uart_frame, link_.uart()}};
+    std::vector<Intake> all = PodEscs::intakes();
+    all.push_back({io::Kind::body_motion});
+    all.push_back({io::Kind::rc_channels});
+    all.push_back({io::Kind::uart_frame, link_.uart()});
+    return all;
   }
   void on_message(const io::Reader& message) override {
     if (message.header().kind == io::Kind::uart_frame) return answer(PodHostLink::asked(message));
+    if (message.header().kind == io::Kind::esc_state) return escs_.on_message(message);
     if (message.header().kind == io::Kind::rc_channels) return receivers_.on_sticks(message);
     const auto motion = message.as<io::BodyMotion>();
     motion_.set_motion(motion, message.header().t_ns);
@@ -231,6 +241,8 @@ class PodPartsDevice final : public RackDevice {
     const auto whole = [](auto value) { return static_cast<std::int64_t>(value); };
     const io::SpiSlack slack = slave_ == nullptr ? io::SpiSlack{} : slave_->slack();
     return {{"samples", whole(samples_)},
+            {"setpoints", whole(escs_.setpoints())},
+            {"setpoints_refused", whole(escs_.refused())},
             {"spi_first_bytes", whole(slack.first.bytes)},
             {"spi_first_late", whole(slack.first.late)},
             {"spi_first_least_wait_ns", slack.first.least_ns},
@@ -252,6 +264,7 @@ class PodPartsDevice final : public RackDevice {
   io::Mpu6000 imu_;
   io::Ms5611 baro_;
   io::Hmc5883l mag_;
+  PodEscs escs_;
   io::Event start_, next_;
   std::array<std::uint8_t, kSettings.size()> settings_{};
   Nanoseconds sampled_ns_ = -kSampling_ns;
@@ -280,7 +293,7 @@ DeviceType pod_parts_type() {
   for (const auto& more : {pod_link_keys(), pod_receiver_keys()}) {
     keys.insert(keys.end(), more.begin(), more.end());
   }
-  return {"pod_parts", "the host of a pod, and the sensors and receivers that it plays",
+  return {"pod_parts", "the host of a pod, and the sensors, ESCs and receivers that it plays",
           std::move(keys), make};
 }
 
