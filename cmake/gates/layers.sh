@@ -56,7 +56,7 @@ harness/board            base/ harness/board/ io_bridges/board_description/
 harness/target           base/ harness/target/ io_bridges/
 harness/target/bench     base/ harness/pacing/ harness/target/ io_bridges/
 harness/lockstep         base/ harness/lockstep/ harness/target/target.hpp harness/world/ io_bridges/messages/
-harness/plan             base/ harness/board/ harness/lua/ harness/metrics/ harness/plan/ harness/target/offers.hpp harness/world/ io_bridges/board_description/bus_name.hpp results/
+harness/plan             base/ harness/board/ harness/lua/ harness/metrics/ harness/plan/ harness/target/offers.hpp harness/world/ io_bridges/board_description/bus_name.hpp io_bridges/board_description/bus_kind.hpp results/
 harness/executive        base/ harness/board/ harness/executive/ harness/lockstep/ harness/metrics/ harness/plan/ harness/target/ harness/world/ io_bridges/devices/faults.hpp io_bridges/messages/ results/
 harness/catalogue        base/ harness/calibrate/setup.hpp harness/catalogue/ harness/flight/ harness/lua/ harness/stand/ harness/target/bench/bench_description.hpp harness/world/drawn_part.hpp io_bridges/board_description/ io_bridges/copper/channel_name.hpp io_bridges/protocols/ io_bridges/rack/ plant/ firmware/esc/core/
 harness/flight           base/ harness/flight/ harness/world/ io_bridges/board_description/ io_bridges/messages/ io_bridges/protocols/ plant/ firmware/esc/core/
