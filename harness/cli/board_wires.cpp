@@ -63,7 +63,7 @@ Result<Done> check_one_to_one(const plan::Plan& plan, const std::vector<Node>& n
       return wrong(plan, follower + "." + wire.bus + " has two masters",
                    "each bus of a board follows one");
     }
-    if (device.motor == 0) continue;
+    if (device.motor == 0 || plays_parts(nodes[wire.follower].board)) continue;
     if (!motors.emplace(wire.follower, device.motor).second) {
       return wrong(plan, follower + " takes the place of two motors' devices",
                    "a board turns one motor");
@@ -139,7 +139,8 @@ Result<std::vector<BoardWireLink>> join_boards(const plan::Plan& plan,
       end.select = wire->select;
       end.ready = wire->ready;
       if (fresh) setups[pair.follower].wires.push_back(end);
-      if (device.motor != 0) setups[pair.follower].motor = device.motor;
+      const bool turns = device.motor != 0 && !plays_parts(nodes[pair.follower].board);
+      if (turns) setups[pair.follower].motor = device.motor;
       setups[pair.leader].far.push_back({pair.follower, device.motor, &nodes[pair.follower].board});
     }
     for (WireEnd& end : setups[pair.follower].wires) {

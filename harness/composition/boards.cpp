@@ -8,6 +8,7 @@
 #include <set>
 
 #include "base/check.hpp"
+#include "harness/board/node.hpp"
 #include "harness/catalogue/stand_table.hpp"
 #include "harness/catalogue/surroundings_table.hpp"
 #include "harness/catalogue/vehicle_file.hpp"
@@ -23,6 +24,7 @@
 #include "harness/target/bench/bench_target.hpp"
 #include "harness/target/bench/bridge_link.hpp"
 #include "harness/target/bench/node_link.hpp"
+#include "harness/target/bench/pod_line.hpp"
 #include "harness/target/bench/serial_links.hpp"
 #include "harness/target/copper_target.hpp"
 #include "harness/target/virtual_board.hpp"
@@ -125,7 +127,7 @@ Result<std::vector<flight::FarShaft>> far_shafts(const cli::Setup& setup,
   std::vector<flight::FarShaft> shafts(params.vehicle.airframe.rotors.size());
   std::size_t found = 0;
   for (const cli::FarBoard& far : setup.far) {
-    if (far.motor == 0) continue;
+    if (far.motor == 0 || plays_parts(*far.board)) continue;
     const BoardDevice* stage = power_stage(*far.board);
     if (stage == nullptr) {
       return wrong(far.board->name + " turns no motor", "esc32v2 has a power stage");
@@ -146,18 +148,17 @@ Result<std::vector<flight::FarShaft>> far_shafts(const cli::Setup& setup,
   return shafts;
 }
 
-// Parts that sense what the vehicle does are on the first board, or behind a board in the place of one.
-bool has_far_parts(const BoardDescription& board) {
-  return std::any_of(board.devices.begin(), board.devices.end(),
-                     [](const BoardDevice& device) { return device.type == "pod_parts"; });
-}
-
-std::vector<std::uint8_t> sensing_boards(const cli::Setup& setup) {
+// Parts that sense what the vehicle does are on the first board, or behind a board in the place of one; and so are its
+// ESCs, where they are played.
+void set_far_parts(const cli::Setup& setup, flight::FlightParams& params) {
   std::set<std::uint8_t> boards;
   for (const cli::FarBoard& far : setup.far) {
-    if (has_far_parts(*far.board)) boards.insert(static_cast<std::uint8_t>(far.node));
+    if (!plays_parts(*far.board)) continue;
+    const auto node = static_cast<std::uint8_t>(far.node);
+    boards.insert(node);
+    if (far.motor != 0) params.far_escs[far.motor] = node;
   }
-  return {boards.begin(), boards.end()};
+  params.sensing_boards = {boards.begin(), boards.end()};
 }
 
 Result<std::unique_ptr<World>> make_world(const cli::Setup& setup) {
@@ -177,7 +178,7 @@ Result<std::unique_ptr<World>> make_world(const cli::Setup& setup) {
   auto far = far_shafts(setup, params.value());
   if (!far) return far.error();
   params.value().far_shafts = std::move(far.value());
-  params.value().sensing_boards = sensing_boards(setup);
+  set_far_parts(setup, params.value());
   return std::unique_ptr<World>(std::make_unique<flight::FlightWorld>(params.value(), setup.seed));
 }
 
@@ -229,8 +230,29 @@ Result<Done> add_masters(const cli::Setup& setup, const bench::BridgeMaker& brid
   return Done{};
 }
 
+// A pod's board is another copy of the hardware than the flight controller's.
+Result<Done> add_pods(const cli::Setup& setup, const bench::CanMaker& can, Links& links) {
+  const std::uint64_t seed = setup.seed + (std::uint64_t{1} << 32);
+  for (const bench::PodLink& link : setup.bench->pods) {
+    const auto params = vehicle_of(setup);
+    if (!params) return params.error();
+    BoardDescription board = link.parts;
+    flight::set_parts(board, params.value());
+    if (link.path.empty()) {
+      links.push_back(std::make_unique<bench::NodeLink>(
+          bench::NodeOptions{link.can, board, rack::device_types(), seed, log_of(setup, link.can),
+                             true},
+          can));
+    } else {
+      links.push_back(std::make_unique<bench::PodLine>(
+          bench::PodLineOptions{link, board, rack::device_types(), seed}));
+    }
+  }
+  return Done{};
+}
+
 // Of a vehicle: its nodes, for the flight controller.
-void add_nodes(const cli::Setup& setup, const bench::CanMaker& can, Links& links) {
+Result<Done> add_nodes(const cli::Setup& setup, const bench::CanMaker& can, Links& links) {
   for (const bench::CanBusLink& link : setup.bench->cans) {
     links.push_back(
         std::make_unique<bench::NodeLink>(bench::NodeOptions{.link = link,
@@ -240,18 +262,17 @@ void add_nodes(const cli::Setup& setup, const bench::CanMaker& can, Links& links
                                                              .log = log_of(setup, link)},
                                           can));
   }
+  return add_pods(setup, can, links);
 }
 
 Result<std::unique_ptr<Target>> bench_target(const cli::Setup& setup,
                                              const bench::BridgeMaker& bridge,
-                                             const bench::CanMaker& can) {
+                                             const bench::CanMaker& can, pacing::HostClock& clock) {
   const bench::BenchDescription& bench = *setup.bench;
   Links links;
-  if (!setup.plan.stand) {
-    add_nodes(setup, can, links);
-  } else if (const auto added = add_masters(setup, bridge, can, links); !added) {
-    return added.error();
-  }
+  const auto added =
+      setup.plan.stand ? add_masters(setup, bridge, can, links) : add_nodes(setup, can, links);
+  if (!added) return added.error();
   for (const bench::SerialLink& link : bench.serials) {
     links.push_back(std::make_unique<bench::BoardSerial>(link));
   }
@@ -267,7 +288,7 @@ Result<std::unique_ptr<Target>> bench_target(const cli::Setup& setup,
   }
   return std::unique_ptr<Target>(std::make_unique<bench::BenchTarget>(
       bench::BenchOptions{.bench = bench, .operator_stops = enter_pressed}, std::move(links),
-      host_clock()));
+      clock));
 }
 
 // What this run's copy of the hardware changes on the board: a stand's stage and instruments, a vehicle's IMU
@@ -279,7 +300,7 @@ Result<Done> set_copy(const cli::Setup& setup, BoardDescription& board) {
     return stand::set_parts(board, params.value());
   }
   const bool flies = setup.node == 0 && !setup.vehicle_file.empty();
-  const bool senses = !setup.vehicle_file.empty() && has_far_parts(setup.board);
+  const bool senses = !setup.vehicle_file.empty() && plays_parts(setup.board);
   if (!flies && !senses && setup.motor == 0) return Done{};
   auto params = vehicle_of(setup);
   if (!params) return params.error();
@@ -295,8 +316,8 @@ Result<Done> set_copy(const cli::Setup& setup, BoardDescription& board) {
 
 Result<std::unique_ptr<Target>> make_target(const cli::Setup& setup,
                                             const bench::BridgeMaker& bridge,
-                                            const bench::CanMaker& can) {
-  if (setup.bench != nullptr) return bench_target(setup, bridge, can);
+                                            const bench::CanMaker& can, pacing::HostClock& clock) {
+  if (setup.bench != nullptr) return bench_target(setup, bridge, can, clock);
   VirtualBoardOptions options;
   options.board = {setup.board,
                    {.image = setup.image,
@@ -319,9 +340,13 @@ Result<std::unique_ptr<Target>> make_target(const cli::Setup& setup,
 }  // namespace
 
 cli::Composition boards_and_worlds(const std::string& root, const std::string& results,
-                                   const bench::BridgeMaker& bridge, const bench::CanMaker& can) {
+                                   const bench::BridgeMaker& bridge, const bench::CanMaker& can,
+                                   pacing::HostClock* clock) {
+  pacing::HostClock* held_by = clock == nullptr ? &host_clock() : clock;
   return {make_world,
-          [bridge, can](const cli::Setup& setup) { return make_target(setup, bridge, can); },
+          [bridge, can, held_by](const cli::Setup& setup) {
+            return make_target(setup, bridge, can, *held_by);
+          },
           root,
           results,
           bridge,

@@ -47,6 +47,7 @@ struct FlightParams {
   std::vector<DrawnPart> drawn;
   std::vector<FarShaft> far_shafts;          // index: motor number - 1; empty: native controllers
   std::vector<std::uint8_t> sensing_boards;  // of the run, besides the first, with parts that sense
+  std::map<int, std::uint8_t> far_escs;      // by motor: the one of these whose parts play its ESC
 };
 
 }  // namespace whirl::flight

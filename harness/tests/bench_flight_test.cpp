@@ -12,9 +12,9 @@
 #include "base/scratch_folder.hpp"
 #include "harness/catalogue/board_file.hpp"
 #include "harness/composition/boards.hpp"
-#include "harness/pacing/host_clock.hpp"
 #include "harness/standin/bare_board.hpp"
 #include "harness/standin/no_world.hpp"
+#include "harness/tests/common_clock.hpp"
 #include "harness/tests/running_stand_in.hpp"
 #include "io_bridges/socketcan/tests/memory_can.hpp"
 
@@ -22,21 +22,23 @@ namespace whirl {
 namespace {
 
 const std::string kRoot = WHIRL_ROOT;
-constexpr double kPace = 0.5;
+constexpr double kPace = 0.5;  // of a clock that nobody is late by
 
 // The real image, alone: nothing around it but its wires.
 struct Metal {
-  Metal(const ScratchFolder& folder, std::unique_ptr<io::CanPort> can)
+  Metal(const ScratchFolder& folder, std::unique_ptr<io::CanPort> can, CommonClock& clock)
       : radio(folder.file("radio")) {
     const auto board = read_board(kRoot + "/test_plans/boards/px4fmu_v1_all_can.lua");
     StandInOptions wires;
     wires.pace = kPace;
-    wires.uart = 2;
     wires.can_bus = 2;
-    wires.serial.emplace(std::move(io::PseudoTerminal::open(radio).value()));
+    wires.lines.push_back({2, std::move(io::PseudoTerminal::open(radio).value())});
     wires.can = std::move(can);
-    stand_in.emplace(world, bare_board(board.value()), kRoot + "/build/firmware/flight.elf",
-                     std::move(wires));
+    VirtualBoardOptions options;
+    options.board = {bare_board(board.value()),
+                     {.image = kRoot + "/build/firmware/flight.elf", .seed = 1}};
+    stand_in.emplace(world, std::make_unique<VirtualBoard>(std::move(options)), std::move(wires),
+                     &clock);
   }
   void stop() { stand_in->stop(); }
 
@@ -64,8 +66,9 @@ struct Flown {
   }
 };
 
-Flown fly(std::vector<std::string> words, const std::string& out, const bench::CanMaker& can) {
-  const auto composition = boards_and_worlds(kRoot, out, nullptr, can);
+Flown fly(std::vector<std::string> words, const std::string& out, const bench::CanMaker& can,
+          pacing::HostClock* clock) {
+  const auto composition = boards_and_worlds(kRoot, out, nullptr, can, clock);
   words.insert(words.begin(), {"whirl", "run", kRoot + "/test_plans/flight/bench_hover.lua"});
   std::vector<char*> argv;
   argv.reserve(words.size());
@@ -79,33 +82,29 @@ Flown fly(std::vector<std::string> words, const std::string& out, const bench::C
 
 TEST(BenchFlight, TheRealImageHoversOverItsWiresAsItDoesInLockstep) {
   const ScratchFolder folder;
-  io::MemoryCan bus([] { return pacing::MonotonicClock().now_ns(); });
-  Metal metal(folder, bus.join());
+  CommonClock clock;
+  io::MemoryCan bus([&] { return clock.now_ns(); });
+  Metal metal(folder, bus.join(), clock);
   const std::string file = folder.file("bench.lua");
   std::ofstream(file) << bench_file(metal.radio);
   const Flown flown = fly(
       {"--target", "bench/" + file, "--arm", "clear"}, folder.file("bench"),
-      [&](const bench::CanBusLink&) -> Result<std::unique_ptr<io::CanPort>> { return bus.join(); });
+      [&](const bench::CanBusLink&) -> Result<std::unique_ptr<io::CanPort>> { return bus.join(); },
+      &clock);
+  clock.leave();
   metal.stop();
-  const std::string reason = flown.file["reason"];
-  // A host that was late has shown nothing of the firmware; that it was, is said.
-  if (flown.code != 0 && (*metal.stand_in)->lateness().slipped_ns > 0) {
-    std::printf("not judged, the stand-in was late: %s\n", reason.c_str());
-    return;
-  }
-  if (flown.code == 3) {
-    ASSERT_NE(reason.find("the host was late"), std::string::npos) << reason;
-    std::printf("not judged: %s\n", reason.c_str());
-    return;
-  }
-  ASSERT_EQ(flown.code, 0) << reason;
-  const Flown lockstep = fly({}, folder.file("lockstep"), nullptr);
+  ASSERT_EQ(flown.code, 0) << std::string(flown.file["reason"]);
+  const Flown lockstep = fly({}, folder.file("lockstep"), nullptr, nullptr);
   ASSERT_EQ(lockstep.code, 0) << std::string(lockstep.file["reason"]);
   const auto want = lockstep.figures();
+  // Which of two that wake at one time is first is the machine's choice: five runs differed by up to 7 % in what is small.
   for (const auto& [name, got] : flown.figures()) {
     std::printf("%s: bench %.4g, lockstep %.4g\n", name.c_str(), got, want.at(name));
-    if (!name.starts_with("bus current")) continue;
-    EXPECT_TRUE(near(got, want.at(name), stated(0.05 * want.at(name), "parity of 5 %"))) << name;
+    const bool current = name.find("current") != std::string::npos;
+    const bool error = name.find("RMS") != std::string::npos;
+    if (!current && !error) continue;
+    const auto parity = stated((current ? 0.01 : 0.15) * want.at(name), "parity");
+    EXPECT_TRUE(near(got, want.at(name), parity)) << name;
   }
 }
 

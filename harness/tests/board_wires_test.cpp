@@ -49,6 +49,12 @@ TEST(BoardWires, BoardsThatLeadEachOtherInACircleAreRefused) {
   EXPECT_NE(three.find("in a circle: "), std::string::npos) << three;
 }
 
+TEST(BoardWires, APodPlaysSeveralMotorsControllers) {
+  Rig rig(2);
+  rig.nodes[1].board.devices.push_back({.name = "host", .type = "pod_parts"});
+  EXPECT_EQ(rig.wire(0, "esc1", 1).wire(0, "esc2", 1, "i2c3").refused(), "");
+}
+
 TEST(BoardWires, ABoardHasOneMasterAndADeviceOneBoardInItsPlace) {
   EXPECT_EQ(Rig(3).wire(0, "esc1", 2).wire(1, "esc1", 2).refused(),
             "wires: c takes the place of devices of two boards");

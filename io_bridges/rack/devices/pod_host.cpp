@@ -179,12 +179,11 @@ class PodHostDevice final : public RackDevice {
   // ---- What is asked of it
 
   void answer(const std::string& name) {
-    for (const auto& [known, value] : figures()) {
-      if (known == name) return link_.tell(name, value);
+    if (!link_.tell(name, figures()) && !link_.tell(name, figures_of(status_))) {
+      link_.tell(name, -1);
     }
-    link_.tell(name, -1);
   }
-  std::vector<std::pair<std::string, std::int64_t>> figures() const {
+  PodFigures figures() const {
     const auto whole = [](auto value) { return static_cast<std::int64_t>(value); };
     return {{"sbus_frames", whole(sbus_check_.frames)},
             {"sbus_wrong", whole(sbus_check_.wrong + sbus_check_.wrong_format)},
@@ -207,14 +206,7 @@ class PodHostDevice final : public RackDevice {
             {"samples", whole(number_)},
             {"setpoints", whole(setpoints_)},
             {"setpoint_esc", setpoint_.esc},
-            {"setpoint_value", setpoint_.valid ? setpoint_.value : -1},
-            {"pod_lost", status_.lost},
-            {"pod_late", status_.late},
-            {"pod_damaged", status_.damaged},
-            {"pod_unsent", status_.unsent},
-            {"pod_gps_dropped", status_.gps_dropped},
-            {"pod_turn_us", status_.longest_turn_us},
-            {"pod_now_us", status_.now_us}};
+            {"setpoint_value", setpoint_.valid ? setpoint_.value : -1}};
   }
   void tell(std::uint16_t uart, std::uint8_t byte, Nanoseconds now) {
     happened_.add(io::Kind::uart_received, uart, now, &byte, 1);

@@ -17,6 +17,24 @@ function stays_near(t, limit, duration)
   t:expect(r:max_error { north = string.format("%.3f m", north), east = string.format("%.3f m", east) }, "farthest from where it was"):at_most(limit)
 end
 
+-- What is wrong with the solutions is noticed before it has been followed.
+function noticed(t, fault)
+  hover_by_gps(t)
+  t:fault(fault)
+  stays_near(t, "3 m", "2 s")
+  comes_down(t)
+end
+
+-- It begins anew at 9600 baud with NMEA at 1 Hz: the driver finds it, sets it up, and the estimate has it back.
+function found_again_in_flight(t, brown_out)
+  hover_by_gps(t)
+  t:fault(brown_out)
+  comes_down(t)
+  t:wait "20 s"
+  t:command { arm = true }
+  t:within("10 s", function(s) return s.told_armed == 1 end, "armed anew by the receiver that was found")
+end
+
 -- Down, with the motors off, within the fence. Who stands is off in some 1.5 s. In wind, and blind, a copy may hop on its feet
 -- and be sure of nothing: then the image gives up 36 s after it began to land from 6 m (12 s, and its height at 0.25 m/s),
 -- 13 of which it was in the air at least.
