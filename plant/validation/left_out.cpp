@@ -58,14 +58,22 @@ FlightPoint one_row(const std::vector<MeasuredPoint>& flying) {
 
 using Without = std::function<bool(const MeasuredBlade&)>;
 
+// A proof of propellers that are known is none, and only looks better.
+void check_strange(const std::vector<MeasuredBlade>& strangers, const KnownBlades& known) {
+  for (const MeasuredBlade& m : strangers) {
+    WHIRL_CHECK(std::none_of(known.blades().begin(), known.blades().end(),
+                             [&](const KnownBlade& k) { return k.name == m.name; }),
+                m.name);
+  }
+}
+
 std::shared_ptr<const KnownBlades> known_without(const std::vector<MeasuredBlade>& all,
                                                  const KnownBlades& known, const Without& gone) {
   std::vector<KnownBlade> rest;
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (!gone(all[i])) rest.push_back(known.blades()[i]);
   }
-  // A proof of propellers that are known is none, and only looks better.
-  for (std::size_t i = 0; i < all.size(); ++i) {
+  for (std::size_t i = 0; i < all.size(); ++i) {  // as check_strange(), both ways
     const bool known_still = std::any_of(
         rest.begin(), rest.end(), [&](const KnownBlade& k) { return k.name == all[i].name; });
     WHIRL_CHECK(known_still != gone(all[i]), all[i].name);
@@ -254,6 +262,7 @@ Report validate_strangers(const std::vector<MeasuredBlade>& strangers, const Kno
   Report report{"Strangers: in flight", "UIUC Propeller Database [UiucProp]", {}, {}, {}};
   report.notes.push_back(
       "Had no part in the form of the section, in the traits or in the choice of any constant.");
+  check_strange(strangers, known);
   const auto shared = std::make_shared<const KnownBlades>(known);
   for (const MeasuredBlade& m : strangers) {
     const Score s = foretold(m, shared, m.still, m.flying);
@@ -266,6 +275,7 @@ Report validate_strangers(const std::vector<MeasuredBlade>& strangers, const Kno
 
 Report validate_outside(const std::vector<MeasuredBlade>& strangers, const KnownBlades& known) {
   Report report{"Fifteen from outside", "UIUC Propeller Database [UiucProp]", {}, {}, {}};
+  check_strange(strangers, known);
   const auto shared = std::make_shared<const KnownBlades>(known);
   std::vector<Score> still, flown;
   for (const MeasuredBlade& m : strangers) {
