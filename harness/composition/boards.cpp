@@ -140,9 +140,7 @@ Result<std::vector<flight::FarShaft>> far_shafts(const cli::Setup& setup,
 }
 
 bool plays_receiver(const BoardDescription& board) {
-  return std::any_of(board.devices.begin(), board.devices.end(), [](const BoardDevice& device) {
-    return device.type == "pod_parts" && device.value("params.receiver") == KeyValue(true);
-  });
+  return pod_parts(board).count("sbus") != 0;
 }
 
 // What of the ground the first board hears, itself or by a board in a part's place.
@@ -189,7 +187,12 @@ Result<std::unique_ptr<World>> make_world(const cli::Setup& setup) {
   if (!around) return around.error();
   if (const auto joined = check_escs(setup, params.value()); !joined) return joined.error();
   params.value().ears = ears_of(setup);
-  if (setup.bench != nullptr) params.value().ears.receiver = false;  // nobody plays one
+  if (setup.bench != nullptr) {
+    const auto& pods = setup.bench->pods;
+    params.value().ears.receiver =
+        std::any_of(pods.begin(), pods.end(),
+                    [](const bench::PodLink& link) { return plays_receiver(link.parts); });
+  }
   auto far = far_shafts(setup, params.value());
   if (!far) return far.error();
   params.value().far_shafts = std::move(far.value());
