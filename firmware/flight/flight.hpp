@@ -116,6 +116,7 @@ class Flight {
   void supervise();
   void react(const Decision& decision);
   void follow_target_into_air();
+  void count_contact();
   void detect_touchdown();
   void control();
   void run_motor_to_calibrate();
