@@ -7,7 +7,7 @@ namespace whirl::flight {
 namespace {
 
 TEST(FarParts, WhatAReceiverOfOneOfThemFindsIsTakenAndNobodyElses) {
-  const FarParts parts({2, 5});
+  const FarParts parts({2, 5}, {});
   const auto finds = [&parts](std::uint8_t board, io::Kind kind) {
     return parts.finds({0, kind, board, 0, 0});
   };
