@@ -265,6 +265,20 @@ Result<Done> add_nodes(const cli::Setup& setup, const bench::CanMaker& can, Link
   return add_pods(setup, can, links);
 }
 
+// Of a vehicle's nodes: what the plan may spoil.
+std::set<std::string> played_parts(const cli::Setup& setup) {
+  std::set<std::string> all;
+  if (setup.plan.stand) return all;
+  for (const bench::CanBusLink& link : setup.bench->cans) {
+    const std::string bus = "can" + std::to_string(link.bus);
+    all.insert(bus);
+    for (const BoardDevice& device : setup.board.devices) {
+      if (device.bus == bus) all.insert(device.name);
+    }
+  }
+  return all;
+}
+
 Result<std::unique_ptr<Target>> bench_target(const cli::Setup& setup,
                                              const bench::BridgeMaker& bridge,
                                              const bench::CanMaker& can, pacing::HostClock& clock) {
@@ -287,8 +301,9 @@ Result<std::unique_ptr<Target>> bench_target(const cli::Setup& setup,
         bench::rts_marker(bench.analyser->marker), copper_names(setup.board)));
   }
   return std::unique_ptr<Target>(std::make_unique<bench::BenchTarget>(
-      bench::BenchOptions{.bench = bench, .operator_stops = enter_pressed}, std::move(links),
-      clock));
+      bench::BenchOptions{
+          .bench = bench, .operator_stops = enter_pressed, .played = played_parts(setup)},
+      std::move(links), clock));
 }
 
 // What this run's copy of the hardware changes on the board: a stand's stage and instruments, a vehicle's IMU

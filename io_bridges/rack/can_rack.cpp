@@ -24,6 +24,7 @@ CanRack::CanRack(int bus, double rate_Hz, std::uint64_t seed, FrameSink heard)
     : FarRack(seed),
       number_(bus),
       bus_(events(), "CAN" + std::to_string(bus), finding()),
+      wire_faults_(events(), faults(), bus_, bus, 1e9 / rate_Hz),
       afar_(bus_, rate_Hz, std::move(heard)) {
   log_can(bus_, number_, happened());
 }

@@ -3,11 +3,14 @@
 //   Bus       its own, with arbitration and bit times (can_bus.hpp). The microcontroller is a node of it that
 //             acknowledges and whose frames are given to it: each frame has taken its time here before it is heard
 //             afar, and takes it again on copper
+//   Faults    of the wire too (can_wire_faults.hpp): in the model of the bus, so that what they cost is time, or a frame that
+//             is not heard afar; no error frame is on copper
 //   Happened  every frame too (can_transfer)
 #pragma once
 #include <deque>
 #include <functional>
 
+#include "io_bridges/devices/can_wire_faults.hpp"
 #include "io_bridges/rack/far_rack.hpp"
 
 namespace whirl::rack {
@@ -46,6 +49,7 @@ class CanRack final : public FarRack {
 
   int number_;
   io::CanBus bus_;
+  io::CanWireFaults wire_faults_;
   Afar afar_;
 };
 

@@ -1,9 +1,14 @@
 #include "io_bridges/rack/far_rack.hpp"
 
 #include "base/check.hpp"
+#include "io_bridges/rack/fault_order.hpp"
 #include "io_bridges/rack/tell_finding.hpp"
 
 namespace whirl::rack {
+
+FarRack::FarRack(std::uint64_t seed) : seed_(seed) {
+  tell_applied(faults_, happened_);
+}
 
 Result<Done> FarRack::build(const BoardDescription& board, const DeviceTypes& types) {
   for (std::size_t i = 0; i < board.devices.size(); ++i) {
@@ -26,6 +31,7 @@ Result<Done> FarRack::add(const BoardDescription& board, int number, const Devic
 
 void FarRack::on_message(const io::Reader& message) {
   const io::Header& head = message.header();
+  if (head.kind == io::Kind::fault) return faults_.add(fault_of(message));
   for (const auto& device : devices_) {
     for (const Intake& intake : device->intakes()) {
       const bool its = intake.kind == head.kind && intake.port.value_or(head.port) == head.port;

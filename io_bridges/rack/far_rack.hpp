@@ -3,8 +3,8 @@
 //
 //   Time      of the caller: events().run_until(); messages, and what comes from afar, act at its now
 //   Happened  what devices tell, as on a virtual board
+//   Faults    of its devices, by their numbers on the board; those of a wire are the class's that has it
 //   Errors    bad_input: a device needs more of the board than its wire
-//   Left out  faults of the wire
 #pragma once
 #include <memory>
 #include <vector>
@@ -15,7 +15,7 @@ namespace whirl::rack {
 
 class FarRack : protected Rack {
  public:
-  explicit FarRack(std::uint64_t seed) : seed_(seed) {}
+  explicit FarRack(std::uint64_t seed);
 
   // Of `board` the devices on its wire. Pre: once.
   Result<Done> build(const BoardDescription& board, const DeviceTypes& types);
@@ -28,12 +28,12 @@ class FarRack : protected Rack {
 
  protected:
   io::FindingSink finding() override;
+  io::FaultBook& faults() override { return faults_; }
 
  private:
   virtual bool carries(const BoardDevice& device) const = 0;
   Result<Done> add(const BoardDescription& board, int number, const DeviceTypes& types);
 
-  io::FaultBook& faults() override { return faults_; }
   std::uint64_t seed() const override { return seed_; }
   std::string file_to_leave(const std::string& /*device*/) const override { return ""; }
   io::Wire* pin(const std::string& /*name*/) override { return nullptr; }

@@ -13,6 +13,7 @@
 #include "io_bridges/qemu/stm32/bxcan.hpp"
 #include "io_bridges/rack/can_log.hpp"
 #include "io_bridges/rack/check_board.hpp"
+#include "io_bridges/rack/fault_order.hpp"
 
 namespace whirl::board {
 
@@ -22,9 +23,7 @@ using io::Kind;
 class DeviceRack::Wiring final : public rack::Rack {
  public:
   explicit Wiring(Site site) : site_(std::move(site)) {
-    faults_.on_applied([this](std::uint32_t number, io::Nanoseconds now) {
-      site_.happened.add(Kind::fault_applied, static_cast<std::uint16_t>(number), now, nullptr, 0);
-    });
+    rack::tell_applied(faults_, site_.happened);
   }
 
   Result<Done> build(const BoardDescription& board);
@@ -351,9 +350,7 @@ bool DeviceRack::Wiring::join_uart(int number, io::UartPeer& peer) {
 bool DeviceRack::Wiring::on_message(const io::Reader& message) {
   const io::Header& head = message.header();
   if (head.kind == Kind::fault) {
-    const auto f = message.as<io::FaultCommand>();
-    faults_.add({f.number, static_cast<io::FaultKind>(f.kind), f.start_ns, f.end_ns, f.bus,
-                 f.address, f.axis, f.value});
+    faults_.add(rack::fault_of(message));
     return true;
   }
   bool taken = false;
