@@ -40,7 +40,8 @@ FlightWorld::FlightWorld(const FlightParams& params, plant::RotorSet rotors, std
       seed_(seed),
       drawn_(params.drawn),
       capture_(params.capture, seed),
-      drag_truth_(params.vehicle.airframe) {
+      drag_truth_(params.vehicle.airframe),
+      transmitter_(params.ears.receivers_board) {
   for (const plant::RotorMount& mount : airframe_.rotors) {
     unbalance_m_.push_back(mount.unbalance_kgm / airframe_.mass_kg);
   }
