@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "base/check.hpp"
 #include "plant/power_bus.hpp"
@@ -31,6 +32,7 @@ AveragedPowertrain::AveragedPowertrain(const std::vector<MotorParams>& motors,
     : battery_(battery),
       avionics_current_A_(avionics_current_A),
       motors_(motors.begin(), motors.end()),
+      shorts_A_(motors.size(), 0.0),
       drives_(motors.size(), Drive{.diode = true}),
       loads_(motors.size()),
       books_(motors.size()),
@@ -39,6 +41,7 @@ AveragedPowertrain::AveragedPowertrain(const std::vector<MotorParams>& motors,
 void AveragedPowertrain::command(std::size_t motor, const MotorCommand& command) {
   drives_.at(motor).duty = std::clamp(command.duty, 0.0, 1.0);
   drives_[motor].diode = command.freewheel == Freewheel::diode;
+  shorts_A_[motor] = drives_[motor].duty > 0.0 ? command.short_A : 0.0;
 }
 
 void AveragedPowertrain::set_loads(std::span<const ShaftLoad> loads) {
@@ -53,14 +56,16 @@ void AveragedPowertrain::step(double dt_s, PowertrainState& state) {
     state.motors[i].winding_peak_A = std::abs(motors_[i].current_A());
   }
   const int steps = std::max(1, static_cast<int>(std::ceil(dt_s / kSubStep_s - 1e-9)));
-  double charge = 0.0, voltage = 0.0, avionics_J = 0.0;
+  const double short_A = std::accumulate(shorts_A_.begin(), shorts_A_.end(), 0.0);
+  double charge = 0.0, voltage = 0.0, avionics_J = 0.0, short_J = 0.0;
   BatteryBooks pack;
   for (int k = 0; k < steps; ++k) {
-    const BusDraw draw =
-        step_bus(motors_, drives_, loads_, avionics_current_A_, battery_, dt_s / steps, books_);
+    const BusDraw draw = step_bus(motors_, drives_, loads_, avionics_current_A_ + short_A, battery_,
+                                  dt_s / steps, books_);
     charge += draw.charge_C;
     voltage += draw.bus_V / steps;
     avionics_J += draw.bus_V * avionics_current_A_ * dt_s / steps;
+    short_J += draw.bus_V * short_A * dt_s / steps;
     pack += draw.battery;
     for (std::size_t i = 0; i < count(); ++i) {
       total_[i] += books_[i];
@@ -72,7 +77,7 @@ void AveragedPowertrain::step(double dt_s, PowertrainState& state) {
     motors_[i].warm(total_[i], dt_s);
     MotorState& m = state.motors[i];
     m.speed_radps = motors_[i].speed_radps();
-    m.bus_current_A = total_[i].bus_charge_C / dt_s;
+    m.bus_current_A = total_[i].bus_charge_C / dt_s + shorts_A_[i];
     m.winding_temperature_K = motors_[i].winding_temperature_K();
     m.blocked = motors_[i].blocked();
   }
@@ -81,6 +86,7 @@ void AveragedPowertrain::step(double dt_s, PowertrainState& state) {
   state.charge_used_C = battery_.charge_used_C();
   state.energy = sum_of(total_, pack);
   state.energy.avionics_J = avionics_J;
+  state.energy.short_J = short_J;
 }
 
 }  // namespace whirl::plant

@@ -32,7 +32,8 @@ class AveragedPowertrain final : public Powertrain {
   double avionics_current_A_;
   // One of each for each motor:
   std::vector<AveragedMotor> motors_;
-  std::vector<Drive> drives_;  // kept: the last bus voltage is the next first guess
+  std::vector<double> shorts_A_;  // as commanded
+  std::vector<Drive> drives_;     // kept: the last bus voltage is the next first guess
   std::vector<ShaftLoad> loads_;
   std::vector<MotorBooks> books_, total_;  // of a sub-step and of all
 };

@@ -24,6 +24,8 @@ enum class Freewheel {
 struct MotorCommand {
   double duty = 0.0;  // 0..1 of the bus voltage
   Freewheel freewheel = Freewheel::diode;
+  double short_A =
+      0.0;  // past the winding, from the bus through the bridge, while the duty is not 0
 };
 
 struct MotorState {
@@ -41,6 +43,7 @@ struct EnergyBooks {  // of one step: what the pack gave is the sum of the rest
   double chemical_J = 0.0;
   double battery_J = 0.0;  // heat and relaxation of the pack, and a dip that a plan imposes
   double avionics_J = 0.0;
+  double short_J = 0.0;  // heat of what MotorCommand::short_A takes
   double copper_J = 0.0, diode_J = 0.0, no_load_J = 0.0;
   double magnetic_J = 0.0, kinetic_J = 0.0;  // what the windings and the shafts store
   double capacitor_J = 0.0;                  // and the capacitors of remote shafts' bridges

@@ -11,9 +11,15 @@ sd_card card
 cppm rc
 sbus sbus
 ublox m8
-battery_sense battery'
-# The image never asks a receiver which make it is: that fault finds nothing to act on, and the run is an error.
-refused='gps sensor_wrong_identity
+battery_sense battery
+current_sense current'
+# The image never asks a receiver which make it is: that fault finds nothing to act on, and the run is an error. The
+# PX4FMU v1 measures no current, and the image takes it from its ESCs: nothing reads what that part shows.
+refused='current sensor_frozen
+current sensor_offset
+current sensor_drift
+current sensor_saturated
+gps sensor_wrong_identity
 m8 sensor_wrong_identity'
 
 faults_of() {  # FILE

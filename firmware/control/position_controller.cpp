@@ -51,6 +51,7 @@ ThrustAndAttitude PositionController::sink(float speed_mps, float sinking_mps,
                                            const Quaternion& q_WB, float yaw_rad,
                                            float lift) const {
   Vector3 f_W = integral_W_mps2_;
+  f_W.head<2>() *= lift;  // who carries less leans no further: on its feet it would rock
   const float v_error = std::clamp(sinking_mps - speed_mps, -0.6f, 0.6f);
   f_W.z() += lift * kGravity_mps2 + config::kVelocityGain_ps[2] * v_error;
   return resolve({.f_W_mps2 = f_W}, q_WB, yaw_rad);

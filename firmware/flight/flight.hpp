@@ -116,6 +116,7 @@ class Flight {
   void supervise();
   void react(const Decision& decision);
   void follow_target_into_air();
+  void count_contact();
   void detect_touchdown();
   void control();
   void run_motor_to_calibrate();
@@ -173,6 +174,7 @@ class Flight {
   bool emergency_ = false;
   bool falling_ = false, attitude_lost_ = false;  // since they were stopped
   bool starting_ = false, catching_ = false;      // a restart: the rotors, then the fall
+  bool righting_ = false;                         // far from level, and not level since
 
   bool imu_frozen_ = false;
   std::uint32_t imu_missing_ms_ = kNever;

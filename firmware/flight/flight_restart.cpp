@@ -8,7 +8,6 @@ namespace fw {
 namespace {
 
 constexpr float kCaught_mps = 1.0f, kLongestCatch_s = 4.0f;
-constexpr float kSteepest_cos = 0.17f;  // 80 degrees: beyond, the rotors would push it down
 
 }  // namespace
 
@@ -33,12 +32,13 @@ Reason Flight::kill() {
 Reason Flight::restart() {
   if (!falling_) return arm();
   if (steered_by_hand()) return Reason::by_hand;
+  const Vector3 up_W = estimator_.q_WB() * Vector3::UnitZ();
   const Fall fall{
       .attitude_known = !attitude_lost_,
       .speed_known = estimator_.position_known() || estimator_.pressure_fresh(),
-      .upright = tilt_cosine(estimator_.q_WB()) > kSteepest_cos,
       .height_m = height_m(),
       .sinking_mps = sinking_mps(),
+      .tilt_rad = std::atan2(up_W.head<2>().norm(), up_W.z()),
       .rotors_failed = motors_.failed(),
       .esc_problem = first_esc_problem(),
   };
@@ -47,7 +47,7 @@ Reason Flight::restart() {
   motors_.forget_failures();
   enter(FlightState::flying, Reason::restarted);
   lift_ = 1.0f;
-  airborne_ = starting_ = catching_ = true;
+  airborne_ = starting_ = catching_ = righting_ = true;
   target_age_ms_ = kNever;  // what was flown to before is forgotten
   stay();
   return Reason::none;
@@ -90,13 +90,16 @@ void Flight::catch_fall() {
 }
 
 // Far from level the rotors turn it upright first, and at a rate that a set-point each 20 ms can end:
-// 0.4 rad ahead ask for 3.6 rad/s. At the least thrust, which a fall on its side asks for, they could not.
+// 0.4 rad ahead ask for 3.6 rad/s. At the least thrust, which a fall on its side asks for, they could not. Once it is
+// level it may lean as it brakes what threw it aside: the two would fight, and throw it over.
 void Flight::right_itself() {
-  constexpr float kLevel_cos = 0.88f, kAhead_rad = 0.4f;  // 28 degrees
+  constexpr float kLevel_cos = 0.88f, kOver_cos = 0.5f, kAhead_rad = 0.4f;  // 28 and 60 degrees
   constexpr float kThrust_N = 2.0f * (config::kThrustMin_N + config::kThrustUsable_N);
   const Quaternion& q_WB = estimator_.q_WB();
   const float level = tilt_cosine(q_WB);
-  if (!catching_ || level > kLevel_cos) return;
+  if (level > kLevel_cos) righting_ = false;
+  if (level < kOver_cos) righting_ = true;
+  if (!catching_ || !righting_) return;
   const Vector3 across_W = (q_WB * Vector3::UnitZ()).cross(Vector3::UnitZ());
   const float sine = across_W.norm();
   const Vector3 axis_W = sine > 0.01f ? Vector3(across_W / sine) : Vector3(q_WB * Vector3::UnitX());

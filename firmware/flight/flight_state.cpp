@@ -24,6 +24,8 @@ const char* text_of(Reason reason) {
       return "an ESC is not armed";
     case Reason::esc_fault:
       return "an ESC reports a fault";
+    case Reason::esc_over_current:
+      return "an ESC had too much current";
     case Reason::esc_silent:
       return "an ESC is silent";
     case Reason::motor_out:

@@ -45,6 +45,7 @@ enum class Reason : std::uint8_t {  // why a command was refused, or a flight en
   restarted,
   attitude_lost,
   too_low,
+  esc_over_current,
 };
 const char* text_of(Reason reason);
 

@@ -19,6 +19,7 @@ Conditions Flight::conditions() const {
   now.set(Condition::imu_frozen, imu_frozen_);
   // Who has just been restarted rights itself first.
   now.set(Condition::tipped_over, !catching_ && tilt_cosine(estimator_.q_WB()) < kTipped_cos);
+  now.set(Condition::esc_over_current, motors_.over_current());
   now.set(Condition::motor_out, motors_.out());
   now.set(Condition::esc_silent, motors_.silent());
   now.set(Condition::no_position, !navigates());
@@ -49,7 +50,8 @@ Reason Flight::first_esc_problem() const {
   for (unsigned i = 0; i < 4; ++i) {
     const std::uint8_t flags = motors_.status(i).flags;
     if (motors_.silent(i)) return Reason::esc_silent;
-    if ((flags & (esc::flag_over_current | esc::flag_under_voltage | esc::flag_desync)) != 0) {
+    if ((flags & esc::flag_over_current) != 0) return Reason::esc_over_current;
+    if ((flags & (esc::flag_under_voltage | esc::flag_desync)) != 0) {
       return Reason::esc_fault;
     }
     if ((flags & esc::flag_armed) == 0) return Reason::esc_not_armed;

@@ -43,6 +43,12 @@ class MotorWatch {
     }
     return false;
   }
+  // One has tripped by its current, which it latches until it is asked to stand.
+  bool over_current() const {
+    return std::any_of(status_.begin(), status_.end(), [](const esc::protocol::Status& status) {
+      return (status.flags & esc::flag_over_current) != 0;
+    });
+  }
   // How many have disarmed, fallen silent or stood when that was found, since they were last trusted anew.
   unsigned failed() const {
     return static_cast<unsigned>(std::count(failed_.begin(), failed_.end(), true));

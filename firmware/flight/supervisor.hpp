@@ -47,6 +47,7 @@ enum class Condition : std::uint8_t {
   imu_not_running,
   imu_frozen,
   tipped_over,
+  esc_over_current,
   motor_out,
   esc_silent,
   no_position,
@@ -105,6 +106,8 @@ inline constexpr Rule kRules[kConditions] = {
     {Condition::imu_not_running, Reason::imu_not_running, 0, {cut, cut, cut, cut, cut}},
     {Condition::imu_frozen, Reason::imu_frozen, 0, {cut, cut, cut, cut, cut}},
     {Condition::tipped_over, Reason::tipped_over, 100, {cut, cut, cut, cut, cut}},
+    // Its ESC has let go of the motor by then, which alone would be told as a motor that has stopped.
+    {Condition::esc_over_current, Reason::esc_over_current, 0, {stop, cut, cut, cut, cut}},
     {Condition::motor_out, Reason::motor_out, 0, {stop, cut, cut, cut, cut}},
     {Condition::esc_silent, Reason::esc_silent, 0, {stop, cut, cut, cut, cut}},
     {Condition::no_position, Reason::no_position, 0, {stop, fail, tell, fail, none}},

@@ -115,6 +115,7 @@ Message Telemetry::sys_status(const Faults& faults, const Health& health) const 
   spoils(Condition::no_pressure, kPressure);
   if (!flight_.estimator().gps().good()) healthy &= ~kGps;
   if (!flight_.estimator().fix_fresh()) healthy &= ~kVisionPosition;
+  spoils(Condition::esc_over_current, kMotors);
   spoils(Condition::motor_out, kMotors);
   spoils(Condition::esc_silent, kMotors);
   spoils(Condition::outside_fence, kFence);

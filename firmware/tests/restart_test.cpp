@@ -12,11 +12,8 @@ namespace {
 using whirl::near;
 using whirl::stated;
 
-constexpr Fall kGoodFall{.attitude_known = true,
-                         .speed_known = true,
-                         .upright = true,
-                         .height_m = 50.0f,
-                         .sinking_mps = 10.0f};
+constexpr Fall kGoodFall{
+    .attitude_known = true, .speed_known = true, .height_m = 50.0f, .sinking_mps = 10.0f};
 
 TEST(RestartRule, AGoodFallMayBeEnded) {
   EXPECT_EQ(why_not_restart(kGoodFall), Reason::none);
@@ -26,9 +23,6 @@ TEST(RestartRule, EachThingThatLacksRefuses) {
   Fall fall = kGoodFall;
   fall.attitude_known = false;
   EXPECT_EQ(why_not_restart(fall), Reason::attitude_lost);
-  fall = kGoodFall;
-  fall.upright = false;
-  EXPECT_EQ(why_not_restart(fall), Reason::tipped_over);
   fall = kGoodFall;
   fall.speed_known = false;
   EXPECT_EQ(why_not_restart(fall), Reason::no_position);
@@ -48,12 +42,19 @@ TEST(RestartRule, AllFourMayHaveStoppedButNotSome) {
 
 // From 10 m/s: 0.6 s at 13 m/s in the mean, then 15.9 m/s braked by 12 m/s^2, and 3 m.
 TEST(RestartRule, HeightIsWhatBrakingTakes) {
-  EXPECT_TRUE(near(restart_height_m(10.0f), 7.77 + 10.5 + 3.0, stated(0.1, "by hand")));
-  EXPECT_LT(restart_height_m(0.0f), 7.0f);
-  EXPECT_EQ(restart_height_m(-5.0f), restart_height_m(0.0f));  // still on its way up
+  EXPECT_TRUE(near(restart_height_m(10.0f, 0.0f), 7.77 + 10.5 + 3.0, stated(0.1, "by hand")));
+  EXPECT_LT(restart_height_m(0.0f, 0.0f), 7.0f);
+  EXPECT_EQ(restart_height_m(-5.0f, 0.4f), restart_height_m(0.0f, 0.0f));  // still on its way up
   Fall fall = kGoodFall;
-  fall.height_m = restart_height_m(fall.sinking_mps) - 0.1f;
+  fall.height_m = restart_height_m(fall.sinking_mps, 0.0f) - 0.1f;
   EXPECT_EQ(why_not_restart(fall), Reason::too_low);
+  fall.height_m += 0.2f;
+  EXPECT_EQ(why_not_restart(fall), Reason::none);
+  // On its back it turns for 0.88 s first, which ends at 22 m/s: 23.7 m, 20.2 m, and 3 m.
+  fall.tilt_rad = 3.14159f;
+  EXPECT_EQ(why_not_restart(fall), Reason::too_low);
+  EXPECT_TRUE(near(restart_height_m(10.0f, 3.14159f), 46.9, stated(0.1, "by hand")));
+  EXPECT_GT(restart_height_m(30.0f, 0.0f), 60.0f);  // a dive is not slowed by the formula
   fall.height_m = std::nanf("");
   EXPECT_EQ(why_not_restart(fall), Reason::too_low);
 }
@@ -61,6 +62,9 @@ TEST(RestartRule, HeightIsWhatBrakingTakes) {
 struct High {
   explicit High(double height_m) : vehicle(Scenario{}) {
     flight.parameters().set(Parameter::fence_top_m, 40.0f);
+    flight.parameters().set(Parameter::fence_north_m,
+                            0.0f);  // whoever turns upright is thrown aside
+    flight.parameters().set(Parameter::fence_east_m, 0.0f);
     vehicle.run(flight, 3.0);
     EXPECT_EQ(flight.arm(), Reason::none) << text_of(flight.ready_to_arm());
     vehicle.run(flight, 2.0);
@@ -98,15 +102,17 @@ TEST(Restart, EndsAFallAndHolds) {
   EXPECT_EQ(high.flight.state(), FlightState::flying);
 }
 
-// Kicked as it is stopped: by the time of the restart it lies on its side and turns on.
-TEST(Restart, RightsItselfFromItsSide) {
-  for (const double kick_radps : {-1.9, 1.9}) {
+// Kicked as it is stopped: by the time of the restart it lies on its side or beyond, and turns on.
+TEST(Restart, RightsItselfFromItsSideAndFromBeyond) {
+  // From beyond its side it is thrown aside at 7 m/s as it turns, and leans against that by 50 degrees at once.
+  for (const double kick_radps : {-1.9, 1.9, -3.3, 3.3}) {
+    const bool beyond = std::abs(kick_radps) > 2.0;
     High high(30.0);
     ASSERT_EQ(high.flight.kill(), Reason::none);
     high.vehicle.w_B_.y() = kick_radps;
     high.vehicle.run(high.flight, 0.6);
-    ASSERT_GT(high.vehicle.tilt_rad(), 1.0);
-    ASSERT_EQ(high.flight.restart(), Reason::none);
+    ASSERT_GT(high.vehicle.tilt_rad(), beyond ? 1.9 : 1.0);
+    ASSERT_EQ(high.flight.restart(), Reason::none) << text_of(high.flight.restart());
     double fastest_radps = 0.0, lowest_m = 100.0;
     for (int i = 0; i < 5000; ++i) {
       if (i % 500 == 0) high.flight.on_link();
@@ -114,7 +120,7 @@ TEST(Restart, RightsItselfFromItsSide) {
       fastest_radps = std::max(fastest_radps, high.vehicle.w_B_.norm());
       lowest_m = std::min(lowest_m, -high.vehicle.p_W_.z());
     }
-    EXPECT_LT(fastest_radps, 6.0);
+    EXPECT_LT(fastest_radps, beyond ? 10.0 : 6.0);
     EXPECT_GT(lowest_m, 10.0);
     EXPECT_LT(high.vehicle.tilt_rad(), 0.1);
     EXPECT_EQ(high.flight.state(), FlightState::flying);

@@ -105,6 +105,19 @@ TEST(Supervisor, TheGravestReactionWins) {
   EXPECT_EQ(supervisor.step(now, FlightState::flying, 5).reaction, Reaction::cut);
 }
 
+// An ESC that has tripped has let go of its motor: both hold, and the cause is told.
+TEST(Supervisor, AnOverCurrentIsToldBeforeTheMotorThatStandsByIt) {
+  Conditions now = only(Condition::motor_out);
+  now.set(Condition::esc_over_current, true);
+  for (const FlightState state :
+       {FlightState::armed, FlightState::flying, FlightState::landing, FlightState::failsafe}) {
+    Supervisor supervisor;
+    const Decision decision = supervisor.step(now, state, 5);
+    EXPECT_EQ(decision.reason, Reason::esc_over_current);
+    EXPECT_EQ(decision.reaction, state == FlightState::armed ? Reaction::stop : Reaction::cut);
+  }
+}
+
 TEST(Supervisor, WarnsOnceEachTimeItBegins) {
   Supervisor supervisor;
   Conditions both = only(Condition::no_pressure);

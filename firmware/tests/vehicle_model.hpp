@@ -39,6 +39,7 @@ class VehicleModel {
   }
 
   Eigen::Vector3d p_W_{0, 0, -kFoot_m}, v_W_{0, 0, 0}, w_B_{0, 0, 0}, wind_W_{0, 0, 0};
+  Eigen::Vector3d push_W_N_{0, 0, 0};  // at the centre of mass, beside what else there is
   Eigen::Quaterniond q_WB_{1, 0, 0, 0};
   bool capture_on_ = true, capture_stuck_ = false, imu_on_ = true, pressure_on_ = true,
        field_on_ = true;
@@ -88,7 +89,7 @@ inline void VehicleModel::physics(double dt_s) {
                       torque_per_thrust * (T[0] - T[1] + T[2] - T[3]));
   Eigen::Vector3d air_B = q_WB_.conjugate() * (v_W_ - wind_W_);
   Eigen::Vector3d force_B(-0.04 * total * air_B.x(), -0.04 * total * air_B.y(), -total);
-  Eigen::Vector3d force_W = q_WB_ * force_B;
+  Eigen::Vector3d force_W = q_WB_ * force_B + push_W_N_;
   const Eigen::Vector3d feet[4] = {
       {arm, 0, kFoot_m}, {0, arm, kFoot_m}, {-arm, 0, kFoot_m}, {0, -arm, kFoot_m}};
   for (const Eigen::Vector3d& foot_B : feet) {

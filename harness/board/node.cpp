@@ -36,6 +36,15 @@ bool plays_parts(const BoardDescription& board) {
   return host_of(board) != nullptr;
 }
 
+std::set<std::string> pod_parts(const BoardDescription& board) {
+  const BoardDevice* host = host_of(board);
+  if (host == nullptr) return {};
+  std::set<std::string> all{"mpu6000", "ms5611", "hmc5883l", "esc_i2c"};
+  if (host->value("params.gps") == KeyValue(true)) all.insert("ublox_6");
+  if (host->value("params.receiver") == KeyValue(true)) all.insert("sbus");
+  return all;
+}
+
 std::optional<int> can_of_host(const BoardDescription& board) {
   const BoardDevice* host = host_of(board);
   const auto can = host == nullptr ? std::nullopt : host->value("params.can");

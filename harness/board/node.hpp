@@ -4,6 +4,7 @@
 //            there is only one node its name may be left out.
 #pragma once
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,8 @@ Result<NodePlace> node_place(const std::vector<Node>& nodes, const std::string& 
 
 // Its parts sense what the vehicle does, and play its ESCs: it stands for any number of devices, and turns no motor.
 bool plays_parts(const BoardDescription& board);
+// The types of what it plays: "mpu6000"; with a GPS "ublox_6", with a receiver "sbus".
+std::set<std::string> pod_parts(const BoardDescription& board);
 // The CAN bus that such a board's host is on; nothing: it is on a serial line.
 std::optional<int> can_of_host(const BoardDescription& board);
 

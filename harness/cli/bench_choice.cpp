@@ -61,11 +61,10 @@ bool serial_joins(const BoardDevice& device, const bench::BenchDescription& benc
   });
 }
 
-bool pod_plays(const BoardDevice& device) {
-  for (const char* type : {"mpu6000", "ms5611", "hmc5883l", "esc_i2c"}) {
-    if (device.type == type) return true;
-  }
-  return false;
+bool pod_plays(const BoardDevice& device, const bench::BenchDescription& bench) {
+  return std::any_of(bench.pods.begin(), bench.pods.end(), [&](const bench::PodLink& link) {
+    return pod_parts(link.parts).count(device.type) != 0;
+  });
 }
 
 // Of a flight controller's board: what hangs on a bus that the bench joins is played by it, some parts by a pod; memories
@@ -78,20 +77,17 @@ Result<Done> check_played(const BoardDevice& device, const BoardDescription& boa
   const bool played =
       std::any_of(bench.cans.begin(), bench.cans.end(),
                   [&](const auto& l) { return device.bus == "can" + std::to_string(l.bus); }) ||
-      (device.type == "mavlink_link" && serial_joins(device, bench)) ||
-      (!bench.pods.empty() && pod_plays(device));
+      (device.type == "mavlink_link" && serial_joins(device, bench)) || pod_plays(device, bench);
   if (played) return Done{};
   const bool on_can = device.bus.starts_with("can");
   return refused(bench.file,
                  "nothing plays " + device.name + ", a " + device.type + " on " + device.bus +
                      " of " + board.name,
                  on_can ? "links = { { bus = \"" + device.bus + "\", interface = \"can0\" } }"
-                 : pod_plays(device)
-                     ? "links = { { pod = \"pod_with_parts\", path = ... } }, or nodes of CAN: "
-                       "px4fmu_v1_all_can"
                  : device.type == "mavlink_link"
                      ? "links = { { bus = \"" + device.bus + "\", path = \"/dev/ttyUSB0\" } }"
-                     : "a board whose sensors and ESCs are nodes of CAN: px4fmu_v1_all_can");
+                     : "links = { { pod = \"pod_with_receivers\", path = ... } } for what a pod "
+                       "plays, or a board whose parts are nodes of CAN: px4fmu_v1_all_can");
 }
 
 Result<Done> check_flight_links(const BoardDescription& board,

@@ -71,15 +71,6 @@ Result<Done> check_escs(const cli::Setup& setup, const flight::FlightParams& par
   return Done{};
 }
 
-flight::BoardEars ears_of(const BoardDescription& board) {
-  const auto has = [&](std::initializer_list<const char*> types) {
-    return std::any_of(board.devices.begin(), board.devices.end(), [&](const BoardDevice& device) {
-      return std::find(types.begin(), types.end(), device.type) != types.end();
-    });
-  };
-  return {.radio = has({"mavlink_link"}), .receiver = has({"cppm", "sbus"})};
-}
-
 // A pod's rig is the world around its board: the stand that a plan names stays empty.
 bool brings_its_world(const BoardDescription& board) {
   return std::any_of(board.devices.begin(), board.devices.end(),
@@ -148,6 +139,28 @@ Result<std::vector<flight::FarShaft>> far_shafts(const cli::Setup& setup,
   return shafts;
 }
 
+bool plays_receiver(const BoardDescription& board) {
+  return pod_parts(board).count("sbus") != 0;
+}
+
+// What of the ground the first board hears, itself or by a board in a part's place.
+flight::BoardEars ears_of(const cli::Setup& setup) {
+  flight::BoardEars ears{.radio = false, .receiver = false};
+  const auto played = std::find_if(setup.far.begin(), setup.far.end(),
+                                   [](const auto& far) { return plays_receiver(*far.board); });
+  for (const BoardDevice& device : setup.board.devices) {
+    const bool here = std::none_of(setup.wires.begin(), setup.wires.end(),
+                                   [&](const WireEnd& end) { return end.device == device.name; });
+    const bool receiver = device.type == "cppm" || device.type == "sbus";
+    if (device.type == "mavlink_link") ears.radio |= here;
+    if (receiver && here) ears.receiver = true;
+    if (!receiver || here || played == setup.far.end()) continue;
+    ears.receiver = true;
+    ears.receivers_board = static_cast<std::uint8_t>(played->node);
+  }
+  return ears;
+}
+
 // Parts that sense what the vehicle does are on the first board, or behind a board in the place of one; and so are its
 // ESCs, where they are played.
 void set_far_parts(const cli::Setup& setup, flight::FlightParams& params) {
@@ -173,8 +186,13 @@ Result<std::unique_ptr<World>> make_world(const cli::Setup& setup) {
   const auto around = catalogue::read_surroundings(*setup.plan.surroundings, params.value());
   if (!around) return around.error();
   if (const auto joined = check_escs(setup, params.value()); !joined) return joined.error();
-  params.value().ears = ears_of(setup.board);
-  if (setup.bench != nullptr) params.value().ears.receiver = false;  // nobody plays one
+  params.value().ears = ears_of(setup);
+  if (setup.bench != nullptr) {
+    const auto& pods = setup.bench->pods;
+    params.value().ears.receiver =
+        std::any_of(pods.begin(), pods.end(),
+                    [](const bench::PodLink& link) { return plays_receiver(link.parts); });
+  }
   auto far = far_shafts(setup, params.value());
   if (!far) return far.error();
   params.value().far_shafts = std::move(far.value());

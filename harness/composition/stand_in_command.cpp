@@ -77,7 +77,7 @@ class PlayedBridge {
   std::unique_ptr<io::UhidDevice> device_;
 };
 
-constexpr const char* kPodBoard = "pod_with_parts";
+constexpr const char* kPodBoard = "pod_with_receivers";
 constexpr double kSupply_V = 16.0;  // that a flight controller's divider sees
 
 struct Parts {
@@ -140,14 +140,14 @@ Result<Done> check_wires(const cli::StandInRequest& request, const Parts& parts,
   if (parts.flies) {
     if (!request.can.empty() || request.pod) return Done{};
     return refused("is a flight controller's: its sensors and ESCs are played over CAN",
-                   "--can INTERFACE, or px4fmu_v1_pod --pod");
+                   "--can INTERFACE, or px4fmu_v1_sbus --pod");
   }
   if (request.pod) {
-    return refused("has nothing that a pod plays: no radio, or no ESCs on I2C", "px4fmu_v1_pod");
+    return refused("has nothing that a pod plays: no radio, or no ESCs on I2C", "px4fmu_v1_sbus");
   }
   if (has_type(parts.board, "mavlink_link") && has_type(parts.board, "esc_i2c")) {
     return refused("is a flight controller's with SPI and I2C: a pod plays its sensors and ESCs",
-                   "px4fmu_v1_pod --pod");
+                   "px4fmu_v1_sbus --pod");
   }
   if (!has_type(parts.board, "i2c_master") && request.can.empty()) {
     return refused("has no i2c_master: nothing commands it",

@@ -1,5 +1,6 @@
 #include "harness/flight/far_parts.hpp"
 
+#include <algorithm>
 #include <span>
 
 namespace whirl::flight {
@@ -12,6 +13,11 @@ constexpr std::uint16_t kLine = 1;  // the UART of a pod's host
 bool FarParts::hears(const io::Header& head) const {
   return head.kind == io::Kind::uart_received && head.port == kLine && !boards_.empty() &&
          head.board == boards_.front();
+}
+
+bool FarParts::finds(const io::Header& head) const {
+  return head.kind == io::Kind::gnss_solution &&
+         std::find(boards_.begin(), boards_.end(), head.board) != boards_.end();
 }
 
 bool FarParts::is_esc(const io::Header& head) const {

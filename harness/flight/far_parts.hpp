@@ -19,6 +19,8 @@ class FarParts {
 
   bool hears(const io::Header& head) const;
   void on_message(const io::Reader& message);  // pre: hears()
+  // What a receiver there has found is taken like that of the first board.
+  bool finds(const io::Header& head) const;
   void send(std::int64_t t_ns, const io::BodyMotion& motion, io::Batch& sensed);
   void send_esc(std::int64_t t_ns, std::uint16_t motor, const io::EscState& state,
                 io::Batch& sensed) const;

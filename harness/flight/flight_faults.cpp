@@ -1,4 +1,5 @@
 // The faults that are the flight's own: its supply, its cameras, its native controllers.
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -7,21 +8,14 @@
 namespace whirl::flight {
 namespace {
 
-constexpr const char *kEsc_stopped = "esc_stopped", *kSupply_dip = "supply_dip";
+constexpr const char *kEsc_stopped = "esc_stopped", *kSupply_dip = "supply_dip",
+                     *kWinding_short = "winding_short";
 
 }  // namespace
 
 Result<bool> FlightWorld::take_fault(const FaultSpec& fault) {
-  if (fault.kind == kEsc_stopped) {
-    if (far_) {
-      return Error{ErrorKind::bad_input, "", "the controllers of this vehicle are boards",
-                   "a fault of that board: reset_pin, code_hangs; or of its wire"};
-    }
-    const int motor = motor_of(fault), motors = static_cast<int>(controllers_.size());
-    if (motor < 1 || motor > motors) {
-      return Error{ErrorKind::bad_input, "", "esc_stopped needs one of the vehicle's motors",
-                   "motor = 1 to " + std::to_string(motors) + ", or the device that is its ESC"};
-    }
+  if (fault.kind == kEsc_stopped || fault.kind == kWinding_short) {
+    if (auto good = must_be_of_a_controller(fault); !good) return good.error();
   } else if (fault.kind == kSupply_dip && far_ && motor_of(fault) != 0) {
     if (auto good = must_be_a_lead(fault); !good) return good.error();
   } else if (fault.kind == kSupply_dip) {
@@ -35,6 +29,21 @@ Result<bool> FlightWorld::take_fault(const FaultSpec& fault) {
   }
   faults_.add(fault);
   return true;
+}
+
+Result<Done> FlightWorld::must_be_of_a_controller(const FaultSpec& fault) const {
+  if (far_) {
+    return Error{ErrorKind::bad_input, "", "the controllers of this vehicle are boards",
+                 "a fault of that board: reset_pin, code_hangs; or of its wire"};
+  }
+  const int motor = motor_of(fault), motors = static_cast<int>(controllers_.size());
+  if (motor < 1 || motor > motors) {
+    return Error{ErrorKind::bad_input, "", fault.kind + " needs one of the vehicle's motors",
+                 "motor = 1 to " + std::to_string(motors) + ", or the device that is its ESC"};
+  }
+  if (fault.kind != kWinding_short || fault.value > 0.0) return Done{};
+  return Error{ErrorKind::bad_input, "", "winding_short takes amperes of the bus",
+               "value = \"30 A\""};
 }
 
 Result<Done> FlightWorld::must_be_a_lead(const FaultSpec& fault) const {
@@ -61,6 +70,10 @@ void FlightWorld::dip_leads(std::int64_t t_ns) {
 void FlightWorld::apply_faults(std::int64_t t_ns) {
   faults_.apply(kEsc_stopped, t_ns, [this](const FaultSpec& fault) {
     controllers_[static_cast<std::size_t>(motor_of(fault)) - 1]->cut();
+  });
+  std::fill(shorts_A_.begin(), shorts_A_.end(), 0.0);
+  faults_.apply(kWinding_short, t_ns, [this](const FaultSpec& fault) {
+    shorts_A_[static_cast<std::size_t>(motor_of(fault)) - 1] += fault.value;
   });
   // The vehicle itself lowers its supply; here is only kept that it did.
   faults_.apply(kSupply_dip, t_ns, [](const FaultSpec&) {});

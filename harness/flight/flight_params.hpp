@@ -19,8 +19,9 @@ namespace whirl::flight {
 
 // What of the ground the board can hear.
 struct BoardEars {
-  bool radio = true;     // a telemetry radio
-  bool receiver = true;  // of radio control
+  bool radio = true;                 // a telemetry radio
+  bool receiver = true;              // of radio control
+  std::uint8_t receivers_board = 0;  // of the run: on which it is
 };
 
 // A motor controller that is a board of its own: the shaft that its power stage turns is the vehicle's.

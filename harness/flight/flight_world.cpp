@@ -40,7 +40,8 @@ FlightWorld::FlightWorld(const FlightParams& params, plant::RotorSet rotors, std
       seed_(seed),
       drawn_(params.drawn),
       capture_(params.capture, seed),
-      drag_truth_(params.vehicle.airframe) {
+      drag_truth_(params.vehicle.airframe),
+      transmitter_(params.ears.receivers_board) {
   for (const plant::RotorMount& mount : airframe_.rotors) {
     unbalance_m_.push_back(mount.unbalance_kgm / airframe_.mass_kg);
   }
@@ -73,6 +74,7 @@ void FlightWorld::make_controllers(const FlightParams& params, std::uint64_t see
   for (std::size_t i = 0; i < airframe_.rotors.size(); ++i) {
     controllers_.push_back(type.make(params, seed, static_cast<int>(i) + 1));
   }
+  shorts_A_.assign(controllers_.size(), 0.0);
 }
 
 void FlightWorld::begin(const Start& start) {
@@ -127,8 +129,10 @@ void FlightWorld::move(std::int64_t t_ns) {
   apply_faults(now_ns_);
   const plant::VehicleState& before = vehicle_.state();
   for (std::size_t i = 0; i < controllers_.size(); ++i) {
-    vehicle_.command(static_cast<int>(i),
-                     controllers_[i]->step(now_ns_, before.motors[i], before.bus_voltage_V));
+    plant::MotorCommand command =
+        controllers_[i]->step(now_ns_, before.motors[i], before.bus_voltage_V);
+    command.short_A = shorts_A_[i];
+    vehicle_.command(static_cast<int>(i), command);
   }
   carry(t_ns);
   if (far_) far_->before_step();

@@ -11,7 +11,7 @@
 //   Disturbed by Wind with a duration, Jet, Magnet; held and turned by Hold until Release (flight_hand.cpp)
 //   Faults   capture_lost; capture_frozen (the pose that was sent last goes on); supply_dip (value: volts below; of all, or of the
 //            lead of one motor's controller where that is a board); esc_stopped (of a motor, or of the device that
-//            is its ESC) (flight_faults.cpp)
+//            is its ESC); winding_short (of one likewise; value: amperes of the bus) (flight_faults.cpp)
 #pragma once
 #include <functional>
 #include <memory>
@@ -49,7 +49,8 @@ class FlightWorld : public World {
   const std::vector<Signal>& signals() const override { return signals_; }
   void read(std::span<double> values) const override;
   bool hears(const io::Header& head) const override {
-    return (far_ && far_->hears(head)) || far_parts_.hears(head) || far_parts_.is_esc(head);
+    return (far_ && far_->hears(head)) || far_parts_.hears(head) || far_parts_.finds(head) ||
+           far_parts_.is_esc(head);
   }
   void step(std::int64_t t_ns, const io::Batch& happened, io::Batch& sensed) override;
   Result<Done> command(const Command& command, std::int64_t now_ns) override;
@@ -75,6 +76,7 @@ class FlightWorld : public World {
   void move(std::int64_t t_ns);
   void send(std::int64_t t_ns, io::Batch& sensed);
   void apply_faults(std::int64_t t_ns);
+  Result<Done> must_be_of_a_controller(const FaultSpec& fault) const;
   Result<Done> must_be_a_lead(const FaultSpec& fault) const;
   void dip_leads(std::int64_t t_ns);
   void add_signal(std::string name, Dimension dimension, std::string about,
@@ -122,6 +124,7 @@ class FlightWorld : public World {
   std::optional<FarShafts> far_;
   std::vector<std::unique_ptr<MotorController>>
       controllers_;                  // index: motor number - 1; none if far
+  std::vector<double> shorts_A_;     // of the motor of each, in the step to come
   std::vector<double> unbalance_m_;  // likewise, over the vehicle's mass
   const plant::AirframeParams airframe_;
   const std::vector<plant::Obstacle> obstacles_;

@@ -54,6 +54,7 @@ constexpr KindName kNames[] = {
     {FaultKind::capture_frozen, "capture_frozen"},
     {FaultKind::board_unplugged, "board_unplugged"},
     {FaultKind::sensor_drift, "sensor_drift"},
+    {FaultKind::winding_short, "winding_short"},
 };
 
 bool matches(int wanted, int here) {

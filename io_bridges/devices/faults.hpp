@@ -66,6 +66,7 @@ enum class FaultKind : std::uint32_t {
   capture_frozen,      // harness: the capture system goes on sending the pose that it sent last
   board_unplugged,  // board: without supply and off its wires while it lasts, then as from power-up
   sensor_drift,     // what axis reads runs away: value (SI) more with each minute since its start
+  winding_short,  // harness: the bridge of motor `address` takes value amperes more while it drives
 };
 
 std::optional<FaultKind> fault_kind(std::string_view name);  // "i2c_nack"

@@ -17,15 +17,15 @@ using Eigen::Vector3d;
 constexpr double kStep_s = 1e-3;
 
 double spent_J(const EnergyBooks& e) {
-  return e.battery_J + e.avionics_J + e.copper_J + e.diode_J + e.no_load_J + e.magnetic_J +
-         e.kinetic_J + e.air_J;
+  return e.battery_J + e.avionics_J + e.short_J + e.copper_J + e.diode_J + e.no_load_J +
+         e.magnetic_J + e.kinetic_J + e.air_J;
 }
 double throughput_J(const EnergyBooks& e) {
   return std::abs(e.chemical_J) + std::abs(e.battery_J) + e.copper_J + e.diode_J +
          std::abs(e.magnetic_J) + std::abs(e.kinetic_J) + std::abs(e.air_J);
 }
 
-// 100,000 states, any duty, attitude, speed, freewheeling, wind and rotor speed.
+// 100,000 states, any duty, attitude, speed, freewheeling, wind and rotor speed; a winding short in one run of four.
 TEST(VehicleEnergy, EveryJouleOfThePackIsAccountedForInAnyState) {
   RandomStream random(12, "energy");
   auto any = [&](double most) { return most * (2.0 * random.uniform() - 1.0); };
@@ -38,7 +38,8 @@ TEST(VehicleEnergy, EveryJouleOfThePackIsAccountedForInAnyState) {
     for (int i = 0; i < 4; ++i) v.set_motor_speed(i, 900.0 * random.uniform());
     for (int k = 0; k < 200; ++k) {
       for (int i = 0; i < 4; ++i) {
-        v.command(i, {any(1.2), random.bits() % 2 ? Freewheel::diode : Freewheel::synchronous});
+        const Freewheel freewheel = random.bits() % 2 ? Freewheel::diode : Freewheel::synchronous;
+        v.command(i, {any(1.2), freewheel, run % 4 == 0 ? 20.0 * i : 0.0});
       }
       v.step(kStep_s);
       const EnergyBooks& e = v.state().energy;

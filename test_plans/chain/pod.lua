@@ -6,24 +6,35 @@
 -- (docs/pod.md).
 include "include/flights.lua"
 
+local function sensors()
+  return {
+    { from = "flight.imu", to = "pod.spi1", select = "PA15", ready = "PC4", latency = "100 us" },
+    { from = "flight.baro", to = "pod.i2c1" },
+    { from = "flight.mag", to = "pod.i2c1" },
+  }
+end
+
 local function pod_plan(name, run)
+  local wires = sensors()
+  for n = 1, 4 do wires[3 + n] = { from = "flight.esc" .. n, to = n < 3 and "pod.i2c2" or "pod.i2c3" } end
   plan(name) {
     nodes = {
       { name = "flight", image = "flight", board = "px4fmu_v1",
         watch = { "fw::imu_task", "fw::attitude_task", "fw::esc_task" } },
       { name = "pod", image = "pod", board = "pod_with_parts" },
     },
-    wires = {
-      { from = "flight.imu", to = "pod.spi1", select = "PA15", ready = "PC4", latency = "100 us" },
-      { from = "flight.baro", to = "pod.i2c1" },
-      { from = "flight.mag", to = "pod.i2c1" },
-      { from = "flight.esc1", to = "pod.i2c2" },
-      { from = "flight.esc2", to = "pod.i2c2" },
-      { from = "flight.esc3", to = "pod.i2c3" },
-      { from = "flight.esc4", to = "pod.i2c3" },
-    },
-    vehicle = "hp_quad", tags = { "chain", "nightly" }, timeout = "60 s", run = run,
+    wires = wires, vehicle = "hp_quad", tags = { "chain", "nightly" }, timeout = "60 s", run = run,
   }
+end
+
+-- A figure of the pod's host.
+local function figure(t, name) return tonumber(t:ask(name, "^" .. name .. " %-?%d+$"):match "%S+$") or 0 / 0 end
+
+local function nothing_late(t)
+  t:expect(figure(t, "spi_first_late") + figure(t, "spi_other_late"), "bytes not prepared in time"):equal(0)
+  for _, count in ipairs { "lost", "late", "damaged", "oddities", "overlaps", "late_rearm", "unsent", "gps_dropped" } do
+    t:expect(figure(t, "pod_" .. count), "the pod's count of " .. count):equal(0)
+  end
 end
 
 pod_plan("pod hover", function(t)
@@ -49,16 +60,12 @@ pod_plan("pod hover", function(t)
   t:expect(hover:rms "baro_height_error", "hover: height by the air"):at_most "50 cm"
 
   t:step "the pod"
-  local function figure(name) return tonumber(t:ask(name, "^" .. name .. " %-?%d+$"):match "%S+$") or 0 / 0 end
-  t:expect(figure "spi_other_bytes", "bytes of answers on SPI"):at_least(100e3)
-  t:expect(figure "spi_first_late" + figure "spi_other_late", "bytes not prepared in time"):equal(0)
-  t:expect(figure "spi_first_least_wait_ns", "slack of being ready again, ns"):at_least(200)
-  t:expect(figure "spi_other_least_wait_ns", "slack of an answer, ns"):at_least(381)
-  t:expect(figure "setpoints", "set-points of the four ESCs, 15 s of 50 a second each"):at_least(15 * 4 * 50)
-  t:expect(figure "setpoints_refused", "set-points with a wrong checksum"):equal(0)
-  for _, count in ipairs { "lost", "late", "damaged", "oddities", "overlaps", "late_rearm", "unsent" } do
-    t:expect(figure("pod_" .. count), "the pod's count of " .. count):equal(0)
-  end
+  t:expect(figure(t, "spi_other_bytes"), "bytes of answers on SPI"):at_least(100e3)
+  t:expect(figure(t, "spi_first_least_wait_ns"), "slack of being ready again, ns"):at_least(200)
+  t:expect(figure(t, "spi_other_least_wait_ns"), "slack of an answer, ns"):at_least(381)
+  t:expect(figure(t, "setpoints"), "set-points of the four ESCs, 15 s of 50 a second each"):at_least(15 * 4 * 50)
+  t:expect(figure(t, "setpoints_refused"), "set-points with a wrong checksum"):equal(0)
+  nothing_late(t)
   lands(t)
 end)
 
@@ -86,3 +93,53 @@ pod_plan("pod in the hand", function(t)
     judged(still, name, "field_error", "6 uT")
   end
 end)
+
+-- All of its sensors are the pod's, a GPS and a receiver with SBUS as well: characters pass between the boards' UARTs, each in
+-- the time that it takes. Outdoors nothing but the GPS tells where it is, and nothing but the receiver flies it; each is
+-- shown by being there, and by its wire being cut. Limits of a hover by GPS: test_plans/flight/include/judged_gps.lua,
+-- for a sixth of the time.
+local receivers = sensors()
+receivers[4] = { from = "flight.gps", to = "pod.usart6", fastest = "57600 baud" }
+receivers[5] = { from = "flight.sbus", to = "pod.usart2", fastest = "100000 baud" }
+
+plan "pod receivers" {
+  nodes = {
+    { name = "flight", image = "flight", board = "px4fmu_v1_sbus",
+      watch = { "fw::imu_task", "fw::attitude_task", "fw::gps_task" } },
+    { name = "pod", image = "pod", board = "pod_with_receivers" },
+  },
+  wires = receivers, vehicle = "hp_quad", tags = { "chain", "nightly" }, timeout = "120 s",
+  outdoors = true, fence = { radius = "40 m", height = "20 m" },
+  run = function(t)
+    t:step "a fix, and sticks"
+    t:within("8 s", function(s) return s.heartbeat_age_s < 1.5 end, "the first heartbeat")
+    t:command { rc = { mode = 2 } }
+    t:within("60 s", function(s) return s.receiver_north_m == s.receiver_north_m end, "the origin of its frame is told")
+    t:wait "4 s"
+    t:command { rc = { arm = true } }
+    t:within("2 s", function(s) return s.told_armed == 1 end, "armed by the switch")
+    t:budget("flight/fw::gps_task") { execution = "200 us", response = "500 us" }
+    t:wait "2 s"
+
+    t:step "by hand"
+    t:command { rc = { thrust = "100 %" } }
+    t:within("10 s", function(s) return s.height_m > 2 end, "2 m high")
+    t:command { rc = { thrust = "50 %" } }
+    t:wait "3 s"
+    local hover = t:record({ "velocity_error_north", "velocity_error_east", "tilt" }, "5 s")
+    t:expect(hover:rms_error { velocity_error_north = "0 m/s", velocity_error_east = "0 m/s" }, "RMS error of velocity over ground"):at_most "0.4 m/s"
+    t:expect(hover:max "tilt", "tilt"):at_most "25 deg"
+    t:expect(t:value "told_state", "flown by hand"):equal(2)
+    nothing_late(t)
+
+    t:step "the receiver's wire is cut"
+    t:fault { kind = "uart_silence", bus = "flight/usart1" }
+    t:within("2.5 s", function(s) return s.told_state == 3 end, "landing")
+    t:told("3 s", "radio control lost")
+
+    t:step "and the GPS's, at the pod's end"
+    t:fault { kind = "uart_silence", bus = "pod/usart6" }
+    t:within("3 s", function(s) return s.told_state == 4 end, "failsafe landing")
+    t:within("40 s", function(s) return s.on_ground == 1 end, "on the ground")
+  end,
+}

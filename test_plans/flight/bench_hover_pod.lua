@@ -2,4 +2,4 @@
 -- by --target bench/NAME on metal with a pod (docs/bench.md).
 include "include/bench_hover.lua"
 
-bench_hover("bench_hover_pod", "px4fmu_v1_pod", { "flight", "bench" })
+bench_hover("bench_hover_pod", "px4fmu_v1_sbus", { "flight", "bench" })

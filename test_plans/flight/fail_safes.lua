@@ -118,6 +118,18 @@ for motor = 1, 4 do
   end)
 end
 
+-- What its ESC bears is flown on with; beyond 22 A, in the mean of 10 ms, it trips by itself.
+for motor = 1, 4 do
+  fail_safe("motor " .. motor .. " takes too much current", { upright = false }, function(t)
+    t:fault { kind = "winding_short", motor = motor, value = "10 A", duration = "1 s" }
+    local borne = t:record({ "told_state", "bus_current_" .. motor }, "1 s")
+    t:expect(borne:max "told_state", "10 A more: it flies on"):at_most(2)
+    t:expect(borne:max("bus_current_" .. motor), "10 A more: of the bus"):at_least "11 A"
+    t:fault { kind = "winding_short", motor = motor, value = "30 A" }
+    cuts(t, "an ESC had too much current", motor)
+  end)
+end
+
 -- It turns on for as long as its ESC does without set-points.
 fail_safe("an ESC falls silent", { upright = false }, function(t)
   t:fault { kind = "i2c_nack", device = "esc3" }

@@ -6,6 +6,17 @@
 namespace whirl::flight {
 namespace {
 
+TEST(FarParts, WhatAReceiverOfOneOfThemFindsIsTakenAndNobodyElses) {
+  const FarParts parts({2, 5}, {});
+  const auto finds = [&parts](std::uint8_t board, io::Kind kind) {
+    return parts.finds({0, kind, board, 0, 0});
+  };
+  EXPECT_TRUE(finds(2, io::Kind::gnss_solution));
+  EXPECT_TRUE(finds(5, io::Kind::gnss_solution));
+  EXPECT_FALSE(finds(3, io::Kind::gnss_solution));
+  EXPECT_FALSE(finds(2, io::Kind::data_ready));
+}
+
 io::Header setpoint_of(std::uint8_t board, std::uint16_t motor) {
   return {0, io::Kind::esc_setpoint, board, motor, 0};
 }

@@ -1,7 +1,12 @@
 // The battery's current at an ADC pin: a shunt with its amplifier, or a Hall sensor. Gain and offset are
 // drawn about what their data sheet says.
 //
+//   Faults    sensor_frozen (the sensor's output stays what it was), sensor_offset (A, of the current), sensor_drift
+//             (A a minute), sensor_saturated (its output at the pin's supply). One whose wire is off shows 0 V: an
+//             offset of -1 kA of a positive gain
 //   Left out  bandwidth of the sensor beside its RC, hysteresis of Hall sensors, drift with temperature
+#include <algorithm>
+
 #include "io_bridges/rack/devices/table.hpp"
 #include "io_bridges/rack/models/sense_line.hpp"
 
@@ -16,18 +21,29 @@ class CurrentSenseDevice final : public RackDevice {
         line_({.time_constant_s = slot.quantity("params.time_constant"),
                .noise_V = slot.quantity("params.noise"),
                .seed = slot.rack().seed(),
-               .name = slot.name()}) {
+               .name = slot.name()}),
+        faults_(&slot.rack().faults()),
+        number_(slot.number()) {
     line_.set_V(offset_V_, slot.rack().events().now());
     slot.set_analog(slot.text("bus"), [this](Nanoseconds now) { return line_.sample_V(now); });
   }
 
   std::vector<Intake> intakes() const override { return {{io::Kind::body_motion}}; }
   void on_message(const io::Reader& message) override {
-    const double current_A = message.as<io::BodyMotion>().battery_current_A;
-    line_.set_V(offset_V_ + gain_V_per_A_ * current_A, message.header().t_ns);
+    const io::Nanoseconds now = message.header().t_ns;
+    if (fails(io::FaultKind::sensor_frozen, now)) return;
+    const double current_A = message.as<io::BodyMotion>().battery_current_A +
+                             io::added_by_faults(faults_, io::kAnywhere, number_, now, 0);
+    line_.set_V(fails(io::FaultKind::sensor_saturated, now)
+                    ? SenseLine::Params{}.supply_V
+                    : std::max(offset_V_ + gain_V_per_A_ * current_A, 0.0),
+                now);
   }
 
  private:
+  bool fails(io::FaultKind kind, io::Nanoseconds now) {
+    return faults_->apply(kind, io::kAnywhere, number_, now) != nullptr;
+  }
   // Evenly between minus and plus the key's value.
   static double drawn(DeviceSlot& slot, const char* path) {
     RandomStream random(slot.rack().seed(), slot.name() + "." + path);
@@ -36,6 +52,8 @@ class CurrentSenseDevice final : public RackDevice {
 
   double gain_V_per_A_, offset_V_;
   SenseLine line_;
+  io::FaultBook* faults_;
+  int number_;
 };
 
 }  // namespace

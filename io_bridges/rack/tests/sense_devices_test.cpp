@@ -91,19 +91,56 @@ TEST(BatterySense, EachBoardsResistorsDifferWithinTheirTolerance) {
   EXPECT_GT(*ratios.rbegin() - *ratios.begin(), 0.03);
 }
 
-TEST(CurrentSense, IsGainTimesCurrentAboveItsOffset) {
-  BenchRack rack;
+BoardDevice hall_of_17_A_per_V() {
   BoardDevice device{.name = "current", .type = "current_sense", .bus = "PC0"};
   device.set("params.gain", 1.0 / 17.0);
   device.set("params.offset", 0.05);
   for (const char* path : {"params.tolerance", "params.offset_error", "params.noise"}) {
     device.set(path, 0.0);
   }
-  ASSERT_NE(rack.add(device), nullptr) << rack.error;
+  return device;
+}
+
+TEST(CurrentSense, IsGainTimesCurrentAboveItsOffset) {
+  BenchRack rack;
+  ASSERT_NE(rack.add(hall_of_17_A_per_V()), nullptr) << rack.error;
   EXPECT_TRUE(near(pin_V(rack), 0.05, round_off(2, 0.05)));
   rack.send(fed(15.0, 34.0));
   rack.run_ms(50.0);
   EXPECT_TRUE(near(pin_V(rack), 2.05, round_off(8, 2.05)));
+}
+
+// Each for 50 ms, 50 time constants; between them the sensor is well again.
+TEST(CurrentSense, FailsAsTheOtherPartsDo) {
+  using Kind = io::FaultKind;
+  const struct {
+    Kind kind;
+    double value, pin_V;
+  } table[] = {{Kind::sensor_frozen, 0.0, 0.05 + 17.0 / 17.0},  // what it was before 34 A
+               {Kind::sensor_offset, -8.5, 0.05 + 25.5 / 17.0},
+               {Kind::sensor_offset, -1000.0, 0.0},                         // its wire is off
+               {Kind::sensor_drift, 20400.0, 0.05 + (34.0 + 17.0) / 17.0},  // 17 A in 50 ms
+               {Kind::sensor_saturated, 0.0, 3.3}};
+  for (const auto& row : table) {
+    BenchRack rack;
+    ASSERT_NE(rack.add(hall_of_17_A_per_V()), nullptr) << rack.error;
+    rack.send(fed(15.0, 17.0));
+    rack.run_ms(50.0);
+    io::Fault fault{.number = 1, .kind = row.kind, .address = 0, .value = row.value};
+    fault.start_ns = rack.queue.now();
+    fault.end_ns = fault.start_ns + 60'000'000;
+    rack.book.add(fault);
+    rack.run_ms(50.0);
+    rack.send(fed(15.0, 34.0));
+    rack.run_ms(9.0);
+    EXPECT_TRUE(near(pin_V(rack), row.pin_V, stated(1e-3, "9 time constants of up to 2 V")))
+        << io::name(row.kind);
+    EXPECT_TRUE(rack.book.pending().empty()) << io::name(row.kind);
+    rack.run_ms(2.0);
+    rack.send(fed(15.0, 34.0));
+    rack.run_ms(50.0);
+    EXPECT_TRUE(near(pin_V(rack), 2.05, round_off(8, 2.05))) << io::name(row.kind);
+  }
 }
 
 TEST(CurrentSense, NeedsItsGainAndAnAnalogPin) {

@@ -13,22 +13,25 @@ namespace whirl::board {
 
 inline constexpr Nanoseconds kGrain_ns = 1'000'000;
 
+// As the board does between two boundaries.
+inline void wired_step(io::EventQueue& events, WireEnds& ends, Nanoseconds from, Nanoseconds to,
+                       const bool& closed) {
+  ends.after_boundary(from, to);
+  bool there = false;
+  io::Event boundary(
+      events, [&] { there = true, ends.at_boundary(to); }, io::Rank::boundary);
+  boundary.at(to);
+  events.run_until(to);
+  EXPECT_TRUE(there || closed);
+}
+
 struct WiredBoard {
   io::EventQueue events;
   std::vector<io::Finding> findings;
   bool closed = false;
   WireEnds ends{
       {events, [this](const io::Finding& f) { findings.push_back(f); }, [this] { closed = true; }}};
-  // As the board does between two boundaries.
-  void step(Nanoseconds from, Nanoseconds to) {
-    ends.after_boundary(from, to);
-    bool there = false;
-    io::Event boundary(
-        events, [&] { there = true, ends.at_boundary(to); }, io::Rank::boundary);
-    boundary.at(to);
-    events.run_until(to);
-    EXPECT_TRUE(there || closed);
-  }
+  void step(Nanoseconds from, Nanoseconds to) { wired_step(events, ends, from, to, closed); }
 };
 
 template <typename Board>
