@@ -46,7 +46,7 @@ results/flight_log       base/ results/flight_log/
 results/spread           base/ io_bridges/messages/ results/
 results/sinks            base/ io_bridges/copper/wire_drawing.hpp io_bridges/copper/edge.hpp io_bridges/messages/ results/messages/ results/sinks/
 harness                  base/ harness/cli/ harness/composition/ harness/target/bench/
-harness/composition      base/ harness/catalogue/ harness/cli/composition.hpp harness/cli/console.hpp harness/cli/find_file.hpp harness/cli/stand_in_request.hpp harness/composition/ harness/flight/ harness/pacing/ harness/plan/needs.hpp harness/stand/ harness/standin/ harness/target/ io_bridges/hid/emulated/ io_bridges/protocols/ io_bridges/rack/devices/table.hpp
+harness/composition      base/ harness/board/ harness/catalogue/ harness/cli/composition.hpp harness/cli/console.hpp harness/cli/find_file.hpp harness/cli/stand_in_request.hpp harness/composition/ harness/flight/ harness/pacing/ harness/plan/needs.hpp harness/stand/ harness/standin/ harness/target/ io_bridges/hid/emulated/ io_bridges/protocols/ io_bridges/rack/devices/table.hpp
 harness/job              base/ harness/job/
 harness/lua              base/ harness/lua/
 harness/pacing           base/ harness/pacing/
@@ -56,11 +56,11 @@ harness/board            base/ harness/board/ io_bridges/board_description/
 harness/target           base/ harness/target/ io_bridges/
 harness/target/bench     base/ harness/pacing/ harness/target/ io_bridges/
 harness/lockstep         base/ harness/lockstep/ harness/target/target.hpp harness/world/ io_bridges/messages/
-harness/plan             base/ harness/board/ harness/lua/ harness/metrics/ harness/plan/ harness/target/offers.hpp harness/world/ io_bridges/board_description/bus_name.hpp results/
+harness/plan             base/ harness/board/ harness/lua/ harness/metrics/ harness/plan/ harness/target/offers.hpp harness/world/ io_bridges/board_description/bus_name.hpp io_bridges/board_description/bus_kind.hpp results/
 harness/executive        base/ harness/board/ harness/executive/ harness/lockstep/ harness/metrics/ harness/plan/ harness/target/ harness/world/ io_bridges/devices/faults.hpp io_bridges/messages/ results/
 harness/catalogue        base/ harness/calibrate/setup.hpp harness/catalogue/ harness/flight/ harness/lua/ harness/stand/ harness/target/bench/bench_description.hpp harness/world/drawn_part.hpp io_bridges/board_description/ io_bridges/copper/channel_name.hpp io_bridges/protocols/ io_bridges/rack/ plant/ firmware/esc/core/
 harness/flight           base/ harness/flight/ harness/world/ io_bridges/board_description/ io_bridges/messages/ io_bridges/protocols/ plant/ firmware/esc/core/
-harness/standin          base/ harness/lockstep/ harness/pacing/ harness/standin/ harness/target/ harness/world/ io_bridges/board_description/ io_bridges/messages/ io_bridges/serial/ io_bridges/socketcan/
+harness/standin          base/ harness/board/ harness/lockstep/ harness/pacing/ harness/standin/ harness/target/ harness/world/ io_bridges/board_description/ io_bridges/link/ io_bridges/messages/ io_bridges/protocols/ io_bridges/serial/ io_bridges/socketcan/
 harness/stand            base/ harness/stand/ harness/world/ io_bridges/board_description/ io_bridges/messages/ io_bridges/protocols/ plant/
 harness/inflow_bound     base/ harness/inflow_bound/ plant/ results/
 harness/sweep            base/ harness/flight/controllers.hpp harness/flight/flight_params.hpp harness/regression/ harness/sweep/ plant/ results/

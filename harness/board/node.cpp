@@ -1,5 +1,7 @@
 #include "harness/board/node.hpp"
 
+#include <algorithm>
+
 namespace whirl {
 
 Result<NodePlace> node_place(const std::vector<Node>& nodes, const std::string& text) {
@@ -18,6 +20,36 @@ Result<NodePlace> node_place(const std::vector<Node>& nodes, const std::string& 
   return Error{ErrorKind::bad_input, "", "'" + text + "' names no board of this plan",
                "write NODE/" + (slash == std::string::npos ? text : text.substr(slash + 1)) +
                    " with NODE of: " + names};
+}
+
+namespace {
+
+const BoardDevice* host_of(const BoardDescription& board) {
+  const auto host = std::find_if(board.devices.begin(), board.devices.end(),
+                                 [](const BoardDevice& d) { return d.type == "pod_parts"; });
+  return host == board.devices.end() ? nullptr : &*host;
+}
+
+}  // namespace
+
+bool plays_parts(const BoardDescription& board) {
+  return host_of(board) != nullptr;
+}
+
+std::set<std::string> pod_parts(const BoardDescription& board) {
+  const BoardDevice* host = host_of(board);
+  if (host == nullptr) return {};
+  std::set<std::string> all{"mpu6000", "ms5611", "hmc5883l", "esc_i2c"};
+  if (host->value("params.gps") == KeyValue(true)) all.insert("ublox_6");
+  if (host->value("params.receiver") == KeyValue(true)) all.insert("sbus");
+  return all;
+}
+
+std::optional<int> can_of_host(const BoardDescription& board) {
+  const BoardDevice* host = host_of(board);
+  const auto can = host == nullptr ? std::nullopt : host->value("params.can");
+  if (!can || *can == KeyValue(0.0)) return std::nullopt;
+  return static_cast<int>(std::get<double>(*can));
 }
 
 std::string timing_profile(const std::vector<Node>& nodes) {

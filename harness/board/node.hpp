@@ -3,6 +3,8 @@
 //   Names    "esc1/fw::esc::control_task", "esc1/imu", "esc1/i2c2": what stands on that node's board. Where
 //            there is only one node its name may be left out.
 #pragma once
+#include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -28,6 +30,13 @@ struct NodePlace {
 
 // Errors  bad_input: of several nodes none is named, or one that is not there
 Result<NodePlace> node_place(const std::vector<Node>& nodes, const std::string& text);
+
+// Its parts sense what the vehicle does, and play its ESCs: it stands for any number of devices, and turns no motor.
+bool plays_parts(const BoardDescription& board);
+// The types of what it plays: "mpu6000"; with a GPS "ublox_6", with a receiver "sbus".
+std::set<std::string> pod_parts(const BoardDescription& board);
+// The CAN bus that such a board's host is on; nothing: it is on a serial line.
+std::optional<int> can_of_host(const BoardDescription& board);
 
 // In words: which clock each board's time passes by.
 std::string timing_profile(const std::vector<Node>& nodes);

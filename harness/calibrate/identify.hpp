@@ -25,6 +25,7 @@ struct SenseFit {
 struct MotorFit {
   // Q w = va i - (loss_ohm i + loss_V + loss_share va + loss_emf w) i - drag w
   Coefficient loss_ohm, loss_V, loss_share, loss_emf, drag;
+  double bus_V = 0.0;  // mean of the points that they were fitted on, as the ESC senses it
   Coefficient torque_constant, no_load_current;  // i = no_load + Q / kt
   Coefficient back_emf, resistance, overlap;     // motor voltage over speed and current
   Coefficient inertia;                           // from the transients

@@ -185,6 +185,7 @@ Result<MotorFit> fit_motor(const StandData& data, const SenseFit& sense) {
   motor.drag = motor.losses["drag"];
   motor.loss_share = motor.losses["loss_share"];
   motor.loss_emf = motor.losses["loss_emf"];
+  for (const SteadyPoint& x : points) motor.bus_V += x.esc_V / static_cast<double>(points.size());
   motor.torque_constant = inverse(motor.torque, "per torque", "kt", "N m/A");
   motor.no_load_current = motor.torque["no_load"];
   motor.back_emf = motor.voltage["ke"];

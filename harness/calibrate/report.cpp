@@ -35,6 +35,7 @@ std::vector<Setting> settings(const Calibration& c) {
       {"loss_volt", c.motor.loss_V.value},
       {"loss_share", c.motor.loss_share.value},
       {"loss_emf", c.motor.loss_emf.value},
+      {"loss_bus", c.motor.bus_V},
       {"drag", c.motor.drag.value},
       {"inertia", c.motor.inertia.value},
       {"c0", c.rotor.c0.value},

@@ -19,7 +19,25 @@ int read_baud(const lua::Table& t) {
       t.quantity_or("baud", Dimension::baud, 115200.0, lua::between(300.0, 12e6)));
 }
 
+void read_can(const lua::Table& t, bench::CanBusLink& link) {
+  link.name = t.text("name");
+  link.interface = t.text("interface");
+  link.bit_rate_bps = static_cast<std::uint32_t>(
+      t.quantity_or("rate", Dimension::baud, link.bit_rate_bps, lua::between(10e3, 1e6)));
+}
+
+// Its line has a rate of its own.
+void read_pod(const lua::Table& t, bench::BenchDescription& bench) {
+  bench::PodLink link;
+  link.name = t.text("name");
+  link.board = t.text("pod");
+  link.path = t.text_or("path", "");
+  if (link.path.empty()) read_can(t, link.can);
+  bench.pods.push_back(std::move(link));
+}
+
 void read_link(const lua::Table& t, bench::BenchDescription& bench) {
+  if (t.has("pod")) return read_pod(t, bench);
   const std::string name = t.text("name"), bus = t.text("bus");
   const auto number = bus_number(bus);
   const auto port = static_cast<std::uint16_t>(number.value_or(0));
@@ -36,11 +54,8 @@ void read_link(const lua::Table& t, bench::BenchDescription& bench) {
     bench.serials.push_back({name, t.text("path"), port, read_baud(t)});
   } else if (number && bus.starts_with("can")) {
     bench::CanBusLink link;
-    link.name = name;
-    link.interface = t.text("interface");
+    read_can(t, link);
     link.bus = port;
-    link.bit_rate_bps = static_cast<std::uint32_t>(
-        t.quantity_or("rate", Dimension::baud, link.bit_rate_bps, lua::between(10e3, 1e6)));
     bench.cans.push_back(std::move(link));
   } else {
     t.refuse("bus", "'" + bus + "' is no bus that a bench can join", "i2c1.., usart1.., can1..");
@@ -185,6 +200,10 @@ void check_names(const lua::Table& t, const bench::BenchDescription& bench) {
     once(names, "links", link.name);
     once(places, "links", "can" + std::to_string(link.bus));
     once(places, "links", link.interface);
+  }
+  for (const auto& link : bench.pods) {
+    once(names, "links", link.name);
+    once(places, "links", link.path.empty() ? link.can.interface : link.path);
   }
   for (const auto& instrument : bench.instruments) {
     once(names, "instruments", instrument.name);

@@ -76,7 +76,7 @@ Result<stand::StandParams> read_stand(const lua::Table& t, const std::string& pr
   p.battery = read_feed(t);
   if (t.has("motor")) read_stage_motor(t.table("motor"), p.stage);
   if (t.has("shunt")) read_stage_shunt(t.table("shunt"), p.stage);
-  p.tolerance = read_tolerance(t, plant::esc_stand_groups());
+  p.tolerance = read_tolerance(t, plant::esc_stand_groups(), plant::ToleranceClass::typical);
   if (t.has("mode")) p.esc.mode = read_esc_mode(t, "mode").on_wire;
   p.esc.address = static_cast<std::uint8_t>(t.integer_or("address", p.esc.address, 0x08, 0x77));
   p.esc.pulse_rate_Hz = read_pulse_rate(t);

@@ -4,9 +4,14 @@ namespace whirl::catalogue {
 
 using plant::ToleranceClass;
 
-plant::Tolerances read_tolerance(const lua::Table& t, std::span<const char* const> groups) {
+plant::Tolerances read_tolerance(const lua::Table& t, std::span<const char* const> groups,
+                                 ToleranceClass unsaid) {
   plant::Tolerances all;
-  if (!t.has("tolerance")) return all;
+  if (!t.has("tolerance")) {
+    if (unsaid == ToleranceClass::none) return all;
+    for (const char* group : groups) all[group] = unsaid;
+    return all;
+  }
   const auto chosen = [](const lua::Table& in, const char* key) {
     const auto words = {plant::name(ToleranceClass::none), plant::name(ToleranceClass::typical),
                         plant::name(ToleranceClass::worst)};

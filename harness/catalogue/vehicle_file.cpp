@@ -150,7 +150,7 @@ Result<flight::FlightParams> read_vehicle(const std::string& path, const Setting
                                                p.vehicle.avionics_current_A, at_least(0.0));
   p.vehicle.motor = read_motor(t.table("motor"), MissingKeys::refused);
   p.vehicle.battery = read_feed(t);
-  p.tolerance = read_tolerance(t, plant::vehicle_groups());
+  p.tolerance = read_tolerance(t, plant::vehicle_groups(), plant::ToleranceClass::none);
   const Table esc = t.table("esc");
   p.controller = controller_of(esc);
   p.esc = read_esc(esc);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "harness/catalogue/bench_file.hpp"
+#include "harness/catalogue/board_file.hpp"
 #include "harness/catalogue/stand_table.hpp"
 #include "harness/cli/find_file.hpp"
 #include "harness/cli/find_plans.hpp"
@@ -60,17 +61,23 @@ bool serial_joins(const BoardDevice& device, const bench::BenchDescription& benc
   });
 }
 
-// Of a flight controller's board: what hangs on a bus that the bench joins is played by it; memories are the board's
-// own; on a receiver that nobody plays nothing is sent.
+bool pod_plays(const BoardDevice& device, const bench::BenchDescription& bench) {
+  return std::any_of(bench.pods.begin(), bench.pods.end(), [&](const bench::PodLink& link) {
+    return pod_parts(link.parts).count(device.type) != 0;
+  });
+}
+
+// Of a flight controller's board: what hangs on a bus that the bench joins is played by it, some parts by a pod; memories
+// are the board's own, and so is its divider, on the bench's supply; on a receiver that nobody plays nothing is sent.
 Result<Done> check_played(const BoardDevice& device, const BoardDescription& board,
                           const bench::BenchDescription& bench) {
-  for (const char* own : {"sd_card", "eeprom_24xx", "cppm", "sbus"}) {
+  for (const char* own : {"sd_card", "eeprom_24xx", "cppm", "sbus", "battery_sense"}) {
     if (device.type == own) return Done{};
   }
   const bool played =
       std::any_of(bench.cans.begin(), bench.cans.end(),
                   [&](const auto& l) { return device.bus == "can" + std::to_string(l.bus); }) ||
-      (device.type == "mavlink_link" && serial_joins(device, bench));
+      (device.type == "mavlink_link" && serial_joins(device, bench)) || pod_plays(device, bench);
   if (played) return Done{};
   const bool on_can = device.bus.starts_with("can");
   return refused(bench.file,
@@ -79,7 +86,8 @@ Result<Done> check_played(const BoardDevice& device, const BoardDescription& boa
                  on_can ? "links = { { bus = \"" + device.bus + "\", interface = \"can0\" } }"
                  : device.type == "mavlink_link"
                      ? "links = { { bus = \"" + device.bus + "\", path = \"/dev/ttyUSB0\" } }"
-                     : "a board whose sensors and ESCs are nodes of CAN: px4fmu_v1_all_can");
+                     : "links = { { pod = \"pod_with_receivers\", path = ... } } for what a pod "
+                       "plays, or a board whose parts are nodes of CAN: px4fmu_v1_all_can");
 }
 
 Result<Done> check_flight_links(const BoardDescription& board,
@@ -90,6 +98,30 @@ Result<Done> check_flight_links(const BoardDescription& board,
   if (!bench.safety.limits.empty()) {
     return refused(bench.file, "limits: of a flight controller's bench nothing is measured",
                    "leave them out: its vehicle is this host's, and nothing turns");
+  }
+  return Done{};
+}
+
+// The boards of its pods.
+Result<Done> read_pods(bench::BenchDescription& bench, const std::string& root) {
+  for (bench::PodLink& link : bench.pods) {
+    const auto file = find_file(link.board, {bench.file, "links." + link.name},
+                                {root + "/test_plans/boards"}, ".lua");
+    if (!file) return file.error();
+    auto board = read_board(shown_path(file.value()));
+    if (!board) return board.error();
+    link.parts = std::move(board.value());
+    if (!plays_parts(link.parts)) {
+      return refused(bench.file, link.parts.name + " has no pod_parts: it is no pod's board",
+                     "pod_with_parts, pod_with_parts_can");
+    }
+    const std::optional<int> can = can_of_host(link.parts);
+    link.can.bus = static_cast<std::uint16_t>(can.value_or(0));
+    if (can.has_value() == link.path.empty()) continue;
+    return refused(bench.file,
+                   "the host of " + link.parts.name + " is on " +
+                       (can ? "can" + std::to_string(*can) : std::string("a serial line")),
+                   can ? "interface = \"can0\"" : "path = \"/dev/ttyUSB0\"");
   }
   return Done{};
 }
@@ -134,6 +166,7 @@ Result<bench::BenchDescription> bench_for(const plan::Plan& plan, const std::vec
   if (!file) return file.error();
   auto bench = read_bench(shown_path(file.value()));
   if (!bench) return bench.error();
+  if (const auto read = read_pods(bench.value(), root); !read) return read.error();
   const BoardDescription& board = nodes.front().board;
   if (bench.value().board != board.name) {
     return refused(plan.place, "the plan is for " + board.name + ", and on bench " +

@@ -4,6 +4,9 @@
 #include <map>
 #include <set>
 
+#include "io_bridges/board_description/bus_kind.hpp"
+#include "io_bridges/board_description/bus_name.hpp"
+
 namespace whirl::cli {
 namespace {
 
@@ -39,12 +42,13 @@ Result<Done> check_circles(const plan::Plan& plan, const std::vector<Node>& node
 // Both ends are of one kind.
 Result<Done> check_buses(const plan::Plan& plan, const plan::PlanBoardWire& wire,
                          const BoardDevice& device, const std::string& name) {
-  const bool i2c = device.bus.starts_with("i2c") && device.address >= 0;
-  const bool spi = device.bus.starts_with("spi");
-  if (!i2c && !spi) return wrong(plan, name + " is no target on an I2C or SPI bus", "");
-  if (spi != wire.bus.starts_with("spi")) {
+  const BusKind kind = bus_kind(device.bus);
+  if (kind == BusKind::none || (kind == BusKind::i2c && device.address < 0)) {
+    return wrong(plan, name + " is no target on an I2C or SPI bus, and on no UART", "");
+  }
+  if (kind != bus_kind(wire.bus)) {
     return wrong(plan, name + " is on " + device.bus + ", the other end on " + wire.bus,
-                 "both are I2C, or both SPI");
+                 "both are I2C, both SPI, or both a UART");
   }
   return Done{};
 }
@@ -56,17 +60,34 @@ Result<Done> check_one_to_one(const plan::Plan& plan, const std::vector<Node>& n
   for (const plan::PlanBoardWire& wire : plan.board_wires) {
     const BoardDevice& device = *nodes[wire.leader].board.find(wire.device);
     const std::string& follower = nodes[wire.follower].name;
-    const bool spi = wire.bus.starts_with("spi");
-    const std::string master = spi ? wire.device : device.bus;
+    const bool one_only = bus_kind(wire.bus) != BusKind::i2c;  // device for the whole bus
+    const std::string master = one_only ? wire.device : device.bus;
     const auto [place, fresh] = masters.emplace(std::pair(wire.follower, wire.bus), master);
-    if (!fresh && (spi || place->second != master)) {
+    if (!fresh && (one_only || place->second != master)) {
       return wrong(plan, follower + "." + wire.bus + " has two masters",
                    "each bus of a board follows one");
     }
-    if (device.motor == 0) continue;
+    if (device.motor == 0 || plays_parts(nodes[wire.follower].board)) continue;
     if (!motors.emplace(wire.follower, device.motor).second) {
       return wrong(plan, follower + " takes the place of two motors' devices",
                    "a board turns one motor");
+    }
+  }
+  return Done{};
+}
+
+// A UART that a line of the plan is on has no room for another board.
+Result<Done> check_lines(const plan::Plan& plan, const std::vector<Node>& nodes) {
+  std::set<std::pair<std::size_t, int>> lines;
+  for (const plan::PlanWire& line : plan.wires) {
+    for (const auto& end : {line.a, line.b}) lines.insert({end.node, end.uart});
+  }
+  for (const plan::PlanBoardWire& wire : plan.board_wires) {
+    if (!is_uart(wire.bus)) continue;
+    const std::string& there = nodes[wire.leader].board.find(wire.device)->bus;
+    for (const auto& [node, bus] : {std::pair(wire.leader, there), {wire.follower, wire.bus}}) {
+      if (lines.count({node, bus_number(bus).value_or(0)}) == 0) continue;
+      return wrong(plan, nodes[node].name + "." + bus + " has two wires", "");
     }
   }
   return Done{};
@@ -112,6 +133,7 @@ Result<Done> check_board_wires(const plan::Plan& plan, const std::vector<Node>& 
     }
   }
   if (const auto led = check_circles(plan, nodes); !led) return led.error();
+  if (const auto lines = check_lines(plan, nodes); !lines) return lines.error();
   return check_one_to_one(plan, nodes);
 }
 
@@ -139,7 +161,8 @@ Result<std::vector<BoardWireLink>> join_boards(const plan::Plan& plan,
       end.select = wire->select;
       end.ready = wire->ready;
       if (fresh) setups[pair.follower].wires.push_back(end);
-      if (device.motor != 0) setups[pair.follower].motor = device.motor;
+      const bool turns = device.motor != 0 && !plays_parts(nodes[pair.follower].board);
+      if (turns) setups[pair.follower].motor = device.motor;
       setups[pair.leader].far.push_back({pair.follower, device.motor, &nodes[pair.follower].board});
     }
     for (WireEnd& end : setups[pair.follower].wires) {

@@ -11,9 +11,9 @@
 
 namespace whirl::cli {
 
-// Errors  bad_input: a device that is not there, or on neither I2C nor SPI, or on another kind of bus than the other
-//         end; one that two boards take the place of; a board that two others lead, a bus with two masters, a board for
-//         two motors; leads that come back to where they began (each would wait for the other)
+// Errors  bad_input: a device that is not there, or on neither I2C nor SPI nor a UART, or on another kind of bus than the other
+//         end; one that two boards take the place of; a board that two others lead, a bus with two masters, a UART
+//         with two wires, a board for two motors; leads that come back to where they began (each would wait for the other)
 Result<Done> check_board_wires(const plan::Plan& plan, const std::vector<Node>& nodes);
 
 // Makes the wires and gives each setup its ends, and that of the leader what its far boards are. The links have to

@@ -140,7 +140,7 @@ Result<Done> fuzz_parsers(const Amount& amount) {
   if (!places()) return places().error();
   ParserFuzzOptions options;
   options.root = places().value().root;
-  options.seconds = amount.smoke ? 10.0 : 3600.0;
+  options.seconds = amount.smoke ? 6.0 : 3600.0;
   options.runs = static_cast<std::int64_t>(amount.seeds);
   options.seed = amount.first + 1;  // libFuzzer takes 0 for "any"
   switch (run_parser_fuzzers(options)) {

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "base/check.hpp"
+#include "harness/board/node.hpp"
 #include "harness/catalogue/stand_table.hpp"
 #include "harness/catalogue/surroundings_table.hpp"
 #include "harness/catalogue/vehicle_file.hpp"
@@ -23,6 +24,7 @@
 #include "harness/target/bench/bench_target.hpp"
 #include "harness/target/bench/bridge_link.hpp"
 #include "harness/target/bench/node_link.hpp"
+#include "harness/target/bench/pod_line.hpp"
 #include "harness/target/bench/serial_links.hpp"
 #include "harness/target/copper_target.hpp"
 #include "harness/target/virtual_board.hpp"
@@ -67,15 +69,6 @@ Result<Done> check_escs(const cli::Setup& setup, const flight::FlightParams& par
     if (driven.count(motor) == 0) return wrong("motor " + std::to_string(motor) + " has no ESC");
   }
   return Done{};
-}
-
-flight::BoardEars ears_of(const BoardDescription& board) {
-  const auto has = [&](std::initializer_list<const char*> types) {
-    return std::any_of(board.devices.begin(), board.devices.end(), [&](const BoardDevice& device) {
-      return std::find(types.begin(), types.end(), device.type) != types.end();
-    });
-  };
-  return {.radio = has({"mavlink_link"}), .receiver = has({"cppm", "sbus"})};
 }
 
 // A pod's rig is the world around its board: the stand that a plan names stays empty.
@@ -125,7 +118,7 @@ Result<std::vector<flight::FarShaft>> far_shafts(const cli::Setup& setup,
   std::vector<flight::FarShaft> shafts(params.vehicle.airframe.rotors.size());
   std::size_t found = 0;
   for (const cli::FarBoard& far : setup.far) {
-    if (far.motor == 0) continue;
+    if (far.motor == 0 || plays_parts(*far.board)) continue;
     const BoardDevice* stage = power_stage(*far.board);
     if (stage == nullptr) {
       return wrong(far.board->name + " turns no motor", "esc32v2 has a power stage");
@@ -146,18 +139,39 @@ Result<std::vector<flight::FarShaft>> far_shafts(const cli::Setup& setup,
   return shafts;
 }
 
-// Parts that sense what the vehicle does are on the first board, or behind a board in the place of one.
-bool has_far_parts(const BoardDescription& board) {
-  return std::any_of(board.devices.begin(), board.devices.end(),
-                     [](const BoardDevice& device) { return device.type == "pod_parts"; });
+bool plays_receiver(const BoardDescription& board) {
+  return pod_parts(board).count("sbus") != 0;
 }
 
-std::vector<std::uint8_t> sensing_boards(const cli::Setup& setup) {
+// What of the ground the first board hears, itself or by a board in a part's place.
+flight::BoardEars ears_of(const cli::Setup& setup) {
+  flight::BoardEars ears{.radio = false, .receiver = false};
+  const auto played = std::find_if(setup.far.begin(), setup.far.end(),
+                                   [](const auto& far) { return plays_receiver(*far.board); });
+  for (const BoardDevice& device : setup.board.devices) {
+    const bool here = std::none_of(setup.wires.begin(), setup.wires.end(),
+                                   [&](const WireEnd& end) { return end.device == device.name; });
+    const bool receiver = device.type == "cppm" || device.type == "sbus";
+    if (device.type == "mavlink_link") ears.radio |= here;
+    if (receiver && here) ears.receiver = true;
+    if (!receiver || here || played == setup.far.end()) continue;
+    ears.receiver = true;
+    ears.receivers_board = static_cast<std::uint8_t>(played->node);
+  }
+  return ears;
+}
+
+// Parts that sense what the vehicle does are on the first board, or behind a board in the place of one; and so are its
+// ESCs, where they are played.
+void set_far_parts(const cli::Setup& setup, flight::FlightParams& params) {
   std::set<std::uint8_t> boards;
   for (const cli::FarBoard& far : setup.far) {
-    if (has_far_parts(*far.board)) boards.insert(static_cast<std::uint8_t>(far.node));
+    if (!plays_parts(*far.board)) continue;
+    const auto node = static_cast<std::uint8_t>(far.node);
+    boards.insert(node);
+    if (far.motor != 0) params.far_escs[far.motor] = node;
   }
-  return {boards.begin(), boards.end()};
+  params.sensing_boards = {boards.begin(), boards.end()};
 }
 
 Result<std::unique_ptr<World>> make_world(const cli::Setup& setup) {
@@ -172,12 +186,17 @@ Result<std::unique_ptr<World>> make_world(const cli::Setup& setup) {
   const auto around = catalogue::read_surroundings(*setup.plan.surroundings, params.value());
   if (!around) return around.error();
   if (const auto joined = check_escs(setup, params.value()); !joined) return joined.error();
-  params.value().ears = ears_of(setup.board);
-  if (setup.bench != nullptr) params.value().ears.receiver = false;  // nobody plays one
+  params.value().ears = ears_of(setup);
+  if (setup.bench != nullptr) {
+    const auto& pods = setup.bench->pods;
+    params.value().ears.receiver =
+        std::any_of(pods.begin(), pods.end(),
+                    [](const bench::PodLink& link) { return plays_receiver(link.parts); });
+  }
   auto far = far_shafts(setup, params.value());
   if (!far) return far.error();
   params.value().far_shafts = std::move(far.value());
-  params.value().sensing_boards = sensing_boards(setup);
+  set_far_parts(setup, params.value());
   return std::unique_ptr<World>(std::make_unique<flight::FlightWorld>(params.value(), setup.seed));
 }
 
@@ -229,8 +248,29 @@ Result<Done> add_masters(const cli::Setup& setup, const bench::BridgeMaker& brid
   return Done{};
 }
 
+// A pod's board is another copy of the hardware than the flight controller's.
+Result<Done> add_pods(const cli::Setup& setup, const bench::CanMaker& can, Links& links) {
+  const std::uint64_t seed = setup.seed + (std::uint64_t{1} << 32);
+  for (const bench::PodLink& link : setup.bench->pods) {
+    const auto params = vehicle_of(setup);
+    if (!params) return params.error();
+    BoardDescription board = link.parts;
+    flight::set_parts(board, params.value());
+    if (link.path.empty()) {
+      links.push_back(std::make_unique<bench::NodeLink>(
+          bench::NodeOptions{link.can, board, rack::device_types(), seed, log_of(setup, link.can),
+                             true},
+          can));
+    } else {
+      links.push_back(std::make_unique<bench::PodLine>(
+          bench::PodLineOptions{link, board, rack::device_types(), seed}));
+    }
+  }
+  return Done{};
+}
+
 // Of a vehicle: its nodes, for the flight controller.
-void add_nodes(const cli::Setup& setup, const bench::CanMaker& can, Links& links) {
+Result<Done> add_nodes(const cli::Setup& setup, const bench::CanMaker& can, Links& links) {
   for (const bench::CanBusLink& link : setup.bench->cans) {
     links.push_back(
         std::make_unique<bench::NodeLink>(bench::NodeOptions{.link = link,
@@ -240,18 +280,31 @@ void add_nodes(const cli::Setup& setup, const bench::CanMaker& can, Links& links
                                                              .log = log_of(setup, link)},
                                           can));
   }
+  return add_pods(setup, can, links);
+}
+
+// Of a vehicle's nodes: what the plan may spoil.
+std::set<std::string> played_parts(const cli::Setup& setup) {
+  std::set<std::string> all;
+  if (setup.plan.stand) return all;
+  for (const bench::CanBusLink& link : setup.bench->cans) {
+    const std::string bus = "can" + std::to_string(link.bus);
+    all.insert(bus);
+    for (const BoardDevice& device : setup.board.devices) {
+      if (device.bus == bus) all.insert(device.name);
+    }
+  }
+  return all;
 }
 
 Result<std::unique_ptr<Target>> bench_target(const cli::Setup& setup,
                                              const bench::BridgeMaker& bridge,
-                                             const bench::CanMaker& can) {
+                                             const bench::CanMaker& can, pacing::HostClock& clock) {
   const bench::BenchDescription& bench = *setup.bench;
   Links links;
-  if (!setup.plan.stand) {
-    add_nodes(setup, can, links);
-  } else if (const auto added = add_masters(setup, bridge, can, links); !added) {
-    return added.error();
-  }
+  const auto added =
+      setup.plan.stand ? add_masters(setup, bridge, can, links) : add_nodes(setup, can, links);
+  if (!added) return added.error();
   for (const bench::SerialLink& link : bench.serials) {
     links.push_back(std::make_unique<bench::BoardSerial>(link));
   }
@@ -266,8 +319,9 @@ Result<std::unique_ptr<Target>> bench_target(const cli::Setup& setup,
         bench::rts_marker(bench.analyser->marker), copper_names(setup.board)));
   }
   return std::unique_ptr<Target>(std::make_unique<bench::BenchTarget>(
-      bench::BenchOptions{.bench = bench, .operator_stops = enter_pressed}, std::move(links),
-      host_clock()));
+      bench::BenchOptions{
+          .bench = bench, .operator_stops = enter_pressed, .played = played_parts(setup)},
+      std::move(links), clock));
 }
 
 // What this run's copy of the hardware changes on the board: a stand's stage and instruments, a vehicle's IMU
@@ -279,7 +333,7 @@ Result<Done> set_copy(const cli::Setup& setup, BoardDescription& board) {
     return stand::set_parts(board, params.value());
   }
   const bool flies = setup.node == 0 && !setup.vehicle_file.empty();
-  const bool senses = !setup.vehicle_file.empty() && has_far_parts(setup.board);
+  const bool senses = !setup.vehicle_file.empty() && plays_parts(setup.board);
   if (!flies && !senses && setup.motor == 0) return Done{};
   auto params = vehicle_of(setup);
   if (!params) return params.error();
@@ -295,8 +349,8 @@ Result<Done> set_copy(const cli::Setup& setup, BoardDescription& board) {
 
 Result<std::unique_ptr<Target>> make_target(const cli::Setup& setup,
                                             const bench::BridgeMaker& bridge,
-                                            const bench::CanMaker& can) {
-  if (setup.bench != nullptr) return bench_target(setup, bridge, can);
+                                            const bench::CanMaker& can, pacing::HostClock& clock) {
+  if (setup.bench != nullptr) return bench_target(setup, bridge, can, clock);
   VirtualBoardOptions options;
   options.board = {setup.board,
                    {.image = setup.image,
@@ -319,9 +373,13 @@ Result<std::unique_ptr<Target>> make_target(const cli::Setup& setup,
 }  // namespace
 
 cli::Composition boards_and_worlds(const std::string& root, const std::string& results,
-                                   const bench::BridgeMaker& bridge, const bench::CanMaker& can) {
+                                   const bench::BridgeMaker& bridge, const bench::CanMaker& can,
+                                   pacing::HostClock* clock) {
+  pacing::HostClock* held_by = clock == nullptr ? &host_clock() : clock;
   return {make_world,
-          [bridge, can](const cli::Setup& setup) { return make_target(setup, bridge, can); },
+          [bridge, can, held_by](const cli::Setup& setup) {
+            return make_target(setup, bridge, can, *held_by);
+          },
           root,
           results,
           bridge,

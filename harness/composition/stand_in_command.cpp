@@ -18,6 +18,7 @@
 #include "harness/stand/stand_world.hpp"
 #include "harness/standin/bare_board.hpp"
 #include "harness/standin/no_world.hpp"
+#include "harness/standin/pod_beside.hpp"
 #include "harness/standin/stand_in.hpp"
 #include "harness/target/bench/can_link.hpp"
 #include "harness/target/virtual_board.hpp"
@@ -76,8 +77,13 @@ class PlayedBridge {
   std::unique_ptr<io::UhidDevice> device_;
 };
 
+constexpr const char* kPodBoard = "pod_with_receivers";
+constexpr double kSupply_V = 16.0;  // that a flight controller's divider sees
+
 struct Parts {
   BoardDescription board;  // as the bench knows it
+  BoardDescription pod;    // beside it; without devices: none
+  std::string pod_image;
   std::string image;
   bool flies = false;        // a flight controller: the bench plays its world
   stand::StandParams stand;  // of an ESC
@@ -127,10 +133,21 @@ Result<Done> check_wires(const cli::StandInRequest& request, const Parts& parts,
   const auto refused = [&](const std::string& what, const std::string& cure) {
     return Error{ErrorKind::bad_input, file, what, cure};
   };
+  if (request.pod && !request.can.empty()) {
+    return refused("its sensors and ESCs hang on the pod, whose host is on a line",
+                   "--pod without --can");
+  }
   if (parts.flies) {
-    if (!request.can.empty()) return Done{};
+    if (!request.can.empty() || request.pod) return Done{};
     return refused("is a flight controller's: its sensors and ESCs are played over CAN",
-                   "--can INTERFACE");
+                   "--can INTERFACE, or px4fmu_v1_sbus --pod");
+  }
+  if (request.pod) {
+    return refused("has nothing that a pod plays: no radio, or no ESCs on I2C", "px4fmu_v1_sbus");
+  }
+  if (has_type(parts.board, "mavlink_link") && has_type(parts.board, "esc_i2c")) {
+    return refused("is a flight controller's with SPI and I2C: a pod plays its sensors and ESCs",
+                   "px4fmu_v1_sbus --pod");
   }
   if (!has_type(parts.board, "i2c_master") && request.can.empty()) {
     return refused("has no i2c_master: nothing commands it",
@@ -142,6 +159,18 @@ Result<Done> check_wires(const cli::StandInRequest& request, const Parts& parts,
   return Done{};
 }
 
+Result<Done> read_pod(const cli::Asker& asker, const std::string& root, Parts& parts) {
+  const auto board = cli::find_file(kPodBoard, asker, {root + "/test_plans/boards"}, ".lua");
+  if (!board) return board.error();
+  auto described = read_board(board.value());
+  if (!described) return described.error();
+  const auto image = cli::find_file("pod", asker, image_folders(root), ".elf");
+  if (!image) return image.error();
+  parts.pod = std::move(described.value());
+  parts.pod_image = image.value();
+  return Done{};
+}
+
 Result<Parts> read_parts(const cli::StandInRequest& request, const std::string& root) {
   const cli::Asker asker{".", "whirl standin"};
   const auto board = cli::find_file(request.board, asker, {root + "/test_plans/boards"}, ".lua");
@@ -150,7 +179,8 @@ Result<Parts> read_parts(const cli::StandInRequest& request, const std::string& 
   if (!described) return described.error();
   Parts parts;
   parts.board = std::move(described.value());
-  parts.flies = has_type(parts.board, "mavlink_link") && has_type(parts.board, "esc_dronecan");
+  const char* esc = request.pod ? "esc_i2c" : "esc_dronecan";
+  parts.flies = has_type(parts.board, "mavlink_link") && has_type(parts.board, esc);
   const std::string usual = parts.flies ? "flight" : "esc";
   const auto image = cli::find_file(request.image.empty() ? usual : request.image, asker,
                                     image_folders(root), ".elf");
@@ -165,6 +195,9 @@ Result<Parts> read_parts(const cli::StandInRequest& request, const std::string& 
   if (const auto joined = check_wires(request, parts, board.value()); !joined) {
     return joined.error();
   }
+  if (request.pod) {
+    if (const auto read = read_pod(asker, root, parts); !read) return read.error();
+  }
   return parts;
 }
 
@@ -178,6 +211,10 @@ std::string bench_file(const cli::StandInRequest& request, const Parts& parts) {
   if (!request.can.empty()) {
     text += "    { name = \"bus\", bus = \"can" + std::to_string(parts.can_bus) +
             "\", interface = \"" + request.can + "\" },\n";
+  }
+  if (request.pod) {
+    text += "    { name = \"pod\", pod = \"" + std::string(kPodBoard) + "\", path = \"" + folder +
+            "/pod\" },\n";
   }
   if (parts.bridge) {
     text += "    { name = \"throttle\", bus = \"i2c" + std::to_string(parts.stand.esc.i2c) +
@@ -208,11 +245,15 @@ Result<StandInOptions> open_wires(const cli::StandInRequest& request, const Part
   std::filesystem::create_directories(request.folder, status);
   StandInOptions wires;
   wires.pace = request.pace;
-  wires.uart = parts.uart;
   wires.i2c = parts.stand.esc.i2c;
   auto serial = io::PseudoTerminal::open(request.folder + "/serial");
   if (!serial) return serial.error();
-  wires.serial.emplace(std::move(serial.value()));
+  wires.lines.push_back({parts.uart, std::move(serial.value())});
+  if (request.pod) {
+    auto host = io::PseudoTerminal::open(request.folder + "/pod");
+    if (!host) return host.error();
+    wires.lines.push_back({1, std::move(host.value()), 1});
+  }
   if (!parts.flies) {
     auto instruments = io::PseudoTerminal::open(request.folder + "/instruments");
     if (!instruments) return instruments.error();
@@ -250,8 +291,15 @@ void say_lateness(const StandIn& stand_in, double pace) {
 }
 
 std::unique_ptr<World> world_of(const Parts& parts) {
-  if (parts.flies) return std::make_unique<NoWorld>();
+  if (parts.flies) return std::make_unique<NoWorld>(kSupply_V);
   return std::make_unique<stand::StandWorld>(parts.stand, 1);
+}
+
+Result<std::unique_ptr<Target>> boards_of(const cli::StandInRequest& request, const Parts& parts) {
+  if (request.pod) return with_pod({parts.board, parts.pod, parts.image, parts.pod_image});
+  VirtualBoardOptions options;
+  options.board = {bare_board(parts.board), {.image = parts.image, .seed = 1}};
+  return std::unique_ptr<Target>(std::make_unique<VirtualBoard>(std::move(options)));
 }
 
 }  // namespace
@@ -262,11 +310,10 @@ int stand_in_command(const cli::StandInRequest& request, const std::string& root
   auto wires = open_wires(request, parts.value());
   if (!wires) return cli::complain(wires.error());
   const auto world = world_of(parts.value());
-  VirtualBoardOptions options;
-  options.board = {bare_board(parts.value().board), {.image = parts.value().image, .seed = 1}};
-  VirtualBoard board(std::move(options));
+  const auto boards = boards_of(request, parts.value());
+  if (!boards) return cli::complain(boards.error());
   pacing::MonotonicClock clock;
-  StandIn stand_in(*world, board, clock, std::move(wires.value()));
+  StandIn stand_in(*world, *boards.value(), clock, std::move(wires.value()));
   PlayedBridge bridge(stand_in, request.serial);
   if (parts.value().bridge) {
     if (const auto plugged = bridge.plug_in(); !plugged) {

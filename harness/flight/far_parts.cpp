@@ -1,5 +1,6 @@
 #include "harness/flight/far_parts.hpp"
 
+#include <algorithm>
 #include <span>
 
 namespace whirl::flight {
@@ -12,6 +13,15 @@ constexpr std::uint16_t kLine = 1;  // the UART of a pod's host
 bool FarParts::hears(const io::Header& head) const {
   return head.kind == io::Kind::uart_received && head.port == kLine && !boards_.empty() &&
          head.board == boards_.front();
+}
+
+bool FarParts::finds(const io::Header& head) const {
+  return head.kind == io::Kind::gnss_solution &&
+         std::find(boards_.begin(), boards_.end(), head.board) != boards_.end();
+}
+
+bool FarParts::is_esc(const io::Header& head) const {
+  return head.kind == io::Kind::esc_setpoint && head.board == board_of(head.port);
 }
 
 void FarParts::on_message(const io::Reader& message) {
@@ -35,6 +45,17 @@ void FarParts::send(std::int64_t t_ns, const io::BodyMotion& motion, io::Batch& 
   const io::Header head{t_ns, io::Kind::uart_frame, boards_.front(), kLine, 0};
   sensed.add(head, {{reinterpret_cast<const std::uint8_t*>(to_send_.data()), to_send_.size()}});
   to_send_.clear();
+}
+
+std::uint8_t FarParts::board_of(int motor) const {
+  const auto played = escs_.find(motor);
+  return played == escs_.end() ? std::uint8_t{0} : played->second;
+}
+
+void FarParts::send_esc(std::int64_t t_ns, std::uint16_t motor, const io::EscState& state,
+                        io::Batch& sensed) const {
+  const io::Header head{t_ns, io::Kind::esc_state, board_of(motor), motor, 0};
+  sensed.add(head, {{reinterpret_cast<const std::uint8_t*>(&state), sizeof state}});
 }
 
 Result<Done> FarParts::say(const std::string& line) {

@@ -19,8 +19,9 @@ namespace whirl::flight {
 
 // What of the ground the board can hear.
 struct BoardEars {
-  bool radio = true;     // a telemetry radio
-  bool receiver = true;  // of radio control
+  bool radio = true;                 // a telemetry radio
+  bool receiver = true;              // of radio control
+  std::uint8_t receivers_board = 0;  // of the run: on which it is
 };
 
 // A motor controller that is a board of its own: the shaft that its power stage turns is the vehicle's.
@@ -47,6 +48,7 @@ struct FlightParams {
   std::vector<DrawnPart> drawn;
   std::vector<FarShaft> far_shafts;          // index: motor number - 1; empty: native controllers
   std::vector<std::uint8_t> sensing_boards;  // of the run, besides the first, with parts that sense
+  std::map<int, std::uint8_t> far_escs;      // by motor: the one of these whose parts play its ESC
 };
 
 }  // namespace whirl::flight

@@ -33,14 +33,15 @@ FlightWorld::FlightWorld(const FlightParams& params, plant::RotorSet rotors, std
     : place_(params.place),
       has_load_(params.vehicle.load.has_value()),
       ears_(params.ears),
-      far_parts_(params.sensing_boards),
+      far_parts_(params.sensing_boards, params.far_escs),
       vehicle_(make_vehicle(params, std::move(rotors), seed)),
       airframe_(params.vehicle.airframe),
       obstacles_(params.vehicle.obstacles),
       seed_(seed),
       drawn_(params.drawn),
       capture_(params.capture, seed),
-      drag_truth_(params.vehicle.airframe) {
+      drag_truth_(params.vehicle.airframe),
+      transmitter_(params.ears.receivers_board) {
   for (const plant::RotorMount& mount : airframe_.rotors) {
     unbalance_m_.push_back(mount.unbalance_kgm / airframe_.mass_kg);
   }
@@ -104,7 +105,7 @@ void FlightWorld::on_messages(const io::Batch& happened) {
       far_->on_message(reader);
     } else if (far_parts_.hears(header)) {
       far_parts_.on_message(reader);
-    } else if (header.kind == io::Kind::esc_setpoint) {
+    } else if (far_parts_.is_esc(header)) {
       WHIRL_CHECK(header.port >= 1 && header.port <= airframe_.rotors.size(), header.port);
       const auto setpoint = reader.as<io::EscSetpoint>();
       if (setpoint.valid != 0) {
@@ -166,8 +167,7 @@ void FlightWorld::send(std::int64_t t_ns, io::Batch& sensed) {
   far_parts_.send(t_ns, motion, sensed);
 
   for (std::size_t i = 0; i < controllers_.size(); ++i) {
-    sensed.add(io::Kind::esc_state, static_cast<std::uint16_t>(i + 1), t_ns,
-               controllers_[i]->status());
+    far_parts_.send_esc(t_ns, static_cast<std::uint16_t>(i + 1), controllers_[i]->status(), sensed);
   }
   if (far_) {
     dip_leads(t_ns);

@@ -49,7 +49,8 @@ class FlightWorld : public World {
   const std::vector<Signal>& signals() const override { return signals_; }
   void read(std::span<double> values) const override;
   bool hears(const io::Header& head) const override {
-    return (far_ && far_->hears(head)) || far_parts_.hears(head);
+    return (far_ && far_->hears(head)) || far_parts_.hears(head) || far_parts_.finds(head) ||
+           far_parts_.is_esc(head);
   }
   void step(std::int64_t t_ns, const io::Batch& happened, io::Batch& sensed) override;
   Result<Done> command(const Command& command, std::int64_t now_ns) override;

@@ -12,7 +12,7 @@ double of_switch(int position) {  // 1, 2, 3: -1, 0, +1
 
 }  // namespace
 
-Transmitter::Transmitter() {
+Transmitter::Transmitter(std::uint8_t board) : board_(board) {
   channels_.position[kThrust] = -1.0;
   channels_.position[kMode] = of_switch(1);
   channels_.position[kArm] = -1.0;
@@ -32,7 +32,9 @@ void Transmitter::set(const request::Sticks& sticks) {
 void Transmitter::step(std::int64_t t_ns, io::Batch& sensed) {
   if (t_ns < next_ns_) return;
   next_ns_ = t_ns + kPeriod_ns;
-  if (on_) sensed.add(io::Kind::rc_channels, 0, t_ns, channels_);
+  if (!on_) return;
+  const io::Header head{t_ns, io::Kind::rc_channels, board_, 0, 0};
+  sensed.add(head, {{reinterpret_cast<const std::uint8_t*>(&channels_), sizeof channels_}});
 }
 
 }  // namespace whirl::flight

@@ -14,13 +14,15 @@ namespace whirl::flight {
 
 class Transmitter {
  public:
-  Transmitter();
+  // To the receiver of that board of the run.
+  explicit Transmitter(std::uint8_t board = 0);
 
   void set(const request::Sticks& sticks);
   // What is due at t_ns.
   void step(std::int64_t t_ns, io::Batch& sensed);
 
  private:
+  std::uint8_t board_;
   bool on_ = false;
   io::RcChannels channels_;
   std::int64_t next_ns_ = 0;

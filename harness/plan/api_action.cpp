@@ -139,6 +139,10 @@ int axis_number(const lua::Table& asked, const FaultPlace& place, const BoardDes
   return static_cast<int>(found - device->senses.begin());
 }
 
+bool can_spoil(const Stage& stage, const FaultSpec& fault) {
+  return stage.spoils ? stage.spoils(target_of(fault)) : stage.offers.has(Offer::wire_faults);
+}
+
 // t:fault { kind = "i2c_nack", device = "esc2", start = "0 s", duration = "100 ms", value = 1 }
 // Without a duration it stays for ever. start counts from now.
 int fault(lua_State* L) {
@@ -170,7 +174,7 @@ int fault(lua_State* L) {
       raise(L, "a fault of kind " + fault.kind + " is on one board of several",
             "name it by its device, bus, function or node: bus = \"" + nodes[0].name + "/i2c1\"");
     }
-    if (!self.stage().offers.has(Offer::wire_faults)) {
+    if (!can_spoil(self.stage(), fault)) {
       raise(L, not_offered("a fault of kind " + fault.kind, Offer::wire_faults));
     }
     if (auto sent = self.stage().inject(fault); !sent) raise(L, sent.error());

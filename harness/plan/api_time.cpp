@@ -116,6 +116,19 @@ int quantity(lua_State* L) {
   return 1;
 }
 
+// t:shortest_rise { from = "0.8 N", to = "4 N", current = "20 A" } -> what that current takes of this copy.
+int shortest_rise(lua_State* L) {
+  const lua::Table asked = check_table(L, 2);
+  const auto thrust_N = [&](const char* key) { return asked.quantity(key, Dimension::force); };
+  const double from_N = thrust_N("from"), to_N = thrust_N("to");
+  const double current_A = asked.quantity("current", Dimension::current, lua::above(0.0));
+  check_finish(L, asked);
+  const auto rise_s = Script::of(L).stage().world.shortest_rise_s(from_N, to_N, current_A);
+  if (!rise_s) raise(L, rise_s.error());
+  push_measurement(L, {rise_s.value(), Dimension::time, "shortest rise"});
+  return 1;
+}
+
 // t:drawn("2 s", "5 s") -> "3.4715 s": even between the two, the next draw of the run's seed.
 int drawn(lua_State* L) {
   Script& self = Script::of(L);
@@ -137,10 +150,12 @@ int drawn(lua_State* L) {
 }  // namespace
 
 void add_time_calls(lua_State* L) {
-  const luaL_Reg calls[] = {
-      {"wait", wait},   {"wait_until", wait_until}, {"within", within}, {"step", step},
-      {"log", log},     {"value", value},           {"now", now},       {"quantity", quantity},
-      {"drawn", drawn}, {nullptr, nullptr}};
+  const luaL_Reg calls[] = {{"wait", wait},     {"wait_until", wait_until},
+                            {"within", within}, {"step", step},
+                            {"log", log},       {"value", value},
+                            {"now", now},       {"quantity", quantity},
+                            {"drawn", drawn},   {"shortest_rise", shortest_rise},
+                            {nullptr, nullptr}};
   luaL_setfuncs(L, calls, 0);
 }
 

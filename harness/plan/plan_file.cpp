@@ -1,6 +1,7 @@
 #include "harness/plan/plan_file.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <lua.hpp>
@@ -9,6 +10,7 @@
 #include "base/text.hpp"
 #include "harness/lua/node.hpp"
 #include "harness/plan/raise.hpp"
+#include "io_bridges/board_description/bus_kind.hpp"
 #include "io_bridges/board_description/bus_name.hpp"
 
 namespace whirl::plan {
@@ -19,6 +21,9 @@ constexpr std::int64_t kDefaultTimeout_ns = 120'000'000'000;
 // Of a line from a follower to its leader.
 constexpr std::int64_t kLeastLatency_ns = 2000, kUsualLatency_ns = 100'000,
                        kMostLatency_ns = 1'000'000;
+// Of a UART between boards, the fastest that the follower may speak: ten bits of it, and what a rate may be off by.
+constexpr double kUsualFastest_baud = 115'200.0, kShortest_bits = 10.0 * 0.97;
+constexpr double kLeastFastest_baud = 1200.0, kMostFastest_baud = 3e6;
 const std::vector<std::string> kSurroundings = {"start",     "room",  "outdoors", "fence",
                                                 "obstacles", "field", "air",      "load"};
 
@@ -54,8 +59,7 @@ PlanWire::End wire_end(const lua::Table& t, const char* key, const Plan& plan) {
   PlanWire::End end;
   const auto place = place_on_node(t.text(key), plan);
   const std::string bus = place ? place->second : "";
-  const auto number =
-      bus.starts_with("usart") || bus.starts_with("uart") ? bus_number(bus) : std::nullopt;
+  const auto number = is_uart(bus) ? bus_number(bus) : std::nullopt;
   if (!number) {
     t.refuse(key, "'" + t.text(key) + "' is no UART of a node", "write NODE.usart1");
     return end;
@@ -79,14 +83,18 @@ void read_board_wire(const lua::Table& t, Plan& plan) {
     if (wire.latency_ns < kLeastLatency_ns || wire.latency_ns > kMostLatency_ns) {
       t.refuse("latency", "a line's latency is 2 us to 1 ms");
     }
+  } else if (is_uart(to->second)) {
+    const double fastest = t.quantity_or("fastest", Dimension::baud, kUsualFastest_baud,
+                                         lua::between(kLeastFastest_baud, kMostFastest_baud));
+    wire.latency_ns = std::llround(kShortest_bits * 1e9 / fastest);
   }
   plan.board_wires.push_back(std::move(wire));
 }
 
 void read_wires(const lua::Table& t, Plan& plan) {
   for (const lua::Table& entry : t.tables("wires")) {
-    const std::string to = entry.text("to");
-    if (to.find(".i2c") != std::string::npos || to.find(".spi") != std::string::npos) {
+    const std::string from = entry.text("from");
+    if (!is_uart(from.substr(from.find('.') + 1))) {  // a device's place
       read_board_wire(entry, plan);
       continue;
     }

@@ -41,7 +41,8 @@ struct Stage {
   std::function<Result<Done>(const FaultSpec&)> inject;  // into the board
   std::int64_t now_ns = 0;
   std::string folder = {};  // of the run, where its parts leave files; empty: none
-  std::function<bool(const std::string&)> sees = {};  // Target::sees; empty: all
+  std::function<bool(const std::string&)> sees = {};    // Target::sees; empty: all
+  std::function<bool(const std::string&)> spoils = {};  // Target::spoils; empty: by offers
 };
 
 // Of a card, as it was when the plan looked.

@@ -6,6 +6,7 @@
 
 #include "base/check.hpp"
 #include "base/rpm.hpp"
+#include "harness/stand/current_bound.hpp"
 
 namespace whirl::stand {
 namespace {
@@ -14,7 +15,8 @@ constexpr const char* kSupply_dip = "supply_dip";
 constexpr double kStep_s = 1e-3;
 constexpr std::int64_t kStep_ns = 1'000'000;
 constexpr double kMost_flow_mps = 20.0;
-constexpr double kSlow_radps = 20.0;  // below, loads go with the square of speed
+constexpr double kSlow_radps = 20.0;     // below, loads go with the square of speed
+constexpr double kDivider = 1.5 / 11.5;  // of the drawing: io_bridges/rack/models/power_stage.hpp
 
 std::int64_t ns_of(double seconds) {
   return std::llround(seconds * 1e9);
@@ -138,6 +140,20 @@ Result<bool> StandWorld::take_fault(const FaultSpec& fault) {
   return true;
 }
 
+Result<double> StandWorld::shortest_rise_s(double from_N, double to_N, double current_A) const {
+  return stand::shortest_rise_s(motor_of(params_.stage), params_.blade,
+                                {from_N, to_N, current_A, wind_mps_});
+}
+
+double StandWorld::sensed_V() const {
+  const auto number = [this](const char* name) {
+    const auto found = params_.stage.find(name);
+    return found == params_.stage.end() ? 0.0 : found->second;
+  };
+  const double shown_V = shaft_.bus_voltage_V * (1.0 + number("divider.bus"));
+  return shown_V * (1.0 + number("adc.gain.bus")) + number("adc.offset.bus") / kDivider;
+}
+
 std::string StandWorld::status() const {
   char text[80];
   std::snprintf(text, sizeof text, "%.0f rpm, %.2f N, %.1f A", rpm_of(shaft_.speed_radps),
@@ -172,6 +188,8 @@ void StandWorld::name_signals() {
   add_signal("winding_peak", D::current, "largest of 1 ms",
              [this] { return shaft_.winding_peak_A; });
   add_signal("bus_voltage", D::voltage, "at the bridge", [this] { return shaft_.bus_voltage_V; });
+  add_signal("sensed_voltage", D::voltage, "as divider and converter of this copy show bus_voltage",
+             [this] { return sensed_V(); });
   add_signal("charge_used", D::charge, "of the battery",
              [this] { return battery_.charge_used_C(); });
   add_signal("wind", D::speed, "down along the shaft", [this] { return wind_mps_; });

@@ -36,6 +36,7 @@ class StandWorld : public World {
   Result<bool> take_fault(const FaultSpec& fault) override;
   std::vector<std::uint32_t> applied_faults() const override { return faults_.acted(); }
   const std::vector<DrawnPart>& drawn_parts() const override { return params_.drawn; }
+  Result<double> shortest_rise_s(double from_N, double to_N, double current_A) const override;
   std::string status() const override;
   Result<Done> say(const std::string& line) override { return master_.ask(line); }
   const std::vector<std::string>& heard() const override { return master_.heard(); }
@@ -68,6 +69,7 @@ class StandWorld : public World {
   double wind_mps_ = 0.0, brake_Nm_ = 0.0;
   TimedFaults faults_;
   std::uint64_t shots_ = 0, resets_ = 0;
+  double sensed_V() const;  // what the copy's divider and converter make of the bus voltage
   std::vector<Signal> signals_;
   std::vector<std::function<double()>> values_;
   std::int64_t now_ns_ = 0;

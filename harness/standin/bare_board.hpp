@@ -1,5 +1,6 @@
 // A board as metal lies on a bench: without the parts that the bench plays to it.
 //
+//   Pod's host    is left out; its line, or its bus, is there for whoever plays it
 //   Nodes on CAN  of the world are left out; in their place the bus has a can_port
 //   Radio         its UART ends at a serial line, bytes as they are
 //   The rest      (memories, receivers, what is on other buses) stays on the board

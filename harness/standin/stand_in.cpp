@@ -63,13 +63,12 @@ void StandIn::heard() {
 void StandIn::take_in() {
   const std::int64_t now_ns = lockstep_.now_ns();
   std::array<std::uint8_t, 1024> bytes;
-  if (options_.serial) {
-    const std::size_t size = options_.serial->read(bytes);
-    if (size > 0) {
-      heard();
-      lockstep_.to_send().add(io::Kind::uart_frame, options_.uart, now_ns, bytes.data(),
-                              static_cast<std::uint32_t>(size));
-    }
+  for (StandInLine& line : options_.lines) {
+    const std::size_t size = line.end.read(bytes);
+    if (size == 0) continue;
+    heard();
+    const io::Header head{now_ns, io::Kind::uart_frame, line.board, line.uart, 0};
+    lockstep_.to_send().add(head, {std::span(bytes).first(size)});
   }
   const std::scoped_lock lock(mutex_);
   for (const std::uint32_t number : fresh_) {
@@ -84,10 +83,13 @@ void StandIn::take_in() {
 
 void StandIn::hand_out() {
   for (io::Reader r(lockstep_.happened().bytes()); r.next();) {
-    if (r.header().kind == io::Kind::i2c_reply) answer(r);
-    if (r.header().kind == io::Kind::can_transfer) hand_out_can(r);
-    if (r.header().kind != io::Kind::uart_received || r.header().port != options_.uart) continue;
-    if (options_.serial) options_.serial->write(r.payload());
+    const io::Header& head = r.header();
+    if (head.kind == io::Kind::i2c_reply) answer(r);
+    if (head.kind == io::Kind::can_transfer && head.board == 0) hand_out_can(r);
+    if (head.kind != io::Kind::uart_received) continue;
+    for (StandInLine& line : options_.lines) {
+      if (line.board == head.board && line.uart == head.port) line.end.write(r.payload());
+    }
   }
 }
 

@@ -1,8 +1,10 @@
-// A virtual board that behaves as one of metal: time does not wait for who is at its wires.
+// A virtual board, or several that wires join, that behave as metal: time does not wait for who is at their wires.
+//
+//   First   of several: CAN, I2C and the world around are the first one's
 //
 //   CAN     frames of an interface of this host go onto the board's bus, and what the board sends comes out there, by
 //           the board's can_port
-//   Wires   its serial line on a pseudo-terminal, its I2C slave by transfers that wait for their answer, what a load
+//   Wires   its serial lines on pseudo-terminals, its I2C slave by transfers that wait for their answer, what a load
 //           cell and meters would say as lines of text on another pseudo-terminal
 //   Pace    of the host's clock, as a pacer holds it; a host that is late is told of in lateness(), from the first byte
 //           or frame on that somebody has sent it: before, nobody waits for it
@@ -26,10 +28,16 @@
 
 namespace whirl {
 
+struct StandInLine {  // a serial line of a board
+  std::uint16_t uart = 1;
+  io::PseudoTerminal end;
+  std::uint8_t board = 0;  // of several, its place in their list
+};
+
 struct StandInOptions {
   double pace = 1.0;
-  std::uint16_t uart = 1, i2c = 2;
-  std::optional<io::PseudoTerminal> serial;  // none: nobody is at the line
+  std::uint16_t i2c = 2;
+  std::vector<StandInLine> lines = {};  // at any other nobody is
   std::optional<io::PseudoTerminal> instruments;
   std::uint16_t can_bus = 1;
   std::unique_ptr<io::CanPort> can = {};   // none: nobody is on its bus

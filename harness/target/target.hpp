@@ -53,6 +53,10 @@ class Target {
   virtual Offers offers() const = 0;  // the same at any time
   // Of its log of buses: "i2c3", "pin_NAME".
   virtual bool sees(const std::string& /*wires*/) const { return offers().has(Offer::bus_log); }
+  // Of the faults on wires and devices: "imu", "can2".
+  virtual bool spoils(const std::string& /*what*/) const {
+    return offers().has(Offer::wire_faults);
+  }
   virtual std::string why_ended() const { return {}; }
   // Of several targets that wait for each other, asked while one of them is waited for:
   virtual bool over() const { return false; }         // it has given its last words

@@ -12,9 +12,9 @@
 #include "base/scratch_folder.hpp"
 #include "harness/catalogue/board_file.hpp"
 #include "harness/composition/boards.hpp"
-#include "harness/pacing/host_clock.hpp"
 #include "harness/standin/bare_board.hpp"
 #include "harness/standin/no_world.hpp"
+#include "harness/tests/common_clock.hpp"
 #include "harness/tests/running_stand_in.hpp"
 #include "io_bridges/socketcan/tests/memory_can.hpp"
 
@@ -22,21 +22,23 @@ namespace whirl {
 namespace {
 
 const std::string kRoot = WHIRL_ROOT;
-constexpr double kPace = 0.5;
+constexpr double kPace = 0.5;  // of a clock that nobody is late by
 
 // The real image, alone: nothing around it but its wires.
 struct Metal {
-  Metal(const ScratchFolder& folder, std::unique_ptr<io::CanPort> can)
+  Metal(const ScratchFolder& folder, std::unique_ptr<io::CanPort> can, CommonClock& clock)
       : radio(folder.file("radio")) {
     const auto board = read_board(kRoot + "/test_plans/boards/px4fmu_v1_all_can.lua");
     StandInOptions wires;
     wires.pace = kPace;
-    wires.uart = 2;
     wires.can_bus = 2;
-    wires.serial.emplace(std::move(io::PseudoTerminal::open(radio).value()));
+    wires.lines.push_back({2, std::move(io::PseudoTerminal::open(radio).value())});
     wires.can = std::move(can);
-    stand_in.emplace(world, bare_board(board.value()), kRoot + "/build/firmware/flight.elf",
-                     std::move(wires));
+    VirtualBoardOptions options;
+    options.board = {bare_board(board.value()),
+                     {.image = kRoot + "/build/firmware/flight.elf", .seed = 1}};
+    stand_in.emplace(world, std::make_unique<VirtualBoard>(std::move(options)), std::move(wires),
+                     &clock);
   }
   void stop() { stand_in->stop(); }
 
@@ -64,9 +66,10 @@ struct Flown {
   }
 };
 
-Flown fly(std::vector<std::string> words, const std::string& out, const bench::CanMaker& can) {
-  const auto composition = boards_and_worlds(kRoot, out, nullptr, can);
-  words.insert(words.begin(), {"whirl", "run", kRoot + "/test_plans/flight/bench_hover.lua"});
+Flown fly(const std::string& plan, std::vector<std::string> words, const std::string& out,
+          const bench::CanMaker& can, pacing::HostClock* clock) {
+  const auto composition = boards_and_worlds(kRoot, out, nullptr, can, clock);
+  words.insert(words.begin(), {"whirl", "run", plan});
   std::vector<char*> argv;
   argv.reserve(words.size());
   for (std::string& word : words) argv.push_back(word.data());
@@ -77,36 +80,76 @@ Flown fly(std::vector<std::string> words, const std::string& out, const bench::C
   return run;
 }
 
-TEST(BenchFlight, TheRealImageHoversOverItsWiresAsItDoesInLockstep) {
-  const ScratchFolder folder;
-  io::MemoryCan bus([] { return pacing::MonotonicClock().now_ns(); });
-  Metal metal(folder, bus.join());
+Flown fly_on_bench(const std::string& plan, const ScratchFolder& folder) {
+  CommonClock clock;
+  io::MemoryCan bus([&] { return clock.now_ns(); });
+  Metal metal(folder, bus.join(), clock);
   const std::string file = folder.file("bench.lua");
   std::ofstream(file) << bench_file(metal.radio);
   const Flown flown = fly(
-      {"--target", "bench/" + file, "--arm", "clear"}, folder.file("bench"),
-      [&](const bench::CanBusLink&) -> Result<std::unique_ptr<io::CanPort>> { return bus.join(); });
+      plan, {"--target", "bench/" + file, "--arm", "clear"}, folder.file("bench"),
+      [&](const bench::CanBusLink&) -> Result<std::unique_ptr<io::CanPort>> { return bus.join(); },
+      &clock);
+  clock.leave();
   metal.stop();
-  const std::string reason = flown.file["reason"];
-  // A host that was late has shown nothing of the firmware; that it was, is said.
-  if (flown.code != 0 && (*metal.stand_in)->lateness().slipped_ns > 0) {
-    std::printf("not judged, the stand-in was late: %s\n", reason.c_str());
-    return;
-  }
-  if (flown.code == 3) {
-    ASSERT_NE(reason.find("the host was late"), std::string::npos) << reason;
-    std::printf("not judged: %s\n", reason.c_str());
-    return;
-  }
-  ASSERT_EQ(flown.code, 0) << reason;
-  const Flown lockstep = fly({}, folder.file("lockstep"), nullptr);
+  return flown;
+}
+
+Flown fly_in_lockstep(const std::string& plan, const ScratchFolder& folder) {
+  return fly(plan, {}, folder.file("lockstep"), nullptr, nullptr);
+}
+
+TEST(BenchFlight, TheRealImageHoversOverItsWiresAsItDoesInLockstep) {
+  const std::string plan = kRoot + "/test_plans/flight/bench_hover.lua";
+  const ScratchFolder folder;
+  const Flown flown = fly_on_bench(plan, folder);
+  ASSERT_EQ(flown.code, 0) << std::string(flown.file["reason"]);
+  const Flown lockstep = fly_in_lockstep(plan, folder);
   ASSERT_EQ(lockstep.code, 0) << std::string(lockstep.file["reason"]);
   const auto want = lockstep.figures();
+  // Frames are heard 0.13 ms later than in lockstep: what an error of some millimetres makes of it wanders by 5 %.
   for (const auto& [name, got] : flown.figures()) {
     std::printf("%s: bench %.4g, lockstep %.4g\n", name.c_str(), got, want.at(name));
-    if (!name.starts_with("bus current")) continue;
-    EXPECT_TRUE(near(got, want.at(name), stated(0.05 * want.at(name), "parity of 5 %"))) << name;
+    const bool current = name.find("current") != std::string::npos;
+    const bool error = name.find("RMS") != std::string::npos;
+    if (!current && !error) continue;
+    const auto parity = stated((current ? 0.01 : 0.1) * want.at(name), "parity");
+    EXPECT_TRUE(near(got, want.at(name), parity)) << name;
   }
+}
+
+constexpr const char* kCut = R"(plan "cut" {
+  image = "flight", board = "px4fmu_v1_all_can", vehicle = "hp_quad", timeout = "30 s",
+  run = function(t)
+    t:within("8 s", function(s) return s.heartbeat_age_s < 1.5 end, "the first heartbeat")
+    for _, name in ipairs { "SENS_BUS", "ESC_BUS" } do
+      t:command { parameter = { name = name, value = 1 } }
+      t:within("3 s", function(s) return s.parameter_pending == 0 end, name .. " is answered")
+    end
+    t:within("8 s", function(s) return s.told_ready == 1 end, "it says that it can be armed")
+    t:command { arm = true }
+    t:within("4 s", function(s) return s.told_armed == 1 end, "armed")
+    t:command { takeoff = "0.6 m" }
+    t:within("4 s", function(s) return s.height_m > 0.5 end, "up")
+    t:fault { kind = "sensor_offset", device = "baro", axis = "pressure", value = "50 Pa" }
+    t:wait "200 ms"
+    t:expect(t:value "told_armed", "flies on"):equal(1)
+    t:fault { kind = "can_cut", device = "imu" }
+    t:within("2 s", function(s) return s.told_armed == 0 end, "motors off")
+  end,
+})";
+
+TEST(BenchFlight, FaultsOfItsPartsDoWhatTheyDoInLockstep) {
+  const ScratchFolder folder;
+  const std::string plan = folder.file("cut.lua");
+  std::ofstream(plan) << kCut;
+  const Flown flown = fly_on_bench(plan, folder);
+  ASSERT_EQ(flown.code, 0) << std::string(flown.file["reason"]);
+  const Flown lockstep = fly_in_lockstep(plan, folder);
+  ASSERT_EQ(lockstep.code, 0) << std::string(lockstep.file["reason"]);
+  // Told 10 times a second.
+  EXPECT_TRUE(near(flown.figures().at("motors off"), lockstep.figures().at("motors off"),
+                   stated(0.1, "how often it is told")));
 }
 
 }  // namespace

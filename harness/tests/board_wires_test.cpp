@@ -21,7 +21,9 @@ struct Rig {
           {.name = "imu", .type = "mpu6000", .bus = "spi1"},
           {.name = "imu2", .type = "mpu6000", .bus = "spi1"},
           {.name = "baro", .type = "ms5611", .bus = "i2c1", .address = 0x76},
-          {.name = "gps", .type = "ublox_6", .bus = "usart6"}};
+          {.name = "gps", .type = "ublox_6", .bus = "usart6"},
+          {.name = "sbus", .type = "sbus", .bus = "uart4"},
+          {.name = "rc", .type = "cppm", .bus = "PA10"}};
       nodes.push_back({std::string(1, static_cast<char>('a' + i)), board});
     }
   }
@@ -49,6 +51,12 @@ TEST(BoardWires, BoardsThatLeadEachOtherInACircleAreRefused) {
   EXPECT_NE(three.find("in a circle: "), std::string::npos) << three;
 }
 
+TEST(BoardWires, APodPlaysSeveralMotorsControllers) {
+  Rig rig(2);
+  rig.nodes[1].board.devices.push_back({.name = "host", .type = "pod_parts"});
+  EXPECT_EQ(rig.wire(0, "esc1", 1).wire(0, "esc2", 1, "i2c3").refused(), "");
+}
+
 TEST(BoardWires, ABoardHasOneMasterAndADeviceOneBoardInItsPlace) {
   EXPECT_EQ(Rig(3).wire(0, "esc1", 2).wire(1, "esc1", 2).refused(),
             "wires: c takes the place of devices of two boards");
@@ -67,8 +75,26 @@ TEST(BoardWires, BothEndsAreI2cOrBothSpiAndEachBusHasOneMaster) {
             "wires: b.spi1 has two masters");
   EXPECT_EQ(Rig(2).wire(0, "esc1", 1).wire(0, "baro", 1).refused(),
             "wires: b.i2c2 has two masters");
-  EXPECT_EQ(Rig(2).wire(0, "gps", 1).refused(), "wires: a.gps is no target on an I2C or SPI bus");
+  EXPECT_EQ(Rig(2).wire(0, "rc", 1).refused(),
+            "wires: a.rc is no target on an I2C or SPI bus, and on no UART");
   EXPECT_EQ(Rig(2).wire(0, "esc7", 1).refused(), "wires: board has no device 'esc7'");
+}
+
+TEST(BoardWires, AUartIsJoinedToOneUart) {
+  EXPECT_EQ(Rig(2).wire(0, "gps", 1, "usart6").wire(0, "sbus", 1, "usart2").refused(), "");
+  EXPECT_EQ(Rig(2).wire(0, "gps", 1).refused(), "wires: a.gps is on usart6, the other end on i2c2");
+  EXPECT_EQ(Rig(2).wire(0, "imu", 1, "uart4").refused(),
+            "wires: a.imu is on spi1, the other end on uart4");
+  EXPECT_EQ(Rig(2).wire(0, "gps", 1, "usart6").wire(0, "sbus", 1, "usart6").refused(),
+            "wires: b.usart6 has two masters");
+  for (const plan::PlanWire& line :
+       {plan::PlanWire{{0, 6}, {1, 1}}, plan::PlanWire{{0, 1}, {1, 2}}}) {
+    Rig rig(2);
+    rig.plan.wires.push_back(line);
+    rig.wire(0, "gps", 1, "usart2");
+    const std::string both = line.a.uart == 6 ? "a.usart6" : "b.usart2";
+    EXPECT_EQ(rig.refused(), "wires: " + both + " has two wires");
+  }
 }
 
 TEST(BoardWires, EachBoardGetsItsEndOfOneMemory) {

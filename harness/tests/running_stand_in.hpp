@@ -14,8 +14,13 @@ class RunningStandIn {
  public:
   RunningStandIn(World& world, BoardDescription board, const std::string& image,
                  StandInOptions wires)
-      : target_(options_of(std::move(board), image)),
-        stand_in_(world, target_, clock_, std::move(wires)),
+      : RunningStandIn(world, std::make_unique<VirtualBoard>(options_of(std::move(board), image)),
+                       std::move(wires)) {}
+  // clock: null: the host's.
+  RunningStandIn(World& world, std::unique_ptr<Target> target, StandInOptions wires,
+                 pacing::HostClock* clock = nullptr)
+      : target_(std::move(target)),
+        stand_in_(world, *target_, clock == nullptr ? clock_ : *clock, std::move(wires)),
         thread_([this] {
           const auto ran = stand_in_.run();
           EXPECT_TRUE(ran.ok()) << ran.error().message();
@@ -37,7 +42,7 @@ class RunningStandIn {
   }
 
   pacing::MonotonicClock clock_;
-  VirtualBoard target_;
+  std::unique_ptr<Target> target_;
   StandIn stand_in_;
   std::thread thread_;
 };

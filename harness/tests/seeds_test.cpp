@@ -137,6 +137,22 @@ TEST(Target, WhatNoBenchCanRunIsSaidBeforeAnythingTurns) {
     safety = { phrase = "clear", longest = "9 s" } })";
   root.write("test_plans/benches/b.lua", bench);
   refused({"--target", "bench/b"}, "nothing plays ");
+  const auto with_pod = [&](const std::string& link) {
+    std::string text = bench;
+    const std::string bus = R"(bus = "can2", interface = "can0")";
+    root.write("test_plans/benches/b.lua", text.replace(text.find(bus), bus.size(), link));
+  };
+  root.write("test_plans/boards/none.lua",
+             R"(return { board = "none", mcu = "stm32f405rg", hse = "8 MHz" })");
+  with_pod(R"(pod = "none", path = "/dev/ttyUSB0")");
+  refused({"--target", "bench/b"}, "has no pod_parts: it is no pod's board");
+  root.write("test_plans/boards/pod.lua",
+             R"(return { board = "pod", mcu = "stm32f405rg", hse = "8 MHz",
+    devices = { { name = "host", type = "pod_parts" } } })");
+  with_pod(R"(pod = "pod", interface = "can0")");
+  refused({"--target", "bench/b"}, "the host of pod is on a serial line");
+  with_pod(R"(pod = "pod", path = "/dev/ttyUSB0")");
+  refused({"--target", "bench/b"}, "nothing plays ");  // the radio, whatever else
   refused({"--arm", "clear"}, "--target");
 }
 

@@ -35,7 +35,7 @@ struct Metal {  // what the bench hangs on
     auto board = read_board(kRoot + "/test_plans/boards/" + board_name + ".lua");
     StandInOptions wires;
     wires.pace = pace;
-    wires.serial.emplace(std::move(io::PseudoTerminal::open(serial).value()));
+    wires.lines.push_back({1, std::move(io::PseudoTerminal::open(serial).value())});
     wires.instruments.emplace(std::move(io::PseudoTerminal::open(cell).value()));
     wires.can = std::move(can);
     wires.told = {"thrust", "bus_voltage", "supply_current"};

@@ -55,6 +55,15 @@ class World {
     return nothing;
   }
 
+  // How fast the thrust of this copy could rise, 10 to 90 %, in the air that there is, were this current in its
+  // windings throughout.
+  // Errors  bad_input: no rise, or beyond that current; not one rotor's world
+  virtual Result<double> shortest_rise_s(double /*from_N*/, double /*to_N*/,
+                                         double /*current_A*/) const {
+    return Error{ErrorKind::bad_input, "", "has no rotor of its own here",
+                 "t:shortest_rise is for stands"};
+  }
+
   // What the firmware told of itself in words, all so far: STATUSTEXT of a flight.
   virtual const std::vector<std::string>& told_texts() const {
     static const std::vector<std::string> nothing;

@@ -1,7 +1,5 @@
 #include "io_bridges/devices/sbus.hpp"
 
-#include "io_bridges/protocols/sbus.hpp"
-
 namespace whirl::io {
 namespace {
 
@@ -10,6 +8,19 @@ UartFormat format_of(const SbusReceiver::Params& params) {
 }
 
 }  // namespace
+
+std::optional<SbusFrame> sbus_frame(RadioLink::Output out, Failsafe failsafe) {
+  const bool never = out.state == RadioLink::State::never_heard;
+  if (out.silent && !(never && failsafe == Failsafe::hold)) return {};
+  if (never && failsafe == Failsafe::hold) out.sticks[kThrustStick] = -1.0;
+  SbusFrame frame;
+  for (std::size_t i = 0; i < frame.channels.size(); ++i) {
+    frame.channels[i] = sbus_of_travel(out.sticks[i]);
+  }
+  if (out.state != RadioLink::State::up) frame.flags |= kSbusFrameLost;
+  if (never || out.state == RadioLink::State::failsafe) frame.flags |= kSbusFailsafe;
+  return frame;
+}
 
 SbusReceiver::SbusReceiver(EventQueue& queue, const Params& params, FaultBook* faults)
     : queue_(queue),
@@ -26,26 +37,18 @@ SbusReceiver::SbusReceiver(EventQueue& queue, const Params& params, FaultBook* f
 void SbusReceiver::begin_frame() {
   const Nanoseconds now = queue_.now();
   frame_.at(now + params_.period_ns);
-  RadioLink::Output out = link_.at(now);
-  const bool never = out.state == RadioLink::State::never_heard;
-  if (out.silent && !(never && params_.link.failsafe == Failsafe::hold)) return;
-  if (never && params_.link.failsafe == Failsafe::hold) out.sticks[kThrustStick] = -1.0;
-  SbusFrame frame;
-  for (std::size_t i = 0; i < frame.channels.size(); ++i) {
-    frame.channels[i] = sbus_of_travel(out.sticks[i]);
-  }
-  if (out.state != RadioLink::State::up) frame.flags |= kSbusFrameLost;
-  if (never || out.state == RadioLink::State::failsafe) frame.flags |= kSbusFailsafe;
+  auto frame = sbus_frame(link_.at(now), params_.link.failsafe);
+  if (!frame) return;
   const Fault* glitch = faults_ == nullptr ? nullptr
                                            : faults_->find(FaultKind::rc_glitch, params_.link.bus,
                                                            params_.link.device, now);
   if (glitch != nullptr && nonsense_.uniform() < glitch->value) {
     faults_->applied(*glitch, now);
-    for (auto& channel : frame.channels) {
+    for (auto& channel : frame->channels) {
       channel = static_cast<std::uint16_t>(nonsense_.bits() % 2048);
     }
   }
-  transmitter_.add(encode(frame));
+  transmitter_.add(encode(*frame));
 }
 
 }  // namespace whirl::io

@@ -13,13 +13,18 @@
 //   Memory   period of 14 ms; 200 ms; how long frames are lost before failsafe
 //   Left out digital channels 17 and 18 (0); what the MCU sends: the line is one way
 #pragma once
+#include <optional>
 #include <string>
 
 #include "base/random.hpp"
 #include "io_bridges/devices/radio_link.hpp"
 #include "io_bridges/devices/uart_transmitter.hpp"
+#include "io_bridges/protocols/sbus.hpp"
 
 namespace whirl::io {
+
+// What the receiver puts out: nothing, or a frame with its flags.
+std::optional<SbusFrame> sbus_frame(RadioLink::Output out, Failsafe failsafe);
 
 class SbusReceiver : public UartPeer {
  public:

@@ -113,26 +113,44 @@ std::uint8_t SpiWireFaults::transfer(std::uint8_t mosi, std::uint32_t sck_Hz, in
 }
 
 UartWireFaults::UartWireFaults(EventQueue& queue, FaultBook& book, UartPeer& far, int number,
-                               std::uint64_t seed)
+                               std::uint64_t seed, Spoils spoils)
     : queue_(queue),
       book_(book),
       far_(far),
+      early_(dynamic_cast<EarlyUartPeer*>(&far)),
       number_(number),
-      random_(seed, "uart_faults." + std::to_string(number)) {
-  far_.join([this](const UartByte& byte, const UartFormat& format) { towards_mcu(byte, format); });
+      random_(seed, "uart_faults." + std::to_string(number)),
+      spoils_(spoils) {
+  far_.join([this](const UartByte& byte, const UartFormat& format) {
+    if (const auto left = passed(byte)) send(*left, format);
+  });
 }
 
-void UartWireFaults::towards_mcu(UartByte byte, const UartFormat& format) {
+void UartWireFaults::begin(const UartByte& byte, const UartFormat& format, Nanoseconds now,
+                           Nanoseconds end) {
+  leaving_ = spoils_ == Spoils::both_ways ? passed(byte) : byte;
+  if (leaving_ && early_ != nullptr) early_->begin(*leaving_, format, now, end);
+}
+
+void UartWireFaults::receive(const UartByte& byte, const UartFormat& format, Nanoseconds now) {
+  if (spoils_ == Spoils::towards_mcu) return far_.receive(byte, format, now);
+  if (leaving_) far_.receive(*leaving_, format, now);
+}
+
+std::optional<UartByte> UartWireFaults::passed(UartByte byte) {
   const Nanoseconds now = queue_.now();
-  if (book_.apply(FaultKind::uart_silence, number_, kAnywhere, now) != nullptr) return;
+  if (book_.apply(FaultKind::uart_silence, number_, kAnywhere, now) != nullptr) return {};
   const Fault* loss = book_.find(FaultKind::uart_loss, number_, kAnywhere, now);
-  if (loss != nullptr && random_.uniform() < loss->value) return book_.applied(*loss, now);
+  if (loss != nullptr && random_.uniform() < loss->value) {
+    book_.applied(*loss, now);
+    return {};
+  }
   const Fault* flip = book_.find(FaultKind::uart_flip, number_, kAnywhere, now);
   if (flip != nullptr && random_.uniform() < flip->value) {
     book_.applied(*flip, now);
     byte.value = static_cast<std::uint8_t>(byte.value ^ 1u << random_.bits() % 8);
   }
-  send(byte, format);
+  return byte;
 }
 
 }  // namespace whirl::io

@@ -2,12 +2,15 @@
 //
 //   I2cWireFaults   hangs on an I2cBus; drives SDA and SCL itself while they are stuck
 //   SpiWireFaults   stands between a controller and one SpiTarget
-//   UartWireFaults  stands between the MCU and a UartPeer; spoils what goes towards the MCU
+//   UartWireFaults  stands between the MCU and a UartPeer; spoils what goes towards the MCU, and on a wire between
+//                   two boards what leaves it as well: a character by what holds at its start bit
 #pragma once
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "base/random.hpp"
+#include "io_bridges/devices/early_uart_peer.hpp"
 #include "io_bridges/devices/faults.hpp"
 #include "io_bridges/devices/i2c_bus.hpp"
 
@@ -59,23 +62,29 @@ class SpiWireFaults : public SpiTarget {
   bool spoiled_ = false;
 };
 
-class UartWireFaults : public UartPeer {
+class UartWireFaults : public EarlyUartPeer {
  public:
-  // Joins the far peer; the board joins this object in its place.
-  UartWireFaults(EventQueue& queue, FaultBook& book, UartPeer& far, int number, std::uint64_t seed);
+  enum class Spoils : std::uint8_t { towards_mcu, both_ways };
 
-  void receive(const UartByte& byte, const UartFormat& format, Nanoseconds now) override {
-    far_.receive(byte, format, now);
-  }
+  // Joins the far peer; the board joins this object in its place.
+  UartWireFaults(EventQueue& queue, FaultBook& book, UartPeer& far, int number, std::uint64_t seed,
+                 Spoils spoils = Spoils::towards_mcu);
+
+  void begin(const UartByte& byte, const UartFormat& format, Nanoseconds now,
+             Nanoseconds end) override;
+  void receive(const UartByte& byte, const UartFormat& format, Nanoseconds now) override;
 
  private:
-  void towards_mcu(UartByte byte, const UartFormat& format);
+  std::optional<UartByte> passed(UartByte byte);  // nothing: it does not arrive
 
   EventQueue& queue_;
   FaultBook& book_;
   UartPeer& far_;
+  EarlyUartPeer* early_;  // the same, or null
   int number_;
   RandomStream random_;
+  Spoils spoils_;
+  std::optional<UartByte> leaving_;  // what is left of the character that the MCU sends
 };
 
 }  // namespace whirl::io

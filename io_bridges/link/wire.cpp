@@ -16,7 +16,7 @@
 namespace whirl::io {
 namespace {
 
-constexpr std::uint64_t kWire_magic = 0x3230657269776877;  // "whwire02"
+constexpr std::uint64_t kWire_magic = 0x3330657269776877;  // "whwire03"
 constexpr std::uint32_t kRing = 256;                       // messages
 constexpr int kFew_turns = 4 * SpinPolicy::kLeast;
 // A sleeper looks again so often: close() may come between its look and its sleep.

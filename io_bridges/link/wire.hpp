@@ -1,5 +1,5 @@
 // A wire between two boards' processes: one page of shared memory, a ring of messages down, one answer and a
-// ring of edges up. The bus master's board leads, the slave's board follows behind it in virtual time.
+// ring of edges and characters up. The bus master's board leads, the slave's board follows behind it in virtual time.
 //
 //   Ports     what two boards have between them is one wire, so that the follower sees all of it in one order: a bus
 //             each, and what belongs to it
@@ -31,18 +31,30 @@ enum class WireAct : std::uint8_t {
   spi_begin,    // the first clock of a byte. byte: the mode. No answer
   spi_end,      // its last bit has passed. byte: MOSI. Answer: MISO
   mark,         // no answer, but a mark in the ring up: all edges until then are in it
+  character,    // of a UART: its last stop bit has passed. No answer
+};
+
+// What a UART sends, and how it had set up its end.
+struct WireCharacter {
+  double baud = 0.0;
+  std::uint8_t byte = 0, data_bits = 8, half_stop_bits = 2;
+  char parity = 'N';
+  bool framing_error = false, noise = false, is_break = false, inverted = false;
 };
 
 struct WireMessage {
   std::int64_t t_ns = 0;
   WireAct act = WireAct::start;
   std::uint8_t byte = 0, flag = 0, port = 0;
+  WireCharacter character = {};
 };
 
-// A line from the follower to the leader.
+// From the follower to the leader: a line's edge, or a character whose start bit is here.
 struct WireEdge {
   std::int64_t t_ns = 0;
   std::uint8_t port = 0, level = 0, mark = 0;  // mark: no edge, see WireAct
+  std::int64_t until_ns = 0;                   // of a character: its last stop bit has passed
+  WireCharacter character = {};
 };
 
 struct WireAnswer {

@@ -1,10 +1,6 @@
 #include "io_bridges/rack/can_rack.hpp"
 
-#include <algorithm>
-
-#include "base/check.hpp"
 #include "io_bridges/rack/can_log.hpp"
-#include "io_bridges/rack/tell_finding.hpp"
 
 namespace whirl::rack {
 
@@ -25,48 +21,23 @@ void CanRack::Afar::bus_off(Nanoseconds /*now*/) {
 }
 
 CanRack::CanRack(int bus, double rate_Hz, std::uint64_t seed, FrameSink heard)
-    : number_(bus),
-      seed_(seed),
-      bus_(events_, "CAN" + std::to_string(bus), finding()),
+    : FarRack(seed),
+      number_(bus),
+      bus_(events(), "CAN" + std::to_string(bus), finding()),
+      wire_faults_(events(), faults(), bus_, bus, 1e9 / rate_Hz),
       afar_(bus_, rate_Hz, std::move(heard)) {
-  log_can(bus_, number_, happened_);
+  log_can(bus_, number_, happened());
 }
 
-Result<Done> CanRack::build(const BoardDescription& board, const DeviceTypes& types) {
-  for (std::size_t i = 0; i < board.devices.size(); ++i) {
-    if (board.devices[i].bus != "can" + std::to_string(number_)) continue;
-    if (auto added = add(board, static_cast<int>(i), types); !added) return added;
-  }
-  return Done{};
-}
-
-Result<Done> CanRack::add(const BoardDescription& board, int number, const DeviceTypes& types) {
-  const BoardDevice& device = board.devices[static_cast<std::size_t>(number)];
-  const DeviceType* type = find_type(types, device.type);
-  WHIRL_CHECK(type != nullptr, device.type);  // the board file was read with these types
-  DeviceSlot slot(*this, board.name, device, *type, number);
-  auto made = type->make(slot);
-  if (slot.error()) return *slot.error();
-  devices_.push_back(std::move(made));
-  return Done{};
-}
-
-void CanRack::on_message(const io::Reader& message) {
-  const io::Header& head = message.header();
-  for (const auto& device : devices_) {
-    for (const Intake& intake : device->intakes()) {
-      const bool its = intake.kind == head.kind && intake.port.value_or(head.port) == head.port;
-      if (its) device->on_message(message);
-    }
-  }
+// A host that plays a board's parts has its bus among its parameters.
+bool CanRack::carries(const BoardDevice& device) const {
+  if (device.bus == "can" + std::to_string(number_)) return true;
+  const auto its = device.value("params.can");
+  return its && *its == KeyValue(static_cast<double>(number_));
 }
 
 void CanRack::give(const io::CanFrame& frame) {
   afar_.give(frame);
-}
-
-io::FindingSink CanRack::finding() {
-  return [this](const io::Finding& f) { tell_finding(f, happened_); };
 }
 
 }  // namespace whirl::rack

@@ -16,7 +16,7 @@
 namespace whirl::plant {
 
 class PolarFamily;   // polar.hpp: one section at several Reynolds numbers
-struct TraitBelief;  // blade_fit.hpp: a section in ten numbers, and how sure they are
+struct TraitBelief;  // blade_fit.hpp: a section in eleven numbers, and how sure they are
 class KnownBlades;   // known_blades.hpp
 
 struct PropellerStation {

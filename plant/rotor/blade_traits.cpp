@@ -9,6 +9,11 @@ namespace {
 constexpr double kPi = 3.14159265358979323846;
 constexpr double kDeg = kPi / 180.0;
 constexpr double kBend = 0.4;  // of the lift curve into its maximum
+// Below it the flow that leaves the nose does not come back: seen as jumps of thrust over J that move with speed
+// (docs/unseen_propellers.md). Of an attached lift.
+constexpr double kStep_at = 0.7;      // at Re 60,000
+constexpr double kStep_falls = 0.35;  // per ln Re
+constexpr double kStep_width = 0.05;
 constexpr double kLowest_lift = -0.6;
 constexpr double kLow_bend = 0.1;
 constexpr double kPlate = 1.25;     // drag of a plate across the flow, aspect ratio near 8
@@ -25,6 +30,8 @@ TraitSection trait_section(const TraitVector& t, double chord_over_r, double rey
   return {.slope_per_rad = std::exp(t[ln_lift_slope] + t[slope_power] * level),
           .zero_lift_rad = t[zero_lift_deg] * kDeg,
           .maximum = t[lift_maximum] * std::exp(t[maximum_power] * level),
+          .step = t[lift_step],
+          .step_at = kStep_at - kStep_falls * level,
           .least_drag = std::exp(t[ln_least_drag] - t[drag_power] * level),
           .rise = t[drag_rise],
           .delay = std::tanh(3.0 * chord_over_r * chord_over_r)};
@@ -32,7 +39,9 @@ TraitSection trait_section(const TraitVector& t, double chord_over_r, double rey
 
 SectionCoefficients coefficients(const TraitSection& s, double alpha) {
   const double size = std::abs(alpha) / kDeg;
-  const double attached = s.slope_per_rad * std::sin(alpha - s.zero_lift_rad);
+  const double straight = s.slope_per_rad * std::sin(alpha - s.zero_lift_rad);
+  const double above = std::clamp((straight - s.step_at) / kStep_width, -40.0, 40.0);
+  const double attached = straight * (1.0 - s.step / (1.0 + std::exp(above)));
   double bent = s.maximum - kBend * softplus((s.maximum - attached) / kBend);
   bent = kLowest_lift + kLow_bend * softplus((bent - kLowest_lift) / kLow_bend);
   const double x = std::clamp((size - 20.0) / 25.0, 0.0, 1.0);

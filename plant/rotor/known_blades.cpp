@@ -116,9 +116,10 @@ BladeShape blade_shape(const std::vector<PropellerStation>& rows) {
 
 TraitBelief first_belief(bool drawn) {
   TraitBelief b;
-  b.mean << (drawn ? 0.0 : 1.5), -2.0, std::log(6.5), 0.17, 1.2, -3.5, 0.6, 0.05, 1.12, 0.0, 0.1;
+  b.mean << (drawn ? 0.0 : 1.5), -2.0, std::log(6.5), 0.17, 1.2, -3.5, 0.6, 0.05, 1.12, 0.0, 0.1,
+      0.1;
   TraitVector d;
-  d << (drawn ? 0.3 : 1.0), 2.0, 0.1, 0.12, 0.2, 0.3, 0.2, 0.04, 0.04, 0.5, 0.15;
+  d << (drawn ? 0.3 : 1.0), 2.0, 0.1, 0.12, 0.2, 0.3, 0.2, 0.04, 0.04, 0.5, 0.15, 0.1;
   b.covariance = d.cwiseProduct(d).asDiagonal();
   return b;
 }

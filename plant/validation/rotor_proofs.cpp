@@ -24,7 +24,7 @@ std::vector<Proof> rotor_proofs(const ReadData& read) {
   add(validate_known(known, read("propellers/known.txt")));
   add(validate_left_out(measured, known));
   add(validate_strangers(measured_blades(read, "unseen"), known));
-  add(validate_third(measured_blades(read, "third"), known));
+  add(validate_outside(measured_blades(read, "outside"), known));
   add(validate_in_view(measured, known));
   add(validate_hobbyking(read));
   return all;

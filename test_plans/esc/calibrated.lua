@@ -10,7 +10,7 @@ local function rise(name, mode, number)
     image = "esc", board = "esc32v2", seed = 1,
     -- As after the 100 s that the current sense needs to warm up.
     stand = {
-      prop = "hk_10x4.5", supply = "16.8 V", mode = mode, shunt = { warm_up = "0 A" }, tolerance = "typical",
+      prop = "hk_10x4.5", supply = "16.8 V", mode = mode, shunt = { warm_up = "0 A" },
     },
     tags = { "esc" },
     timeout = "30 s",

@@ -74,7 +74,7 @@ mode_plan("thrust_by_rpm", 2, { { thrust = "0.8 N" }, { thrust = "3.2 N" }, { th
 mode_plan("thrust_by_power", 5, { { thrust = "0.6 N" }, { thrust = "3.2 N" }, { thrust = "8 N" } }, thrust(4))
 mode_plan("thrust_by_power", 5, { { thrust = "3.2 N" }, { thrust = "8 N" } }, function(t, asked, r, saturated)
   told(t, saturated, asked == "8 N", asked)
-end, 9)
+end, 12) -- a start takes up to that of some copies
 
 mode_plan("power", 4, { { power = "12 W" }, { power = "2.6 W" }, { power = "25 W" }, { power = "60 W" } }, function(t, asked, r, saturated)
   told(t, saturated, false, asked)

@@ -10,3 +10,14 @@ plan "thrust_rise" {
     rise(t)
   end
 }
+
+-- Of the drawing itself, for comparison.
+plan "thrust_rise_of_the_drawing" {
+  image = "esc", board = "esc32v2",
+  stand = { prop = "hk_10x4.5", battery = "4s_2200", tolerance = "none" },
+  tags = { "esc" },
+  timeout = "20 s",
+  run = function(t)
+    rise(t)
+  end
+}

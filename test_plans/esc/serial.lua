@@ -53,7 +53,9 @@ line_plan("serial_stream", function(t)
   local r = t:record({ "esc_speed", "esc_duty" }, "500 ms")
   t:expect(r:min "esc_speed", "speed as streamed"):at_least "340 rad/s"
   t:expect(math.abs(t:value("esc_speed", "rad/s") / t:value("speed", "rad/s") - 1), "speed streamed against truth"):at_most(0.02)
-  t:expect(math.abs(t:value("esc_bus_voltage", "V") / t:value("bus_voltage", "V") - 1), "voltage streamed against truth"):at_most(0.01)
+  -- Dividers of 1 % and the reference are the copy's; noise and steps are 0.1 % of it, ripple the rest.
+  local shown = math.abs(t:value("esc_bus_voltage", "V") / t:value("sensed_voltage", "V") - 1)
+  t:expect(shown, "voltage streamed against what this copy's divider shows"):at_most(0.005)
   t:expect(r:min "esc_duty", "duty"):within("20 %", "60 %")
   t:expect(t:value "esc_mode", "mode"):equal(2)
   t:step "silent again"

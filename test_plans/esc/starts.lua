@@ -17,7 +17,7 @@ end
 
 plan "ten_starts" {
   image = "esc", board = "esc32v2",
-  stand = { prop = "hk_10x4.5", supply = "16.8 V", tolerance = "typical" },
+  stand = { prop = "hk_10x4.5", supply = "16.8 V" },
   tags = { "esc" },
   timeout = "60 s",
   run = function(t)

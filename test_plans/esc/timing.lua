@@ -4,7 +4,7 @@
 include "include/start.lua"
 include "include/calibration.lua"
 
--- In a downdraft that power tells.
+-- In a downdraft that power tells: not at 2 N, where the current has gaps (rise_by_power.lua).
 local function by_power(t)
   calibrate(t)
   for _, line in ipairs { "set warm_up 0", "stream 100" } do t:ask(line, "^ok$") end
@@ -55,4 +55,4 @@ timing("duty", 0, { duty = "30 %" }, { duty = "55 %" })
 timing("rpm", 1, { speed = "3500 rpm" }, { speed = "6000 rpm" })
 timing("thrust_by_rpm", 2, { thrust = "2 N" }, { thrust = "4 N" })
 timing("power", 4, { power = "20 W" }, { power = "40 W" }, by_power)
-timing("thrust_by_power", 5, { thrust = "2 N" }, { thrust = "4 N" }, by_power)
+timing("thrust_by_power", 5, { thrust = "2.4 N" }, { thrust = "4 N" }, by_power)

@@ -1,28 +1,9 @@
--- A hover of 5 s with what a bench of a flight controller has: this host is the vehicle, its sensors and ESCs are
--- nodes of the controller's CAN bus, the radio is a line. On the virtual board, and by --target bench/NAME on metal.
-include "include/judged_hover.lua"
+-- A controller whose sensors and ESCs are nodes of its CAN bus, which this host plays: on the virtual board, and by
+-- --target bench/NAME on metal.
+include "include/bench_hover.lua"
 include "include/parameter.lua"
 
-plan "bench_hover" {
-  image = "flight", board = "px4fmu_v1_all_can", vehicle = "hp_quad",
-  tags = { "flight", "bench", "can" }, timeout = "40 s",
-  run = function(t)
-    t:step "boot"
-    t:within("8 s", function(s) return s.heartbeat_age_s < 1.5 end, "the first heartbeat")
-    set_parameter(t, "SENS_BUS", 1)
-    set_parameter(t, "ESC_BUS", 1)
-    t:within("8 s", function(s) return s.told_ready == 1 end, "it says that it can be armed")
-    t:step "take-off"
-    t:command { arm = true }
-    t:within("4 s", function(s) return s.told_armed == 1 end, "armed")
-    t:command { takeoff = "1.1 m" }
-    t:within("6 s", function(s) return s.height_m > 1.0 end, "1 m high")
-    t:wait "3 s"
-    t:step "hover"
-    judged_stay(t, "5 s", "")
-    t:step "land"
-    t:command { land = true }
-    t:within("10 s", function(s) return s.on_ground == 1 end, "on the ground")
-    t:within("5 s", function(s) return s.told_armed == 0 end, "disarmed")
-  end,
-}
+bench_hover("bench_hover", "px4fmu_v1_all_can", { "flight", "bench", "can" }, function(t)
+  set_parameter(t, "SENS_BUS", 1)
+  set_parameter(t, "ESC_BUS", 1)
+end)

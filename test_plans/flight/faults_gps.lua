@@ -48,17 +48,11 @@ gps_plan("gps: a jammed receiver ends the flight", function(t)
 end)
 
 gps_plan("gps: a jump of 15 m is noticed and not followed", function(t)
-  hover_by_gps(t)
-  t:fault { kind = "sensor_offset", device = "gps", axis = "north", value = "15 m" }
-  stays_near(t, "3 m", "2 s")
-  comes_down(t)
+  noticed(t, { kind = "sensor_offset", device = "gps", axis = "north", value = "15 m" })
 end)
 
 gps_plan("gps: a place that runs away at 3 m/s is noticed", function(t)
-  hover_by_gps(t)
-  t:fault { kind = "gnss_spoofed", device = "gps", axis = "east", value = "3 m/s" }
-  stays_near(t, "3 m", "2 s")
-  comes_down(t)
+  noticed(t, { kind = "gnss_spoofed", device = "gps", axis = "east", value = "3 m/s" })
 end)
 
 -- What cannot be noticed: no sensor on board tells it from wind. The vehicle goes along, no faster.
@@ -72,13 +66,9 @@ end)
 
 -- The same place and velocity again and again: believed it would be hovered by, and the wind take the vehicle along.
 gps_plan("gps: a receiver that has stopped measuring ends the flight", function(t)
-  hover_by_gps(t)
-  t:fault { kind = "sensor_frozen", device = "gps" }
-  stays_near(t, "3 m", "2 s")
-  comes_down(t)
+  noticed(t, { kind = "sensor_frozen", device = "gps" })
 end)
 
--- It begins anew at 9600 baud with NMEA at 1 Hz: the driver finds it, sets it up, and the estimate has it back.
 gps_plan("gps: a receiver that begins anew on the ground is found again", function(t)
   arm_by_gps(t)
   t:command { arm = false }
@@ -90,10 +80,5 @@ gps_plan("gps: a receiver that begins anew on the ground is found again", functi
 end)
 
 gps_plan("gps: a receiver that begins anew in flight is found again", function(t)
-  hover_by_gps(t)
-  t:fault { kind = "gnss_brown_out", device = "gps" }
-  comes_down(t)
-  t:wait "20 s"
-  t:command { arm = true }
-  t:within("10 s", function(s) return s.told_armed == 1 end, "armed anew by the receiver that was found")
+  found_again_in_flight(t, { kind = "gnss_brown_out", device = "gps" })
 end)

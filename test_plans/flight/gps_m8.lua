@@ -47,19 +47,9 @@ local ends = {
   { "a receiver that has stopped measuring", { kind = "sensor_frozen", device = "m8" } },
 }
 for _, e in ipairs(ends) do
-  m8_plan(e[1] .. " ends the flight", function(t)
-    hover_by_gps(t)
-    t:fault(e[2])
-    stays_near(t, "3 m", "2 s")
-    comes_down(t)
-  end)
+  m8_plan(e[1] .. " ends the flight", function(t) noticed(t, e[2]) end)
 end
 
 m8_plan("one that begins anew in flight is found again", function(t)
-  hover_by_gps(t)
-  t:fault { kind = "gnss_brown_out", device = "m8" }
-  comes_down(t)
-  t:wait "20 s"
-  t:command { arm = true }
-  t:within("10 s", function(s) return s.told_armed == 1 end, "armed anew by the receiver that was found")
+  found_again_in_flight(t, { kind = "gnss_brown_out", device = "m8" })
 end)

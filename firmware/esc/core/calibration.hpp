@@ -32,6 +32,7 @@ struct LossMap {
   float share = 0.0f;        // of Kt i w, the second witness of power
   float back_emf_Vs = 0.0f;  // negative, about -share Kt
   float drag_Nm = 0.01005f;
+  float bus_V = 0.0f;  // at which these were found (power_balance.hpp); 0: not known
 };
 
 // Free air: T = CT(w) w^2, P = CP(w) w^3. Both bend with speed: Reynolds number, a soft blade's twist.

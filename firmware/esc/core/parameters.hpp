@@ -25,6 +25,7 @@ inline constexpr Parameter kParameters[] = {
     {"loss_volt", [](Calibration& c) -> float& { return c.losses.loss_V; }},
     {"loss_share", [](Calibration& c) -> float& { return c.losses.share; }},
     {"loss_emf", [](Calibration& c) -> float& { return c.losses.back_emf_Vs; }},
+    {"loss_bus", [](Calibration& c) -> float& { return c.losses.bus_V; }},
     {"drag", [](Calibration& c) -> float& { return c.losses.drag_Nm; }},
     {"a3", [](Calibration& c) -> float& { return c.free_air.a3; }},
     {"a2", [](Calibration& c) -> float& { return c.free_air.a2; }},

@@ -21,6 +21,13 @@ inline float aerodynamic_power_W(const LossMap& map, float voltage_V, float curr
   return (voltage_V - lost_V(map, voltage_V, current_A, w)) * current_A - map.drag_Nm * w;
 }
 
+// While the PWM is off a diode carries the current: on another bus for another share of the time than on the one
+// on which the losses were found, where loss_V and share have its part. What is lost less than there.
+inline float freed_by_bus_V(const LossMap& map, float freewheel_V, float voltage_V, float bus_V) {
+  if (!(map.bus_V > 0.0f)) return 0.0f;
+  return freewheel_V * voltage_V * (map.bus_V - bus_V) / (map.bus_V * bus_V);
+}
+
 // Under diode freewheel the winding current falls to nothing between two pulses if it is smaller than
 // half its ripple; the losses are others then.
 inline bool has_gaps(const MotorConstants& motor, float bus_V, float duty, float current_A) {

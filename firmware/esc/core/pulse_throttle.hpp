@@ -5,7 +5,8 @@
 //            a glitch has cut is never followed alone
 //   Glitch   two rises within 2.3 ms: neither that pulse nor the next, which is a piece of it, counts
 //   Scale    under 1100 us: 0; 1100 to 1950 us: 1 to 2047
-//   Pace     zeros arm by their number (supervisor.hpp), so no two come within 20 ms
+//   Pace     zeros arm by their number (supervisor.hpp), so no two come within 19 ms: a source of 50 Hz
+//            by its own clock may seem faster by ours
 //   Source   [Bangura 2017, ch. 5: 1100 to 1950 us]
 #pragma once
 #include <cstdint>
@@ -20,7 +21,7 @@ class PulseThrottle {
   static constexpr std::uint32_t kLow_us = 1100, kHigh_us = 1950;
   static constexpr std::uint32_t kFastest_us = 2300, kSlowest_us = 22'000;
   static constexpr std::uint32_t kJump_us = 50;
-  static constexpr std::uint32_t kZeros_apart_us = 20'000;
+  static constexpr std::uint32_t kZeros_apart_us = 19'000;
 
   static constexpr bool in_range(std::uint32_t width_us) {
     return width_us >= kShortest_us && width_us <= kLongest_us;

@@ -9,6 +9,8 @@ constexpr float kElectrical_s = 0.003f;                          // of bus curre
 constexpr Innovation kSpeedGains{.kp = 300.0f, .ki = 22500.0f};  // two poles at 150 rad/s
 constexpr float kSmoothing_s = 0.05f;                            // of CP, at constant speed
 constexpr float kCalming_s = 0.025f;                             // after a step
+constexpr float kHeld_s =
+    0.25f;  // how long a told inflow outlasts gaps: a rotor that coasts has them
 constexpr float kMinSpeed_radps = 150.0f;  // below, w^3 makes noise of everything
 
 constexpr float kUsual_change =
@@ -42,7 +44,7 @@ ThrustEstimator::ThrustEstimator(const Calibration& calibration, float period_s)
 void ThrustEstimator::restart(float speed_radps) {
   bus_A_.restart(0.0f);
   duty_.restart(0.0f);
-  current_A_ = gapless_s_ = unrest_ = 0.0f;
+  current_A_ = gapless_s_ = blind_s_ = unrest_ = 0.0f;
   speed_.restart(speed_radps);
   solver_.restart();
   last_ = {};
@@ -66,28 +68,36 @@ void ThrustEstimator::update(float bus_V, float duty, float bus_A, float speed_r
   const float voltage_V = bus_V * duty_.value(), per_duty = 1.0f / duty_.value();
   current_A_ = bus_A_.update(bus_A) * per_duty;
   carry_to(w);
-  const float shaft_Nm = aerodynamic_power_W(calibration_.losses, voltage_V, current_A_, w) / w;
+  const LossMap& losses = calibration_.losses;
+  const float freed_V = freed_by_bus_V(losses, calibration_.motor.freewheel_V, voltage_V, bus_V);
+  const float shaft_W =
+      aerodynamic_power_W(losses, voltage_V, current_A_, w) + freed_V * current_A_;
+  const float shaft_Nm = shaft_W / w;
   speed_.update(shaft_Nm, w);
   const float acceleration_Nm = calibration_.motor.inertia_kgm2 * speed_.acceleration_radps2();
   const float torque_Nm = shaft_Nm - acceleration_Nm;
   power_W_ = torque_Nm * w;
+  const bool gaps = has_gaps(calibration_.motor, bus_V, duty_.value(), current_A_);
+  gapless_s_ = gaps ? 0.0f : gapless_s_ + period_s_;
+  blind_s_ = gapless_s_ < kSmoothing_s ? blind_s_ + period_s_ : 0.0f;
   const float still_CP = calibration_.free_air.CP(w);
-  const float per_still_W = 1.0f / (still_CP * w * w * w);
-  watts_per_ampere_ = per_duty * power_per_ampere_W(calibration_.losses, voltage_V, current_A_, w);
-  power_error_ = offset_A * watts_per_ampere_ * per_still_W;
   // While the rotor accelerates, and a little after, the inertial term's error dominates.
   const float share = acceleration_Nm / torque_Nm;
   const float unrest = share * share < 1.0f ? share * share : 1.0f;
   unrest_ -= calming_ * unrest_;
   if (unrest > unrest_) unrest_ = unrest;
-  const float trust = 1.0f / (1.0f + 25.0f * unrest_);
-  power_ratio_ += calibration_.power.holds(w)
-                      ? blend_ * trust * (power_W_ * per_still_W - power_ratio_)
-                      : blend_ * (1.0f - power_ratio_);
+  if (!(gaps &&
+        observable())) {  // else what was told before them is carried on, and nothing mixed in
+    const float per_still_W = 1.0f / (still_CP * w * w * w);
+    watts_per_ampere_ =
+        per_duty * power_per_ampere_W(calibration_.losses, voltage_V, current_A_, w);
+    power_error_ = offset_A * watts_per_ampere_ * per_still_W;
+    const float trust = 1.0f / (1.0f + 25.0f * unrest_);
+    power_ratio_ += calibration_.power.holds(w)
+                        ? blend_ * trust * (power_W_ * per_still_W - power_ratio_)
+                        : blend_ * (1.0f - power_ratio_);
+  }
   CP_ = power_ratio_ * still_CP;
-
-  const bool gaps = has_gaps(calibration_.motor, bus_V, duty_.value(), current_A_);
-  gapless_s_ = gaps ? 0.0f : gapless_s_ + period_s_;
   last_ = conclude();
   confidence_ = confidence();
   const float found = expected_ratio_ + confidence_ * (last_.CT * per_still_CT_ - expected_ratio_);
@@ -115,8 +125,9 @@ ThrustEstimate ThrustEstimator::conclude() {
   const float highest = calibration_.shared_power < 1.0f ? calibration_.shared_power : 1.0f;
   const float sigmas_needed = observable() ? 1.0f : 2.0f;  // hysteresis
   if (power_ratio_ >= highest - sigmas_needed * power_error_) return nothing;
-  if (gapless_s_ < kSmoothing_s)
-    return nothing;  // the smoothed ratio still holds what gaps made of it
+  // The smoothed ratio still holds what gaps made of it, unless an inflow was told before them.
+  const bool told_before = observable() && blind_s_ < kHeld_s;
+  if (gapless_s_ < kSmoothing_s && !told_before) return nothing;
   if (!calibration_.power.holds(speed_radps_)) return nothing;
   const float taken = (1.0f - power_ratio_) * effect_at(speed_radps_);
   return solver_.solve((1.0f - taken) * still_.CP);

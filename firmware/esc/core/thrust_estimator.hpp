@@ -60,6 +60,7 @@ class ThrustEstimator {
   float CT_ = 0.0f;
   float unrest_ = 0.0f;     // share of the rotor's own inertia in the torque, squared, lately
   float gapless_s_ = 0.0f;  // how long the winding current has had none
+  float blind_s_ = 0.0f;    // how long power has told nothing for gaps, and for the smoothing after
   float power_ratio_ = 1.0f;
   float thrust_ratio_ = 1.0f;
   float thrust_N_ = 0.0f;

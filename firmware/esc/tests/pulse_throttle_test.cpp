@@ -63,6 +63,13 @@ TEST(PulseThrottle, ZerosComeNoFasterThanFiftyHertz) {
   EXPECT_GT(read(p, 1040, 2500) + read(p, 1090, 2500) + read(p, 1130, 2500), -1);  // up at once
 }
 
+TEST(PulseThrottle, OfASourceWhoseClockIsABitFastEveryLowPulseIsAZero) {
+  PulseThrottle p;
+  int zeros = 0;
+  for (int i = 0; i < 26; ++i) zeros += read(p, 1000, 19'998) == 0 ? 1 : 0;
+  EXPECT_EQ(zeros, 25) << "but the first, which waits for a second one";
+}
+
 TEST(ThrottleSources, I2cTakesOverWhileNotArmedAndPulsesOnlyAfterItsSilence) {
   ThrottleSources s;
   EXPECT_TRUE(s.admit(Source::pulses, false));

@@ -85,6 +85,28 @@ TEST(BenchFile, RefusesWhatNoBenchCanBe) {
   }
 }
 
+TEST(BenchFile, APodsHostIsOnALineOrOnCan) {
+  const auto line = bench_of(
+      with("{ name = \"terminal\"",
+           "{ name = \"pod\", pod = \"p\", path = \"/dev/ttyUSB3\" },\n    { name = \"terminal\""));
+  ASSERT_TRUE(line) << line.error().message();
+  ASSERT_EQ(line.value().pods.size(), 1u);
+  EXPECT_EQ(line.value().pods[0].board, "p");
+  EXPECT_EQ(line.value().pods[0].path, "/dev/ttyUSB3");
+  const auto can = bench_of(
+      with("{ name = \"terminal\"",
+           "{ name = \"pod\", pod = \"p\", interface = \"can0\" },\n    { name = \"terminal\""));
+  ASSERT_TRUE(can) << can.error().message();
+  ASSERT_EQ(can.value().pods.size(), 1u);
+  EXPECT_EQ(can.value().pods[0].can.interface, "can0");
+  EXPECT_EQ(can.value().pods[0].path, "");
+  const auto twice = bench_of(
+      with("{ name = \"terminal\"",
+           "{ name = \"pod\", pod = \"p\", path = \"/dev/ttyUSB0\" },\n    { name = \"terminal\""));
+  ASSERT_FALSE(twice);
+  EXPECT_NE(twice.error().message().find("twice"), std::string::npos);
+}
+
 const std::string kEyes =
     R"(analyser = { driver = "fx2lafw", rate = "24 MHz", marker = "/dev/ttyUSB2",
     channels = { D0 = "i2c2_scl", D1 = "i2c2_sda", D4 = "spi1_sck", D7 = "marker" }, clocks = { spi1 = "5 MHz" } },

@@ -50,6 +50,16 @@ TEST(Transmitter, IsOffUntilTheFirstCommandAndThenSendsFiftyTimesASecond) {
             (std::vector<double>{0.0, 0.0, -1.0, 0.0, -1.0, -1.0}));
 }
 
+TEST(Transmitter, SendsToTheBoardThatHasTheReceiver) {
+  Transmitter transmitter(3);
+  transmitter.set({});
+  io::Batch sensed;
+  transmitter.step(0, sensed);
+  io::Reader reader(sensed.bytes());
+  ASSERT_TRUE(reader.next());
+  EXPECT_EQ(reader.header().board, 3);
+}
+
 TEST(Transmitter, TheArmSwitchIsChannelSix) {
   Pilot pilot;
   EXPECT_EQ(pilot.ask("{ arm = true }"), "none");

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "base/units.hpp"
+#include "io_bridges/board_description/board_description.hpp"
 
 namespace whirl::bench {
 
@@ -35,6 +36,13 @@ struct CanBusLink {             // a network interface of SocketCAN
   std::string name, interface;  // "bus", "can0"
   std::uint16_t bus = 1;
   std::uint32_t bit_rate_bps = 1'000'000;  // that it must have; a virtual one has none
+};
+
+struct PodLink {  // a pod's host, on a serial line or on CAN
+  std::string name, board;
+  std::string path;             // empty: on CAN
+  CanBusLink can;               // of these the bus is the pod's own
+  BoardDescription parts = {};  // of the board: read where the bench is chosen
 };
 
 struct Reading {  // the n-th number of a line, (number - zero) * scale
@@ -97,6 +105,7 @@ struct BenchDescription {
   std::vector<SerialLink> serials;
   std::vector<BridgeLink> bridges;
   std::vector<CanBusLink> cans;
+  std::vector<PodLink> pods;
   std::vector<Instrument> instruments;
   std::optional<AnalyserClips> analyser;
   std::optional<DebugProbe> probe;

@@ -6,10 +6,12 @@
 //            100 ms is given up, as the pacer says
 //   Safe     an emergency_stop from the world, the bench's longest time, a lost heartbeat, the operator or the
 //            end of the run: the links send the zero set-point and nothing else from then on
-//   Offers   a log of the buses on which an analyser's clips are; no virtual time, no watches, no faults on wires
+//   Offers   a log of the buses on which an analyser's clips are; no virtual time, no watches; faults of the parts that it
+//            plays, and of their bus
 #pragma once
 #include <functional>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -24,6 +26,7 @@ struct BenchOptions {
   BenchDescription bench;
   std::function<bool()> operator_stops;  // asked each step; null: nobody is there
   bool real_time = true;                 // asks the host for SCHED_FIFO
+  std::set<std::string> played = {};     // parts and their buses: "imu", "can2"
 };
 
 class BenchTarget final : public Target {
@@ -39,6 +42,7 @@ class BenchTarget final : public Target {
   std::vector<std::pair<std::string, std::string>> versions() const override;
   Offers offers() const override;
   bool sees(const std::string& wires) const override;
+  bool spoils(const std::string& what) const override { return options_.played.count(what) != 0; }
   std::string why_ended() const override { return why_; }
   const HeldPace* held_pace() const override { return &held_; }
 

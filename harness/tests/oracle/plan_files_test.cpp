@@ -146,6 +146,26 @@ TEST(PlanFile, ABoardInTheDevicesPlaceOnSpiHasItsPinsAndTheLatencyOfItsLine) {
   }
 }
 
+// 9.7 bits of it: no rate is exact. From UART to UART it is a line at the grain of the exchange, as ever.
+TEST(PlanFile, ABoardInTheDevicesPlaceOnAUartHasTheShortestCharacterThatItMaySend) {
+  const auto wire = [](const std::string& more) {
+    return load(nodes("wires = { { from = 'a.gps', to = 'b.usart6'" + more + " } },"));
+  };
+  const Loaded loaded = wire(", fastest = '57600 baud'");
+  ASSERT_EQ(loaded.plans.size(), 1u) << loaded.error;
+  const PlanBoardWire& taken = loaded.plans[0].board_wires.at(0);
+  EXPECT_EQ(taken.device, "gps");
+  EXPECT_EQ(taken.bus, "usart6");
+  EXPECT_EQ(taken.latency_ns, 168'403);
+  EXPECT_EQ(wire("").plans.at(0).board_wires.at(0).latency_ns, 84'201);
+  EXPECT_NE(wire(", fastest = '100 baud'").error.find("fastest"), std::string::npos);
+  EXPECT_NE(wire(", select = 'PA15'").error.find("select"), std::string::npos);
+  const Loaded line = load(nodes("wires = { { from = 'a.usart1', to = 'b.usart2' } },"));
+  ASSERT_EQ(line.plans.size(), 1u) << line.error;
+  EXPECT_TRUE(line.plans[0].board_wires.empty());
+  EXPECT_EQ(line.plans[0].wires.size(), 1u);
+}
+
 TEST(PlanFile, RefusesNodesAndWiresThatLeadNowhere) {
   const auto refused = [](const std::string& from, const std::string& to) {
     return load(nodes("wires = { { from = '" + from + "', to = '" + to + "' } },")).error;

@@ -218,6 +218,37 @@ TEST(UartFault, LossFlipAndSilenceActOnTheWayToTheMcu) {
   EXPECT_TRUE(book.pending().empty());
 }
 
+struct Ear : EarlyUartPeer {
+  void begin(const UartByte& byte, const UartFormat&, Nanoseconds, Nanoseconds) override {
+    begun.push_back(byte.value);
+  }
+  void receive(const UartByte& byte, const UartFormat&, Nanoseconds) override {
+    passed.push_back(byte.value);
+  }
+  std::vector<std::uint8_t> begun, passed;
+};
+
+// What was decided at its start bit holds for all of it.
+TEST(UartFault, BetweenTwoBoardsItActsOnWhatTheMcuSendsAsWell) {
+  EventQueue queue;
+  FaultBook book;
+  Ear far;
+  UartWireFaults wire(queue, book, far, 2, 1, UartWireFaults::Spoils::both_ways);
+  book.add({.number = 1, .kind = FaultKind::uart_silence, .start_ns = 10, .end_ns = 20, .bus = 2});
+  book.add({.number = 2, .kind = FaultKind::uart_flip, .start_ns = 30, .bus = 2, .value = 1.0});
+  for (const Nanoseconds begins : {5, 15, 25, 35}) {
+    queue.run_until(begins);
+    wire.begin({.value = 0x0F}, {.baud = 57600}, begins, begins + 10);
+    queue.run_until(begins + 9);
+    wire.receive({.value = 0x0F}, {.baud = 57600}, begins + 9);
+  }
+  ASSERT_EQ(far.passed.size(), 3u);
+  EXPECT_EQ(far.begun, far.passed);
+  EXPECT_EQ(far.passed[0], 0x0F);
+  EXPECT_EQ(far.passed[1], 0x0F);
+  EXPECT_EQ(__builtin_popcount(far.passed[2] ^ 0x0F), 1);
+}
+
 // Of one part: the first must not hide the second.
 TEST(FaultBook, TwoAxesMayBeOffAtOnce) {
   FaultBook book;

@@ -23,6 +23,7 @@
 
 namespace whirl::io {
 
+inline constexpr double kPodBaud = 3e6;
 inline constexpr std::size_t kPodSampleBytes = 21;  // on the line
 
 struct PodStatus {

@@ -50,7 +50,8 @@ Board::Board(Setup setup, io::Channel channel, Emulator& emulator)
                 setup_.run.wires}),
       core_faults_(
           {events_, emulator, happened_, setup_.image, setup_.description.watch,
-           setup_.description.start != 0 ? setup_.description.start : setup_.part->flash.base}),
+           setup_.description.start != 0 ? setup_.description.start : setup_.part->flash.base,
+           [this](double volts) { chip_->set_vdd(volts); }}),
       systick_(
           events_, chip_->clocks(), [this] { return emulator_.ahead_ns(); },
           [this] {

@@ -5,6 +5,7 @@
 namespace whirl::board {
 namespace {
 
+constexpr double kVdd_V = 3.3;
 constexpr std::array<std::uint16_t, 2> kSleep_for_ever{0xBF30,
                                                        0xE7FD};  // WFI, and a branch back to it
 
@@ -70,10 +71,12 @@ void CoreFaults::supply_gone() {
   const std::uint32_t first = first_instruction();
   site_.emulator.peek(first, code_.data(), sizeof code_);
   site_.emulator.write_cells(first, kSleep_for_ever.data(), sizeof kSleep_for_ever);
+  site_.set_vdd(0.0);
   site_.emulator.reset_core(stm32::ResetCause::pin);
 }
 
 void CoreFaults::supply_back() {
+  site_.set_vdd(kVdd_V);
   site_.emulator.write_cells(first_instruction(), code_.data(), sizeof code_);
   site_.emulator.lose_memories();
   site_.emulator.reset_core(stm32::ResetCause::power_on);

@@ -12,6 +12,7 @@
 #include <array>
 #include <cstdint>
 #include <deque>
+#include <functional>
 
 #include "io_bridges/qemu/board/code_hang.hpp"
 
@@ -26,6 +27,7 @@ class CoreFaults {
     const Image& image;
     const std::vector<std::string>& watch;  // names, by their numbers
     std::uint32_t vectors;                  // address of those that the core starts from
+    std::function<void(double volts)> set_vdd;
   };
   explicit CoreFaults(const Site& site)
       : site_(site), hangs_(site.events, site.emulator, site.happened) {}

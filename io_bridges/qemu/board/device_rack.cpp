@@ -3,16 +3,17 @@
 #include <map>
 #include <set>
 
+#include "io_bridges/board_description/bus_kind.hpp"
 #include "io_bridges/devices/can_wire_faults.hpp"
 #include "io_bridges/devices/wire_faults.hpp"
 #include "io_bridges/qemu/board/board_pins.hpp"
 #include "io_bridges/qemu/board/empty_can.hpp"
-#include "io_bridges/qemu/board/i2c_wire.hpp"
+#include "io_bridges/qemu/board/far_ends.hpp"
 #include "io_bridges/qemu/board/spi_log.hpp"
-#include "io_bridges/qemu/board/spi_wire.hpp"
 #include "io_bridges/qemu/stm32/bxcan.hpp"
 #include "io_bridges/rack/can_log.hpp"
 #include "io_bridges/rack/check_board.hpp"
+#include "io_bridges/rack/fault_order.hpp"
 
 namespace whirl::board {
 
@@ -22,13 +23,11 @@ using io::Kind;
 class DeviceRack::Wiring final : public rack::Rack {
  public:
   explicit Wiring(Site site) : site_(std::move(site)) {
-    faults_.on_applied([this](std::uint32_t number, io::Nanoseconds now) {
-      site_.happened.add(Kind::fault_applied, static_cast<std::uint16_t>(number), now, nullptr, 0);
-    });
+    rack::tell_applied(faults_, site_.happened);
   }
 
   Result<Done> build(const BoardDescription& board);
-  Result<Done> follow(const WireEnd& end);
+  Result<Done> follow(const WireEnd& end) { return far_.follow(end); }
   bool on_message(const io::Reader& message);
   void report(io::Nanoseconds now) {
     for (const auto& device : devices_) device->report(now);
@@ -53,7 +52,9 @@ class DeviceRack::Wiring final : public rack::Rack {
   io::CanBus* can(int number) override;
   bool join_spi(int bus, io::Wire& chip_select, io::SpiTarget& target, const BoardDevice& device,
                 int number) override;
-  bool join_uart(int number, io::UartPeer& peer) override;
+  bool join_uart(int number, io::UartPeer& peer) override {
+    return join_uart(number, peer, io::UartWireFaults::Spoils::towards_mcu);
+  }
   io::SpiSlave* spi_slave(int number) override { return site_.chip.spi_slave(number); }
 
  private:
@@ -61,10 +62,7 @@ class DeviceRack::Wiring final : public rack::Rack {
   Result<Done> check_pins(const BoardDevice& device) const;
   std::string bus_of(const std::string& pin) const;
   Result<Done> add(const BoardDescription& board, int number);
-  Result<Done> lead(const BoardDevice& device, int number, const WireEnd& end,
-                    std::unique_ptr<io::I2cBus> ear);
-  io::Wire* pin_of(const BoardDevice& device, const char* key);  // null: it has none
-  void tell_ready(io::Wire& ready, int number);
+  bool join_uart(int number, io::UartPeer& peer, io::UartWireFaults::Spoils spoils);
   const WireEnd* far_end(const BoardDevice& device) const;
   Result<Done> subscribe(rack::RackDevice& device, const std::string& place);
   io::SpiBus* spi(int number);
@@ -85,8 +83,11 @@ class DeviceRack::Wiring final : public rack::Rack {
   std::map<int, io::SpiBus*> spi_buses_;
   std::map<const io::Wire*, std::unique_ptr<SpiLog>> spi_logs_;
   std::vector<std::unique_ptr<io::SpiWireFaults>> spi_faults_;
-  std::vector<std::unique_ptr<io::UartWireFaults>> uart_faults_;
+  std::map<int, std::unique_ptr<io::UartWireFaults>> uart_faults_;
   std::vector<std::unique_ptr<rack::RackDevice>> devices_;
+  FarEnds far_{*this, site_.wires, [this](int number, io::UartPeer& peer) {
+                 return join_uart(number, peer, io::UartWireFaults::Spoils::both_ways);
+               }};
   std::map<Kind, std::vector<rack::RackDevice*>> takers_;  // whatever the port
   std::map<std::pair<Kind, std::uint16_t>, rack::RackDevice*> taker_of_port_;
 };
@@ -154,8 +155,9 @@ Result<Done> DeviceRack::Wiring::add(const BoardDescription& board, int number) 
   const rack::DeviceType* type = rack::find_type(site_.types, device.type);
   WHIRL_CHECK(type != nullptr, device.type);
   const WireEnd* far = far_end(device);
-  // A part that senses has nothing to tell where another board stands in its place.
-  if (far != nullptr && !type->senses.empty()) return lead(device, number, *far, nullptr);
+  // A part that senses has nothing to tell where another board stands in its place; nor has one on a UART.
+  const bool mute = !type->senses.empty() || is_uart(device.bus);
+  if (far != nullptr && mute) return far_.lead(device, number, *far, nullptr);
   rack::DeviceSlot slot(*this, board.name, device, *type, number);
   std::unique_ptr<io::I2cBus> ear;
   if (far != nullptr) ear = std::make_unique<io::I2cBus>(device.name);
@@ -165,7 +167,7 @@ Result<Done> DeviceRack::Wiring::add(const BoardDescription& board, int number) 
   if (slot.error()) return *slot.error();
   WHIRL_CHECK(made != nullptr, device.type);
   if (far != nullptr) {
-    if (const auto led = lead(device, number, *far, std::move(ear)); !led) return led.error();
+    if (const auto led = far_.lead(device, number, *far, std::move(ear)); !led) return led.error();
   }
   devices_.push_back(std::move(made));
   return subscribe(*devices_.back(), slot.place());
@@ -178,65 +180,6 @@ const WireEnd* DeviceRack::Wiring::far_end(const BoardDevice& device) const {
   return nullptr;
 }
 
-Result<Done> DeviceRack::Wiring::lead(const BoardDevice& device, int number, const WireEnd& end,
-                                      std::unique_ptr<io::I2cBus> ear) {
-  const auto wire = site_.wires->lead(end.fd);
-  if (!wire) return wire.error();
-  const auto port = static_cast<std::uint8_t>(end.port);
-  const int bus_of_device = bus_number(device.bus).value_or(0);
-  if (device.bus.starts_with("i2c") && device.address >= 0) {
-    if (io::I2cBus* bus = i2c(bus_of_device)) {
-      auto& led = wire.value()->port<LeaderI2c>(port, *bus);
-      led.add(static_cast<std::uint8_t>(device.address), std::move(ear));
-      return Done{};
-    }
-  } else if (io::Wire* select = pin_of(device, "cs");
-             device.bus.starts_with("spi") && select != nullptr) {
-    io::Wire* ready = pin_of(device, "int");
-    auto& led = wire.value()->port<LeaderSpi>(port, device.name, ready, end.latency_ns);
-    if (ready != nullptr) tell_ready(*ready, number);
-    if (join_spi(bus_of_device, *select, led, device, number)) return Done{};
-  }
-  return Error{ErrorKind::bad_input, device.place + ": " + device.name,
-               "is no device on I2C or SPI of this part: no board can take its place", ""};
-}
-
-io::Wire* DeviceRack::Wiring::pin_of(const BoardDevice& device, const char* key) {
-  const auto value = device.value(key);
-  return value ? pin(std::get<std::string>(*value)) : nullptr;
-}
-
-// As the part itself would.
-void DeviceRack::Wiring::tell_ready(io::Wire& ready, int number) {
-  ready.watch([this, number](bool level, io::Nanoseconds now) {
-    const auto place = static_cast<std::uint16_t>(number);
-    if (level) site_.happened.add(Kind::data_ready, place, now, nullptr, 0);
-  });
-}
-
-Result<Done> DeviceRack::Wiring::follow(const WireEnd& end) {
-  const auto wire = site_.wires->follow(end.fd, end.shared);
-  if (!wire) return wire.error();
-  const auto port = static_cast<std::uint8_t>(end.port);
-  const int number = bus_number(end.bus).value_or(0);
-  if (end.bus.starts_with("i2c")) {
-    if (io::I2cBus* bus = i2c(number)) return wire.value()->port<FollowerI2c>(port, *bus), Done{};
-  } else if (io::SpiSlave* slave = spi_slave(number);
-             end.bus.starts_with("spi") && slave != nullptr) {
-    io::Wire* select = pin(end.select);
-    io::Wire* ready = end.ready.empty() ? nullptr : pin(end.ready);
-    if (select == nullptr || (ready == nullptr && !end.ready.empty())) {
-      return Error{ErrorKind::bad_input, end.bus,
-                   "the part has no pin '" + (select == nullptr ? end.select : end.ready) +
-                       "' for the wire to another board",
-                   ""};
-    }
-    wire.value()->port<FollowerSpi>(port, end.bus, *slave, *select, ready);
-    return Done{};
-  }
-  return Error{ErrorKind::bad_input, end.bus,
-               "the part has no such bus for the wire to another board", ""};
-}
 Result<Done> DeviceRack::Wiring::subscribe(rack::RackDevice& device, const std::string& place) {
   for (const rack::Intake& intake : device.intakes()) {
     if (!intake.port) {
@@ -342,18 +285,19 @@ bool DeviceRack::Wiring::join_spi(int number, io::Wire& chip_select, io::SpiTarg
   return true;
 }
 
-bool DeviceRack::Wiring::join_uart(int number, io::UartPeer& peer) {
-  uart_faults_.push_back(
-      std::make_unique<io::UartWireFaults>(site_.events, faults_, peer, number, site_.seed));
-  return site_.chip.join_uart(number, *uart_faults_.back());
+bool DeviceRack::Wiring::join_uart(int number, io::UartPeer& peer,
+                                   io::UartWireFaults::Spoils spoils) {
+  if (uart_faults_.count(number) != 0) return false;
+  auto& faults = uart_faults_[number];
+  faults =
+      std::make_unique<io::UartWireFaults>(site_.events, faults_, peer, number, site_.seed, spoils);
+  return site_.chip.join_uart(number, *faults);
 }
 
 bool DeviceRack::Wiring::on_message(const io::Reader& message) {
   const io::Header& head = message.header();
   if (head.kind == Kind::fault) {
-    const auto f = message.as<io::FaultCommand>();
-    faults_.add({f.number, static_cast<io::FaultKind>(f.kind), f.start_ns, f.end_ns, f.bus,
-                 f.address, f.axis, f.value});
+    faults_.add(rack::fault_of(message));
     return true;
   }
   bool taken = false;

@@ -1,6 +1,6 @@
 // The ends of a board's wires to other boards. The bus master's board leads: for each byte it asks the slave's
 // board. The slave's board follows: it acts as the master on its own buses at the times that it is told, and
-// blocks where it does not know what comes next. What a bus carries: i2c_wire.hpp, spi_wire.hpp.
+// blocks where it does not know what comes next. What a bus carries: i2c_wire.hpp, spi_wire.hpp, uart_wire.hpp.
 //
 //   Waiting   a leader waits for answers and marks only, a follower for messages only, and posts its answer at the
 //             act, when the clock is free, kHeld_ns after, or at its boundary: so none waits for ever
@@ -45,7 +45,7 @@ class LeaderPort {
   virtual bool far_at_boundary() const { return false; }  // and so was nothing more before it
   virtual void after_boundary(Nanoseconds /*now*/) {}
   virtual void run_ends(Nanoseconds /*now*/) {}
-  virtual void edge(const io::WireEdge& /*edge*/) {}  // of the far board's line
+  virtual void edge(const io::WireEdge& /*edge*/) {}  // of the far board's line or UART
 };
 
 class LeaderWire {

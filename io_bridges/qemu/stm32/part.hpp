@@ -51,7 +51,10 @@ class Part : public ChipModel {
   io::SpiSlave* spi_slave(int number) override;
   bool join_uart(int number, io::UartPeer& peer) override;
   bool set_analog(std::string_view pin, std::function<double(Nanoseconds)> volts) override;
-  void set_vdd(double volts) override { pwr_.set_vdd(volts); }
+  void set_vdd(double volts) override {
+    rcc_.set_vdd(volts);
+    pwr_.set_vdd(volts);
+  }
   Timer* timer(int number) override { return functions_->timer(number); }
   BxCan* can(int number) override { return functions_->can(number); }
   Adc* converter(int number) override { return functions_->converter(number); }

@@ -25,6 +25,7 @@ constexpr Nanoseconds kHsiStart_ns = 2'200, kPllLock_ns = 200'000, kLsiStart_ns 
                       kLseStart_ns = 2'000'000'000;
 // Firmware that means to use its crystal does so soon after it is ready, and soon after reset.
 constexpr Nanoseconds kCrystal_idle_ns = 10'000'000, kReset_clock_ns = 100'000'000;
+constexpr double kHeld_in_reset_V = 1.6;  // below it, by both parts' data sheets
 
 std::string megahertz(double frequency_Hz) {
   char text[32];
@@ -182,7 +183,7 @@ void Rcc::report_unused_crystal() {
 }
 
 void Rcc::report_reset_clock() {
-  if (sws() != hsi) return;
+  if (sws() != hsi || vdd_V_ < kHeld_in_reset_V) return;  // held in reset: nothing runs
   report_once(256, "100 ms after its reset the core still runs from its reset clock, HSI of " +
                        megahertz(layout_.hsi_Hz));
 }

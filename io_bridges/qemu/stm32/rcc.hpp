@@ -77,7 +77,8 @@ class Rcc : public WordBlock, public Clocks {
 
   void reset() override;                // registers as after a system reset
   void system_reset(ResetCause cause);  // reset() and the cause in CSR
-  void fail_hse();                      // the crystal stops; with CSSON: HSI takes over, NMI
+  void set_vdd(double volts) { vdd_V_ = volts; }
+  void fail_hse();  // the crystal stops; with CSSON: HSI takes over, NMI
   void on_nmi(std::function<void(bool)> nmi) { nmi_ = std::move(nmi); }
 
  protected:
@@ -131,6 +132,7 @@ class Rcc : public WordBlock, public Clocks {
   io::EventQueue& events_;
   InterruptLines& interrupts_;
   io::FindingSink finding_;
+  double vdd_V_ = 3.3;
   std::array<std::uint32_t, 0x90 / 4> words_{};
   io::Event hsi_ready_, hse_ready_, pll_ready_, plli2s_ready_, lsi_ready_, lse_ready_;
   io::Event crystal_unused_, still_reset_clock_;  // moments to look again

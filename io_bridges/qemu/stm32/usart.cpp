@@ -52,6 +52,7 @@ Usart::Usart(std::string name, Chip chip, int irq, bool on_apb2, UsartPins pins)
 
 void Usart::join(io::UartPeer& peer) {
   peer_ = &peer;
+  early_ = dynamic_cast<io::EarlyUartPeer*>(&peer);
   peer.join(
       [this](const io::UartByte& byte, const io::UartFormat& format) { receive(byte, format); });
 }
@@ -190,6 +191,7 @@ void Usart::next_character() {
     return;
   }
   tx_end_.in(frame_ns());
+  announce(tx_end_.due());
 }
 
 void Usart::character_sent() {
@@ -203,17 +205,32 @@ void Usart::character_sent() {
   update();
 }
 
-void Usart::send_to_peer(std::uint16_t bits, bool is_break) {
+io::UartFormat Usart::format() const {
   const int data_bits = word_bits() - ((cr1_ & PCE) != 0 ? 1 : 0);
   io::UartFormat format{baud_, data_bits, 'N', stop_bits_};
   if ((cr1_ & PCE) != 0) format.parity = (cr1_ & PS) != 0 ? 'O' : 'E';
+  return format;
+}
+
+io::UartByte Usart::on_line(std::uint16_t bits, bool is_break) const {
   io::UartByte byte;
-  byte.value = static_cast<std::uint8_t>(bits & ((1u << data_bits) - 1));
+  byte.value = static_cast<std::uint8_t>(bits & ((1u << format().data_bits) - 1));
   byte.is_break = is_break;
+  return byte;
+}
+
+void Usart::announce(Nanoseconds end) {
+  if (early_ == nullptr || sending_ == Sending::idle_frame || !pins_.tx.routed()) return;
+  const bool is_break = sending_ == Sending::break_character;
+  early_->begin(on_line(is_break ? 0 : tx_shift_, is_break), format(), chip_.events.now(), end);
+}
+
+void Usart::send_to_peer(std::uint16_t bits, bool is_break) {
+  const io::UartByte byte = on_line(bits, is_break);
   const bool half_duplex = (cr3_ & HDSEL) != 0;
   if (!pins_.tx.routed()) return report_once(1, "sending with no pin muxed to TX");
-  if (half_duplex && (cr1_ & RE) != 0) receive(byte, format);  // one wire: it hears itself
-  if (peer_ != nullptr) peer_->receive(byte, format, chip_.events.now());
+  if (half_duplex && (cr1_ & RE) != 0) receive(byte, format());  // one wire: it hears itself
+  if (peer_ != nullptr) peer_->receive(byte, format(), chip_.events.now());
 }
 
 void Usart::receive(const io::UartByte& byte, const io::UartFormat& format) {

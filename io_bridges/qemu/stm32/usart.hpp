@@ -8,6 +8,7 @@
 //   Findings  sending with TX not muxed to a pin; BRR 0 while enabled; modes left out
 //   Left out  smartcard, IrDA, synchronous clock: stored only; the ninth data bit stays here
 #pragma once
+#include "io_bridges/devices/early_uart_peer.hpp"
 #include "io_bridges/qemu/stm32/signal.hpp"
 #include "io_bridges/qemu/stm32/word_block.hpp"
 
@@ -41,6 +42,9 @@ class Usart final : public WordBlock {
 
   void next_character();
   void character_sent();
+  io::UartFormat format() const;
+  io::UartByte on_line(std::uint16_t bits, bool is_break) const;
+  void announce(Nanoseconds end);
   void send_to_peer(std::uint16_t bits, bool is_break);
   void receive(const io::UartByte& byte, const io::UartFormat& format);
   void receive(std::uint16_t bits, std::uint32_t errors);
@@ -59,6 +63,7 @@ class Usart final : public WordBlock {
   bool on_apb2_;
   UsartPins pins_;
   io::UartPeer* peer_ = nullptr;
+  io::EarlyUartPeer* early_ = nullptr;  // the same, where it wants to know of start bits
   DmaRequest tx_request_, rx_request_;
   io::Event tx_end_, idle_;
   std::uint32_t sr_ = 0xC0, brr_ = 0, cr1_ = 0, cr2_ = 0, cr3_ = 0, gtpr_ = 0;

@@ -10,8 +10,7 @@
 #include <utility>
 
 #include "io_bridges/devices/sbus.hpp"
-#include "io_bridges/devices/ublox.hpp"
-#include "io_bridges/rack/devices/pod_host_link.hpp"
+#include "io_bridges/rack/devices/pod_gps.hpp"
 #include "io_bridges/rack/devices/pod_output_check.hpp"
 #include "io_bridges/rack/devices/table.hpp"
 
@@ -82,6 +81,11 @@ class PodHostDevice final : public RackDevice {
                      tell(sbus_uart_, byte.value, now);
                    }),
         gps_(queue_, receiver_of(slot), place, nullptr, slot.rack().finding()),
+        said_(
+            queue_, gps_, reader_,
+            {[this](const std::vector<std::uint8_t>& frame) { link_.send(frame); },
+             [this](std::uint8_t byte, double baud) { gps_check_.given(byte, baud, queue_.now()); },
+             [this](double baud) { gps_line_.speak_at(baud); }}),
         sample_(queue_, [this] { sample(); }),
         sbus_(queue_, [this] { sbus(); }),
         cppm_(queue_, [this] { cppm(); }) {
@@ -92,11 +96,6 @@ class PodHostDevice final : public RackDevice {
       ++setpoints_;
       setpoint_ = setpoint;
     });
-    reader_.on_gps_written([this](const io::PodGpsWritten& written) { written_to_gps(written); });
-    gps_.join([this](const io::UartByte& byte, const io::UartFormat& format) {
-      from_gps(byte.value, format.baud);
-    });
-    rate_ = static_cast<std::uint32_t>(std::lround(gps_.baud()));
     sample_.in(kStart_ns);
     sbus_.in(kStart_ns);
     cppm_.in(kStart_ns);
@@ -115,8 +114,8 @@ class PodHostDevice final : public RackDevice {
 
   void sample() {
     sample_.in(kMs);
-    if (number_ == 0) link_.send(io::pack_pod_gps_baud(gps_number_++, rate_));
-    flush_gps();
+    if (number_ == 0) said_.tell_rate();
+    said_.flush();
     ++number_;
     std::array<std::int16_t, 7> counts{};
     for (unsigned i = 0; i < counts.size(); ++i) {
@@ -146,45 +145,14 @@ class PodHostDevice final : public RackDevice {
     link_.send(io::pack_pod_cppm(cppm_number_++, steps));
   }
 
-  // ---- GPS
-
-  void from_gps(std::uint8_t byte, double baud) {
-    follow(baud);
-    gps_check_.given(byte, baud, queue_.now());
-    gps_bytes_.push_back(byte);
-    if (gps_bytes_.size() == io::kPodGpsBytes) flush_gps();
-  }
-  // With the next millisecond: it gathers what comes, as a host does.
-  void flush_gps() {
-    if (gps_bytes_.empty()) return;
-    link_.send(io::pack_pod_gps(gps_number_++, 0, gps_bytes_));
-    gps_bytes_.clear();
-  }
-  // At the rate that the pod's line has: the receiver's.
-  void written_to_gps(const io::PodGpsWritten& written) {
-    for (const std::uint8_t byte : written.bytes) {
-      gps_.receive({.value = byte}, {.baud = gps_.baud()}, queue_.now());
-    }
-    follow(gps_.baud());
-  }
-  void follow(double baud) {
-    const auto rate = static_cast<std::uint32_t>(std::lround(baud));
-    if (rate == rate_) return;
-    flush_gps();
-    rate_ = rate;
-    link_.send(io::pack_pod_gps_baud(gps_number_++, rate_));
-    gps_line_.speak_at(baud);
-  }
-
   // ---- What is asked of it
 
   void answer(const std::string& name) {
-    for (const auto& [known, value] : figures()) {
-      if (known == name) return link_.tell(name, value);
+    if (!link_.tell(name, figures()) && !link_.tell(name, figures_of(status_))) {
+      link_.tell(name, -1);
     }
-    link_.tell(name, -1);
   }
-  std::vector<std::pair<std::string, std::int64_t>> figures() const {
+  PodFigures figures() const {
     const auto whole = [](auto value) { return static_cast<std::int64_t>(value); };
     return {{"sbus_frames", whole(sbus_check_.frames)},
             {"sbus_wrong", whole(sbus_check_.wrong + sbus_check_.wrong_format)},
@@ -207,14 +175,7 @@ class PodHostDevice final : public RackDevice {
             {"samples", whole(number_)},
             {"setpoints", whole(setpoints_)},
             {"setpoint_esc", setpoint_.esc},
-            {"setpoint_value", setpoint_.valid ? setpoint_.value : -1},
-            {"pod_lost", status_.lost},
-            {"pod_late", status_.late},
-            {"pod_damaged", status_.damaged},
-            {"pod_unsent", status_.unsent},
-            {"pod_gps_dropped", status_.gps_dropped},
-            {"pod_turn_us", status_.longest_turn_us},
-            {"pod_now_us", status_.now_us}};
+            {"setpoint_value", setpoint_.valid ? setpoint_.value : -1}};
   }
   void tell(std::uint16_t uart, std::uint8_t byte, Nanoseconds now) {
     happened_.add(io::Kind::uart_received, uart, now, &byte, 1);
@@ -232,13 +193,12 @@ class PodHostDevice final : public RackDevice {
   GpsCheck gps_check_;
   PodLine gps_line_, sbus_line_;
   io::Ublox gps_;
+  PodGps said_;
   io::Event sample_, sbus_, cppm_;
   std::uint64_t number_ = 0, setpoints_ = 0;
   io::PodSetpoint setpoint_;
   unsigned sbus_step_ = 0, cppm_step_ = 0;
-  std::uint8_t sbus_number_ = 0, cppm_number_ = 0, gps_number_ = 0;
-  std::uint32_t rate_ = 0;
-  std::vector<std::uint8_t> gps_bytes_;
+  std::uint8_t sbus_number_ = 0, cppm_number_ = 0;
 };
 
 }  // namespace

@@ -6,7 +6,6 @@
 namespace whirl::rack {
 namespace {
 
-constexpr double kPod_baud = 3e6;
 constexpr std::uint8_t kUrgent = 6, kUsual = 16, kHostNode = 100;
 
 }  // namespace
@@ -22,12 +21,27 @@ std::vector<DeviceKey> pod_link_keys() {
               .with(std::string("counts"))};
 }
 
+PodFigures figures_of(const io::PodStatus& status) {
+  return {{"pod_lost", status.lost},
+          {"pod_late", status.late},
+          {"pod_damaged", status.damaged},
+          {"pod_oddities", status.oddities},
+          {"pod_overlaps", status.overlaps},
+          {"pod_late_rearm", status.late_rearm},
+          {"pod_transfers", status.transfers},
+          {"pod_samples", status.samples},
+          {"pod_unsent", status.unsent},
+          {"pod_gps_dropped", status.gps_dropped},
+          {"pod_turn_us", status.longest_turn_us},
+          {"pod_now_us", status.now_us}};
+}
+
 PodHostLink::PodHostLink(DeviceSlot& slot, io::PodLinkReader& reader)
     : queue_(slot.rack().events()),
       happened_(slot.rack().happened()),
       reader_(reader),
       uart_(slot.whole("params.uart")),
-      line_(queue_, {.baud = kPod_baud},
+      line_(queue_, {.baud = io::kPodBaud},
             [this](const io::UartByte& byte, const io::UartFormat& format) {
               UartPeer::send(byte, format);
             }) {
@@ -74,6 +88,15 @@ void PodHostLink::tell(const std::string& name, std::int64_t value) {
   const std::string line = name + " " + std::to_string(value) + "\n";
   happened_.add(io::Kind::uart_received, uart_, queue_.now(), line.data(),
                 static_cast<std::uint32_t>(line.size()));
+}
+
+bool PodHostLink::tell(const std::string& name, const PodFigures& figures) {
+  for (const auto& [known, value] : figures) {
+    if (known != name) continue;
+    tell(name, value);
+    return true;
+  }
+  return false;
 }
 
 template <typename Imu>

@@ -12,6 +12,9 @@ namespace whirl::rack {
 
 std::vector<DeviceKey> pod_link_keys();  // params.uart, .can, .sample
 
+using PodFigures = std::vector<std::pair<std::string, std::int64_t>>;
+PodFigures figures_of(const io::PodStatus& status);  // pod_lost, pod_late, ...
+
 class PodHostLink final : io::UartPeer {
  public:
   // What the pod tells goes to `reader`, which must live as long.
@@ -26,6 +29,8 @@ class PodHostLink final : io::UartPeer {
   // Who judges asks for a figure by its name, a line on uart(), and is answered there.
   static std::string asked(const io::Reader& message);
   void tell(const std::string& name, std::int64_t value);
+  // False: it is none of them, and nothing was told.
+  bool tell(const std::string& name, const PodFigures& figures);
 
  private:
   void receive(const io::UartByte& byte, const io::UartFormat&, Nanoseconds) override {

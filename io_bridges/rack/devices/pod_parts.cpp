@@ -1,5 +1,6 @@
 // The host of a pod, and behind it the parts that the pod plays: an MPU-6000, an MS5611 and an HMC5883L, each the
-// model that a board of the house carries, in the plant's motion, air and field.
+// model that a board of the house carries, in the plant's motion, air and field; the four ESCs (pod_escs.hpp) and receivers
+// (pod_receivers.hpp).
 //
 //   IMU     as it is set, which the pod's status tells; each of its samples is sent as it is ready
 //   Air     PROM at the start and once a second, then pressure and temperature by turns, at the finest oversampling
@@ -14,7 +15,8 @@
 #include "io_bridges/devices/hmc5883l.hpp"
 #include "io_bridges/devices/ms5611.hpp"
 #include "io_bridges/rack/devices/imu_keys.hpp"
-#include "io_bridges/rack/devices/pod_host_link.hpp"
+#include "io_bridges/rack/devices/pod_escs.hpp"
+#include "io_bridges/rack/devices/pod_receivers.hpp"
 #include "io_bridges/rack/devices/table.hpp"
 #include "io_bridges/rack/models/inertial_sensor.hpp"
 #include "io_bridges/rack/models/sensed_air.hpp"
@@ -71,6 +73,8 @@ class PodPartsDevice final : public RackDevice {
       : queue_(slot.rack().events()),
         reader_([this](const io::PodStatus& status) { told(status); }),
         link_(slot, reader_),
+        receivers_(slot, reader_,
+                   [this](std::vector<std::uint8_t> frame) { send_slow(std::move(frame)); }),
         slave_(slot.rack().spi_slave(slot.whole("params.spi"))),
         motion_(physics, mounting_of(slot.axes("axes")), slot.rack().seed(), slot.name()),
         air_(air_of(), slot.rack().seed(), slot.name()),
@@ -85,6 +89,8 @@ class PodPartsDevice final : public RackDevice {
         mag_(
             queue_, magnetometer_of(slot), [this](Nanoseconds) { return field_.along_part_T(); },
             &placed_, nullptr, slot.rack().finding()),
+        escs_(slot.rack(),
+              [this](std::vector<std::uint8_t> frame) { send_slow(std::move(frame)); }),
         start_(queue_, [this] { start(); }),
         next_(queue_, [this] { convert(); }) {
     sample_.watch([this](bool level, Nanoseconds now) {
@@ -93,18 +99,26 @@ class PodPartsDevice final : public RackDevice {
     placed_.watch([this](bool level, Nanoseconds now) {
       if (!level) send_field(now);
     });
+    reader_.on_setpoint([this](const io::PodSetpoint& setpoint) { escs_.told(setpoint); });
     start_.at(kStart_ns);
   }
 
   std::vector<Intake> intakes() const override {
-    return {{io::Kind::body_motion}, {io::Kind::uart_frame, link_.uart()}};
+    std::vector<Intake> all = PodEscs::intakes();
+    all.push_back({io::Kind::body_motion});
+    all.push_back({io::Kind::rc_channels});
+    all.push_back({io::Kind::uart_frame, link_.uart()});
+    return all;
   }
   void on_message(const io::Reader& message) override {
     if (message.header().kind == io::Kind::uart_frame) return answer(PodHostLink::asked(message));
+    if (message.header().kind == io::Kind::esc_state) return escs_.on_message(message);
+    if (message.header().kind == io::Kind::rc_channels) return receivers_.on_sticks(message);
     const auto motion = message.as<io::BodyMotion>();
     motion_.set_motion(motion, message.header().t_ns);
     air_.set(motion);
     field_.set(motion);
+    receivers_.set(motion);
   }
 
  private:
@@ -116,6 +130,7 @@ class PodPartsDevice final : public RackDevice {
     tell_part(mag_, {0x02, 0x00}, now);    // MODE: continuous
     tell_part(baro_, {kReset}, now);
     next_.in(kReload_ns);
+    receivers_.start();
     started_ = true;
   }
 
@@ -150,12 +165,15 @@ class PodPartsDevice final : public RackDevice {
     ++samples_;
     link_.send_sample(number_++, counts);
     sampled_ns_ = now;
-    for (const auto& frame : slow_) link_.send(frame);
-    slow_.clear();
+    send_waiting();
   }
   void send_slow(std::vector<std::uint8_t> frame) {
-    if (queue_.now() - sampled_ns_ < kSampling_ns) return slow_.push_back(std::move(frame));
-    link_.send(frame);
+    slow_.push_back(std::move(frame));
+    if (queue_.now() - sampled_ns_ >= kSampling_ns) send_waiting();
+  }
+  void send_waiting() {
+    for (const auto& frame : slow_) link_.send(frame);
+    slow_.clear();
   }
 
   // ---- Barometer and magnetometer
@@ -215,35 +233,28 @@ class PodPartsDevice final : public RackDevice {
   // ---- What is asked of it
 
   void answer(const std::string& name) {
-    for (const auto& [known, value] : figures()) {
-      if (known == name) return link_.tell(name, value);
+    if (!link_.tell(name, figures()) && !link_.tell(name, figures_of(status_))) {
+      link_.tell(name, -1);
     }
-    link_.tell(name, -1);
   }
-  std::vector<std::pair<std::string, std::int64_t>> figures() const {
+  PodFigures figures() const {
     const auto whole = [](auto value) { return static_cast<std::int64_t>(value); };
     const io::SpiSlack slack = slave_ == nullptr ? io::SpiSlack{} : slave_->slack();
     return {{"samples", whole(samples_)},
+            {"setpoints", whole(escs_.setpoints())},
+            {"setpoints_refused", whole(escs_.refused())},
             {"spi_first_bytes", whole(slack.first.bytes)},
             {"spi_first_late", whole(slack.first.late)},
             {"spi_first_least_wait_ns", slack.first.least_ns},
             {"spi_other_bytes", whole(slack.others.bytes)},
             {"spi_other_late", whole(slack.others.late)},
-            {"spi_other_least_wait_ns", slack.others.least_ns},
-            {"pod_samples", status_.samples},
-            {"pod_lost", status_.lost},
-            {"pod_late", status_.late},
-            {"pod_damaged", status_.damaged},
-            {"pod_oddities", status_.oddities},
-            {"pod_overlaps", status_.overlaps},
-            {"pod_late_rearm", status_.late_rearm},
-            {"pod_unsent", status_.unsent},
-            {"pod_turn_us", status_.longest_turn_us}};
+            {"spi_other_least_wait_ns", slack.others.least_ns}};
   }
 
   io::EventQueue& queue_;
   io::PodLinkReader reader_;
   PodHostLink link_;
+  PodReceivers receivers_;
   const io::SpiSlave* slave_;
   io::PodStatus status_;
   InertialSensor motion_;
@@ -253,6 +264,7 @@ class PodPartsDevice final : public RackDevice {
   io::Mpu6000 imu_;
   io::Ms5611 baro_;
   io::Hmc5883l mag_;
+  PodEscs escs_;
   io::Event start_, next_;
   std::array<std::uint8_t, kSettings.size()> settings_{};
   Nanoseconds sampled_ns_ = -kSampling_ns;
@@ -278,8 +290,10 @@ DeviceType pod_parts_type() {
                                  axes_key("params.field_axes", "the magnetometer's, in the body")
                                      .with(std::vector<std::string>{"+y", "-x", "+z"})};
   add_imu_keys(keys);
-  for (const DeviceKey& key : pod_link_keys()) keys.push_back(key);
-  return {"pod_parts", "the host of a pod, and the IMU, barometer and magnetometer that it plays",
+  for (const auto& more : {pod_link_keys(), pod_receiver_keys()}) {
+    keys.insert(keys.end(), more.begin(), more.end());
+  }
+  return {"pod_parts", "the host of a pod, and the sensors, ESCs and receivers that it plays",
           std::move(keys), make};
 }
 

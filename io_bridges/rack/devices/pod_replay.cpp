@@ -182,15 +182,7 @@ class PodReplayDevice final : public RackDevice {
     add("write", writes_);
     add("link", link_delay_);
     add("gap", gap_);
-    add("pod_lost", status_.lost);
-    add("pod_late", status_.late);
-    add("pod_damaged", status_.damaged);
-    add("pod_oddities", status_.oddities);
-    add("pod_overlaps", status_.overlaps);
-    add("pod_late_rearm", status_.late_rearm);
-    add("pod_transfers", status_.transfers);
-    add("pod_samples", status_.samples);
-    add("pod_turn_us", status_.longest_turn_us);
+    for (const auto& figure : figures_of(status_)) figures_.push_back(figure);
     add("done", 1.0);
     if (done_asked_) answer("done");
     if (asked_) return;
@@ -198,10 +190,7 @@ class PodReplayDevice final : public RackDevice {
   }
 
   void answer(const std::string& name) {
-    for (const auto& [known, value] : figures_) {
-      if (known == name) return link_.tell(name, value);
-    }
-    link_.tell("unknown_or_not_yet", 0);
+    if (!link_.tell(name, figures_)) link_.tell("unknown_or_not_yet", 0);
   }
 
   io::EventQueue& queue_;
@@ -220,7 +209,7 @@ class PodReplayDevice final : public RackDevice {
   Nanoseconds first_wrong_ns_ = -1;
   Answers commands_, bursts_, reads_, writes_;
   Spread link_delay_, gap_;
-  std::vector<std::pair<std::string, long long>> figures_;
+  PodFigures figures_;
   bool ended_ = false, asked_ = false, done_asked_ = false;
 };
 

@@ -4,21 +4,11 @@
 
 #include "io_bridges/devices/gnss_node.hpp"
 #include "io_bridges/rack/devices/can_node_keys.hpp"
+#include "io_bridges/rack/devices/gnss_place.hpp"
 #include "io_bridges/rack/devices/table.hpp"
-#include "plant/sensors/gps.hpp"
 
 namespace whirl::rack {
 namespace {
-
-plant::GpsParams physics_of(const DeviceSlot& slot) {
-  plant::GpsParams params;
-  params.wander_level_m = slot.quantity("params.wander_level");
-  params.wander_down_m = slot.quantity("params.wander_down");
-  params.wander_time_s = slot.quantity("params.wander_time");
-  params.velocity_level_mps = slot.quantity("params.velocity_noise");
-  params.velocity_down_mps = slot.quantity("params.velocity_noise_down");
-  return params;
-}
 
 Nanoseconds time_ns(const DeviceSlot& slot, const char* path) {
   return std::llround(slot.quantity(path) * 1e9);
@@ -39,67 +29,11 @@ io::Ublox::Params part_of(DeviceSlot& slot, io::UbloxModel model, double baud) {
   return params;
 }
 
-// What the receiver finds, by the plant's errors.
-class SensedPlace {
- public:
-  explicit SensedPlace(DeviceSlot& slot)
-      : gps_(physics_of(slot), slot.rack().seed(), slot.name()),
-        origin_{slot.quantity("params.latitude"), slot.quantity("params.longitude"),
-                slot.quantity("params.height")},
-        geoid_m_(slot.quantity("params.geoid")),
-        happened_(slot.rack().happened()),
-        number_(slot.number()) {}
-
-  void set(const io::BodyMotion& motion) {
-    for (int i = 0; i < 3; ++i) {
-      truth_.p_WB_W_m[i] = motion.p_WB_W_m[i];
-      truth_.v_WB_W_mps[i] = motion.v_WB_W_mps[i];
-    }
-  }
-  io::GnssFix fix(const io::Ublox::Query& query) {
-    const plant::GpsFix seen =
-        gps_.measure(static_cast<double>(query.now) * 1e-9, truth_, query.error_scale);
-    std::array<double, 3> p_m{};
-    io::GnssFix out;
-    for (unsigned i = 0; i < 3; ++i) {
-      p_m[i] = seen.p_WB_W_m[i] + query.offset_NED_m[i];
-      out.v_NED_mps[i] = seen.v_WB_W_mps[i] + query.offset_NED_mps[i];
-    }
-    out.place = geodetic_of_ned(origin_, p_m);
-    out.geoid_m = geoid_m_;
-    out.level_accuracy_m = std::sqrt(2.0) * seen.level_accuracy_m;  // of two axes
-    out.down_accuracy_m = seen.down_accuracy_m;
-    out.velocity_accuracy_mps = std::sqrt(2.0) * seen.velocity_accuracy_mps;
-    tell(query.now, out, p_m);
-    return out;
-  }
-
- private:
-  void tell(Nanoseconds now, const io::GnssFix& fix, const std::array<double, 3>& p_m) {
-    io::GnssSolution told{.latitude_rad = fix.place.latitude_rad,
-                          .longitude_rad = fix.place.longitude_rad,
-                          .height_m = fix.place.height_m};
-    for (unsigned i = 0; i < 3; ++i) {
-      told.p_WB_W_m[i] = p_m[i];
-      told.p_error_W_m[i] = p_m[i] - truth_.p_WB_W_m[i];
-      told.v_error_W_mps[i] = fix.v_NED_mps[i] - truth_.v_WB_W_mps[i];
-    }
-    happened_.add(io::Kind::gnss_solution, number_, now, told);
-  }
-
-  plant::Gps gps_;
-  plant::Truth truth_;
-  Geodetic origin_;
-  double geoid_m_;
-  io::Batch& happened_;
-  std::uint16_t number_;
-};
-
 template <io::UbloxModel kModel>
 class UbloxDevice final : public RackDevice {
  public:
   explicit UbloxDevice(DeviceSlot& slot)
-      : place_(slot),
+      : place_(slot, place_of(slot)),
         part_(
             slot.rack().events(), part_of(slot, kModel, slot.quantity("baud")),
             [this](const io::Ublox::Query& query) { return place_.fix(query); },
@@ -118,7 +52,7 @@ class UbloxDevice final : public RackDevice {
 class GnssNodeDevice final : public RackDevice {
  public:
   explicit GnssNodeDevice(DeviceSlot& slot)
-      : place_(slot),
+      : place_(slot, place_of(slot)),
         node_(
             slot.rack().events(), slot.can(), can_node_of(slot, "org.whirlstand.gnss", kNode),
             part_of(slot, io::UbloxModel::m8, io::GnssNode::kBaud),
@@ -133,41 +67,6 @@ class GnssNodeDevice final : public RackDevice {
   SensedPlace place_;
   io::GnssNode node_;
 };
-
-void add_place(std::vector<DeviceKey>& keys) {
-  const auto angle = [](const char* path, double limit_deg, const char* about) {
-    const double limit = limit_deg * M_PI / 180.0;
-    return quantity_key(path, Dimension::angle, "deg", {-limit, limit}, about);
-  };
-  const auto metres = [](const char* path, const char* about) {
-    return quantity_key(path, Dimension::length, "m", {-500.0, 10000.0}, about);
-  };
-  // Canberra, as the magnetic field of a flight.
-  keys.push_back(
-      angle("params.latitude", 90.0, "of the world's origin").with(-35.28 * M_PI / 180.0));
-  keys.push_back(angle("params.longitude", 180.0, "of the same").with(149.13 * M_PI / 180.0));
-  keys.push_back(metres("params.height", "of the same, over the ellipsoid").with(600.0));
-  keys.push_back(metres("params.geoid", "sea level over the ellipsoid").with(19.0));
-}
-
-void add_physics(std::vector<DeviceKey>& keys) {
-  const plant::GpsParams usual;
-  const auto metres = [](const char* path, const char* about) {
-    return quantity_key(path, Dimension::length, "m", {0.0, 1000.0}, about);
-  };
-  const auto speed = [](const char* path, const char* about) {
-    return quantity_key(path, Dimension::speed, "m/s", {0.0, 100.0}, about);
-  };
-  keys.push_back(metres("params.wander_level", "standard deviation of position, north and east")
-                     .with(usual.wander_level_m));
-  keys.push_back(metres("params.wander_down", "and down").with(usual.wander_down_m));
-  keys.push_back(
-      quantity_key("params.wander_time", Dimension::time, "s", {0.1, 1e5}, "how slow it is")
-          .with(usual.wander_time_s));
-  keys.push_back(speed("params.velocity_noise", "standard deviation of velocity, north and east")
-                     .with(usual.velocity_level_mps));
-  keys.push_back(speed("params.velocity_noise_down", "and down").with(usual.velocity_down_mps));
-}
 
 void add_part(std::vector<DeviceKey>& keys) {
   const io::Ublox::Params usual;
@@ -186,8 +85,7 @@ void add_part(std::vector<DeviceKey>& keys) {
   keys.push_back(quantity_key("params.dropout", Dimension::ratio, "%", {0.0, 1.0},
                               "share of the solutions that do not come out")
                      .with(0.0));
-  add_place(keys);
-  add_physics(keys);
+  add_place_keys(keys);
 }
 
 const std::vector<std::string> kSenses = {"north",          "east",          "down",

@@ -103,5 +103,37 @@ TEST(CanRack, EveryFrameIsToldWithWhoSentIt) {
   EXPECT_GT(ours, 3);  // esc.Status is three frames, 20 times a second
 }
 
+TEST(CanRack, AFaultActsOnItsPartAloneAndIsTold) {
+  Rig rig;
+  const BoardDevice card{.name = "card", .type = "sd_card", .bus = "spi3"},
+      first{.name = "esc1", .type = "esc_dronecan", .bus = "can2", .motor = 1},
+      second{.name = "esc2", .type = "esc_dronecan", .bus = "can2", .motor = 2};
+  ASSERT_TRUE(rig.rack.build(board_with({card, first, second}), device_types()).ok());
+  io::FaultCommand cut;
+  cut.number = 5;
+  cut.kind = static_cast<std::uint32_t>(*io::fault_kind("can_cut"));
+  cut.start_ns = 200 * kMs;
+  cut.end_ns = 400 * kMs;
+  cut.bus = 2;
+  cut.address = 2;  // esc2's place on the board
+  io::Batch order;
+  order.add(io::Kind::fault, 5, 0, cut);
+  io::Reader reader(order.bytes());
+  ASSERT_TRUE(reader.next());
+  rig.rack.on_message(reader);
+  rig.rack.events().run_until(600 * kMs);
+  int applied = 0, of_first = 0, of_second = 0;
+  for (io::Reader r(rig.rack.happened().bytes()); r.next();) {
+    if (r.header().kind == io::Kind::fault_applied) applied += r.header().port == 5 ? 1 : 100;
+    if (r.header().kind != io::Kind::can_transfer) continue;
+    const auto record = r.as<io::CanRecord>();
+    const bool within = record.start_ns > 210 * kMs && record.start_ns < 390 * kMs;
+    if (within && record.error == 0) ++(record.sender == 1 ? of_first : of_second);
+  }
+  EXPECT_EQ(applied, 1);
+  EXPECT_GT(of_first, 9);
+  EXPECT_EQ(of_second, 0);
+}
+
 }  // namespace
 }  // namespace whirl::rack

@@ -184,6 +184,24 @@ TEST(BladeFit, PowerThatNoSectionExplainsIsDoubted) {
   EXPECT_NE(fit.value().doubts.back().find("power"), std::string::npos);
 }
 
+// Below 0.7 - 0.35 ln(Re / 60,000) of attached lift the trait's share is missing, above it nothing is.
+TEST(BladeFit, LiftStepsDownByItsShareBelowAnAngleThatFallsWithReynolds) {
+  TraitVector t = usual();
+  t[lift_maximum] = 4.0;  // out of the way
+  t[slope_power] = t[maximum_power] = 0.0;
+  const auto lift = [&](double share, double attached, double reynolds) {
+    t[lift_step] = share;
+    const TraitSection s = trait_section(t, 0.01, reynolds);
+    return coefficients(s, s.zero_lift_rad + std::asin(attached / s.slope_per_rad)).cl;
+  };
+  const Tolerance six_widths = stated(0.003, "a logistic, six of its widths away");
+  EXPECT_TRUE(near(lift(0.2, 0.4, 60e3), 0.8 * lift(0.0, 0.4, 60e3), six_widths));
+  EXPECT_TRUE(near(lift(0.2, 1.0, 60e3), lift(0.0, 1.0, 60e3), six_widths));
+  EXPECT_TRUE(near(lift(0.2, 0.7, 60e3), 0.9 * lift(0.0, 0.7, 60e3), six_widths));
+  EXPECT_TRUE(near(lift(0.2, 0.8, 120e3), lift(0.0, 0.8, 120e3), six_widths));
+  EXPECT_TRUE(near(lift(0.2, 0.6, 30e3), 0.8 * lift(0.0, 0.6, 30e3), six_widths));
+}
+
 TEST(BladeFit, KnownBladesSurviveTheirText) {
   const auto again = read_known(known_text(*known()), "again");
   ASSERT_TRUE(again.ok());

@@ -6,6 +6,9 @@
 #include <fstream>
 #include <sstream>
 
+#include "base/check.hpp"
+#include "plant/validation/left_out.hpp"
+
 namespace whirl::plant {
 namespace {
 
@@ -30,6 +33,14 @@ TEST(RotorProofs, EveryFigureIsWithinItsLimit) {
     for (const Curve& curve : proof.model) EXPECT_EQ(curve.x.size(), curve.y.size());
   }
   EXPECT_GT(figures, 30);
+}
+
+TEST(RotorProofs, APropellerThatIsKnownIsNoStranger) {
+  const auto known = read_known(read_data("propellers/known.txt"), "known.txt").value();
+  const auto blades = measured_blades(read_data, "propellers");
+  base::set_check_handler(base::throw_check_failure);
+  EXPECT_THROW(validate_outside({blades.front()}, known), base::CheckFailed);
+  EXPECT_THROW(validate_strangers({blades.front()}, known), base::CheckFailed);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
--- Constants of the stock board (seed 1) with its motor and the hk_10x4.5, as `whirl calibrate esc` found them.
-local stored = include "include/hk_10x4.5_calibration.lua"
+-- Constants of seed 1's copy with its motor and the hk_10x4.5, as `whirl calibrate esc` found them. Those of other
+-- copies: whirl run --seeds 7 --calibrations results/calibrations/hk_10x4.5_typical
+local stored = include "include/hk_10x4.5_typical_calibration.lua"
 
 -- Types them at rest; they hold until power-down, or for ever after `save`.
 function calibrate(t)

@@ -20,3 +20,9 @@ function safe(t, record, words)
   t:expect(record:max "winding_peak", "winding current" .. when):at_most "30 A"
   t:expect(record:max "bus_peak", "bus current" .. when):at_most "22 A"
 end
+
+-- The supply falls until this copy's own divider and converter show `wanted_V`: what it arms by.
+function sensed_at(t, wanted_V)
+  local bus_V, sensed_V = t:value("bus_voltage", "V"), t:value("sensed_voltage", "V")
+  t:fault { kind = "supply_dip", value = string.format("%.4f V", bus_V * (1 - wanted_V / sensed_V)) }
+end

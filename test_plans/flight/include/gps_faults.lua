@@ -17,6 +17,24 @@ function stays_near(t, limit, duration)
   t:expect(r:max_error { north = string.format("%.3f m", north), east = string.format("%.3f m", east) }, "farthest from where it was"):at_most(limit)
 end
 
+-- What is wrong with the solutions is noticed before it has been followed.
+function noticed(t, fault)
+  hover_by_gps(t)
+  t:fault(fault)
+  stays_near(t, "3 m", "2 s")
+  comes_down(t)
+end
+
+-- It begins anew at 9600 baud with NMEA at 1 Hz: the driver finds it, sets it up, and the estimate has it back.
+function found_again_in_flight(t, brown_out)
+  hover_by_gps(t)
+  t:fault(brown_out)
+  comes_down(t)
+  t:wait "20 s"
+  t:command { arm = true }
+  t:within("10 s", function(s) return s.told_armed == 1 end, "armed anew by the receiver that was found")
+end
+
 -- Down, with the motors off, within the fence. Who stands is off in 0.8 s, of which the next heartbeat tells within 1.1, or if
 -- it is lost in 2.1. What rocks or hops on its feet in the wind takes up to 1.5 s (firmware/tests/touchdown_test.cpp), and a
 -- gust may throw it once more: 6 s.

@@ -60,7 +60,8 @@ struct CoreBench {
   io::Batch happened;
   Image image;
   std::vector<std::string> watch;
-  CoreFaults faults{{events, core, happened, image, watch, kFlash}};
+  CoreFaults faults{{events, core, happened, image, watch, kFlash,
+                     [this](double volts) { core.log += volts == 0.0 ? "0" : "3"; }}};
 
   bool unplug(std::uint32_t number, Nanoseconds start, Nanoseconds end) {
     io::FaultCommand fault;
@@ -85,11 +86,11 @@ TEST(CoreFaults, AnUnpluggedBoardSleepsAndComesBackAsFromPowerUp) {
   bench.events.run_until(99);
   EXPECT_EQ(bench.core.log, "");
   bench.events.run_until(199);
-  EXPECT_EQ(bench.core.log, "p");
+  EXPECT_EQ(bench.core.log, "0p");
   EXPECT_EQ(bench.core.code(), 0xE7FDBF30u);  // WFI, and back to it
   EXPECT_EQ(bench.applied(), 1);
   bench.events.run_until(200);
-  EXPECT_EQ(bench.core.log, "pmP");
+  EXPECT_EQ(bench.core.log, "0p3mP");
   EXPECT_EQ(bench.core.code(), own);
 }
 
@@ -99,10 +100,10 @@ TEST(CoreFaults, OfTwoThatOverlapTheLastOneGivesTheSupplyBack) {
   bench.unplug(1, 100, 300);
   bench.unplug(2, 200, 400);
   bench.events.run_until(399);
-  EXPECT_EQ(bench.core.log, "p");
+  EXPECT_EQ(bench.core.log, "0p");
   EXPECT_EQ(bench.applied(), 2);
   bench.events.run_until(400);
-  EXPECT_EQ(bench.core.log, "pmP");
+  EXPECT_EQ(bench.core.log, "0p3mP");
   EXPECT_EQ(bench.core.code(), own);
 }
 
@@ -110,7 +111,7 @@ TEST(CoreFaults, WithoutAnEndItStaysOutAndOtherKindsAreNotItsOwn) {
   CoreBench bench;
   bench.unplug(1, 100, io::kNever);
   bench.events.run_until(1'000'000'000);
-  EXPECT_EQ(bench.core.log, "p");
+  EXPECT_EQ(bench.core.log, "0p");
   io::FaultCommand other;
   other.kind = static_cast<std::uint32_t>(io::FaultKind::i2c_nack);
   EXPECT_FALSE(bench.faults.on_fault(other));

@@ -1,18 +1,13 @@
-// An SPI bus between two boards: a master's bus that is clocked by hand leads, a slave that notes what it is given
-// follows, each with its own events and in a thread of its own, as their processes would be.
+// An SPI bus between two boards: a master's bus that is clocked by hand leads, a slave that notes what it is given follows.
 #include "io_bridges/qemu/board/spi_wire.hpp"
 
-#include <gtest/gtest.h>
-#include <unistd.h>
-
-#include <thread>
-
 #include "io_bridges/devices/spi_bus.hpp"
+#include "io_bridges/qemu/board/tests/two_boards.hpp"
 
 namespace whirl::board {
 namespace {
 
-constexpr Nanoseconds kGrain_ns = 1'000'000, kLatency_ns = 100'000;
+constexpr Nanoseconds kLatency_ns = 100'000;
 constexpr std::uint32_t kSck_Hz = 1'000'000;
 constexpr Nanoseconds kByte_ns = 8'000;
 
@@ -34,26 +29,10 @@ class NotingSlave final : public io::SpiSlave {
   std::vector<std::uint8_t> seen;
 };
 
-struct End {
-  io::EventQueue events;
-  std::vector<io::Finding> findings;
-  bool closed = false;
-  WireEnds ends{
-      {events, [this](const io::Finding& f) { findings.push_back(f); }, [this] { closed = true; }}};
-  void step(Nanoseconds from, Nanoseconds to) {
-    ends.after_boundary(from, to);
-    io::Event boundary(
-        events, [&] { ends.at_boundary(to); }, io::Rank::boundary);
-    boundary.at(to);
-    events.run_until(to);
-  }
-};
-
-class FarSlave : public ::testing::Test {
+class FarSlave : public TwoBoards<WiredBoard> {
  protected:
   FarSlave()
-      : wire_(io::BoardWire::create(99)),
-        leader_(
+      : leader_(
             here_.ends.lead(end()).value()->port<LeaderSpi>(0, "imu", &seen_ready_, kLatency_ns)) {
     bus_.add(leader_, select_);
     there_.ends.follow(end(), true)
@@ -64,7 +43,6 @@ class FarSlave : public ::testing::Test {
     driver_ = select_.add_driver();
     ready_driver_ = ready_.add_driver();
   }
-  int end() { return dup(wire_.value().fd()); }
   // A transfer of bytes behind one another, from `start` on; in `mode`.
   void transfer(Nanoseconds start, std::vector<std::uint8_t> bytes, int mode = 3) {
     at(start - 500, [this] { select_.drive(driver_, io::Drive::low, here_.events.now()); });
@@ -82,17 +60,8 @@ class FarSlave : public ::testing::Test {
     plans_.push_back(std::make_unique<io::Event>(here_.events, std::move(what)));
     plans_.back()->at(when);
   }
-  void run(int grains) {
-    for (int k = 0; k < grains; ++k, now_ns_ += kGrain_ns) {
-      std::thread follower([this] { there_.step(now_ns_, now_ns_ + kGrain_ns); });
-      here_.step(now_ns_, now_ns_ + kGrain_ns);
-      follower.join();
-    }
-  }
   using Edges = std::vector<std::pair<Nanoseconds, bool>>;
 
-  Result<io::BoardWire> wire_;
-  End here_, there_;
   io::SpiBus bus_{"spi1"};
   io::Wire select_{"cs"}, far_select_{"PA15"}, ready_{"PC4", false}, seen_ready_{"int", false};
   NotingSlave slave_;
@@ -101,7 +70,6 @@ class FarSlave : public ::testing::Test {
   std::vector<std::unique_ptr<io::Event>> plans_;
   std::vector<std::uint8_t> got_;
   Edges selects_, seen_;
-  Nanoseconds now_ns_ = 0;
 };
 
 TEST_F(FarSlave, EachByteGoesOutAtItsFirstClockAndIsTakenHalfAPeriodBeforeItsEnd) {

@@ -1,16 +1,11 @@
-// Two boards' buses joined by a wire: a master that is driven by hand leads, a slave of a part follows, each
-// with its own events and in a thread of its own, as their processes would be.
+// Two boards' buses joined by a wire: a master that is driven by hand leads, a slave of a part follows.
 #include "io_bridges/qemu/board/i2c_wire.hpp"
 
-#include <gtest/gtest.h>
-#include <unistd.h>
-
-#include <thread>
+#include "io_bridges/qemu/board/tests/two_boards.hpp"
 
 namespace whirl::board {
 namespace {
 
-constexpr Nanoseconds kGrain_ns = 1'000'000;
 constexpr Nanoseconds kByte_ns = 22'500;
 constexpr std::uint8_t kAddress = 0x2A;
 
@@ -68,23 +63,8 @@ class SlowSlave : public io::I2cTarget {
   std::uint8_t ready_ = 0xFF;
 };
 
-struct Side {
-  io::EventQueue events;
+struct Side : WiredBoard {
   io::I2cBus bus{"i2c"};
-  std::vector<io::Finding> findings;
-  bool closed = false;
-  WireEnds ends{
-      {events, [this](const io::Finding& f) { findings.push_back(f); }, [this] { closed = true; }}};
-  // As the board does between two boundaries.
-  void step(Nanoseconds from, Nanoseconds to) {
-    ends.after_boundary(from, to);
-    bool there = false;
-    io::Event boundary(
-        events, [&] { there = true, ends.at_boundary(to); }, io::Rank::boundary);
-    boundary.at(to);
-    events.run_until(to);
-    EXPECT_TRUE(there || closed);
-  }
 };
 
 // What a master does, byte by byte, as soon as the clock is free.
@@ -154,9 +134,8 @@ class Master {
   int place_ = -2;
 };
 
-class FarBus : public ::testing::Test {
+class FarBus : public TwoBoards<Side> {
  protected:
-  explicit FarBus() : wire_(io::BoardWire::create(99)) {}
   void join(Nanoseconds hold_ns) {
     slave_ = std::make_unique<SlowSlave>(there_.events, there_.bus, hold_ns);
     auto ear = std::make_unique<io::I2cBus>("ear");
@@ -164,20 +143,9 @@ class FarBus : public ::testing::Test {
     here_.ends.lead(end()).value()->port<LeaderI2c>(0, here_.bus).add(kAddress, std::move(ear));
     there_.ends.follow(end(), shared_).value()->port<FollowerI2c>(0, there_.bus);
   }
-  int end() { return dup(wire_.value().fd()); }
-  void run(int grains) {
-    for (int k = 0; k < grains; ++k, now_ns_ += kGrain_ns) {
-      std::thread follower([this] { there_.step(now_ns_, now_ns_ + kGrain_ns); });
-      here_.step(now_ns_, now_ns_ + kGrain_ns);
-      follower.join();
-    }
-  }
-  Result<io::BoardWire> wire_;
-  Side here_, there_;
   Master master_{here_};
   io::I2cBus* ear_ = nullptr;
   std::unique_ptr<SlowSlave> slave_;
-  Nanoseconds now_ns_ = 0;
   bool shared_ = false;
 };
 
@@ -249,13 +217,13 @@ TEST_F(FarBus, AHoldThatAFaultMakesAtEitherEndIsSeenAtBoth) {
 TEST_F(FarBus,
        WithOtherBusesOnItsWireTheFollowerNeverRunsAheadAndTheEndOfAHoldIsSeenAtTheNextLook) {
   shared_ = true;
-  join(7'300);
+  join(6'300);
   master_.at(100'000, false, {1, 2});
   run(2);
   EXPECT_EQ(slave_->log, "AwwP");
-  // 7.3 us are seen after 8; the next byte follows from there.
-  EXPECT_EQ(master_.rose_at, (std::vector<Nanoseconds>{130'500, 161'000, 191'500}));
-  EXPECT_EQ(slave_->at, (std::vector<Nanoseconds>{122'500, 153'000, 183'500, 214'000}));
+  // 6.3 us are seen after 7; the next byte follows from there.
+  EXPECT_EQ(master_.rose_at, (std::vector<Nanoseconds>{129'500, 159'000, 188'500}));
+  EXPECT_EQ(slave_->at, (std::vector<Nanoseconds>{122'500, 152'000, 181'500, 211'000}));
   there_.ends.run_ends(now_ns_);
   EXPECT_TRUE(there_.findings.empty());
 }

@@ -152,6 +152,19 @@ TEST(Pwr, VosIsReadyAndTheDetectorSeesNoDip) {
   EXPECT_EQ(bench.get(kPwr + 4) & 4, 0u);
 }
 
+TEST(Rcc, WhatABoardWithoutSupplyRunsFromIsNotTold) {
+  ChipBench bench;
+  bench.chip().set_vdd(0.0);
+  bench.chip().reset(ResetCause::pin);
+  bench.run(300'000'000);
+  EXPECT_TRUE(bench.findings.empty());
+  bench.chip().set_vdd(3.3);
+  bench.chip().reset(ResetCause::power_on);
+  bench.run(300'000'000);
+  ASSERT_EQ(bench.findings.size(), 1u);
+  EXPECT_NE(bench.findings[0].find("still runs from its reset clock"), std::string::npos);
+}
+
 TEST(Pwr, ADipBelowTheThresholdShowsInPvdoAndOnExtiLine16) {
   ChipBench bench;
   bench.set_bits(kRcc + 0x40, 1u << 28);

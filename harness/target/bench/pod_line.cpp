@@ -1,0 +1,64 @@
+#include "harness/target/bench/pod_line.hpp"
+
+#include <array>
+#include <cmath>
+
+#include "io_bridges/protocols/dronecan/pod_link.hpp"
+
+namespace whirl::bench {
+namespace {
+
+constexpr int kMost_pieces = 8;  // of a turn: who floods a line must not hold the loop
+
+}  // namespace
+
+PodLine::PodLine(PodLineOptions options)
+    : RackLink(rack_, true),
+      options_(std::move(options)),
+      rack_(io::kPodBaud, options_.seed, [this](std::uint8_t byte) {
+        if (!safe_) waiting_.push_back(byte);
+      }) {}
+
+Result<Done> PodLine::open() {
+  const auto built = build(options_.board, options_.types, "its host's line");
+  if (!built) return built;
+  auto tty = io::Tty::open(options_.link.path, static_cast<int>(std::lround(io::kPodBaud)));
+  if (!tty) return tty.error();
+  tty_ = std::move(tty.value());
+  return Done{};
+}
+
+Result<Done> PodLine::take_in(std::int64_t now_host_ns) {
+  advance(now_host_ns);
+  std::array<std::uint8_t, 1024> piece;
+  for (int i = 0; i < kMost_pieces; ++i) {
+    const auto got = tty_->read(piece);
+    if (!got) return got.error();
+    if (got.value() == 0) break;
+    rack_.give(std::span(piece).first(got.value()));
+  }
+  return Done{};
+}
+
+Result<Done> PodLine::send_waiting(std::int64_t /*now_host_ns*/) {
+  if (const auto written = tty_->write(waiting_); !written) return written;
+  waiting_.clear();
+  return tty_->flush();
+}
+
+void PodLine::make_safe() {
+  safe_ = true;
+  waiting_.clear();
+}
+
+std::vector<std::pair<std::string, std::string>> PodLine::versions() const {
+  return {{"link " + options_.link.name, options_.link.path + ", a pod's host"}};
+}
+
+std::vector<std::string> PodLine::findings() const {
+  std::vector<std::string> all;
+  add_pod_findings(all);
+  return all;
+}
+
+}  // namespace whirl::bench

@@ -1,0 +1,40 @@
+// A GPS receiver behind a pod's host: what it says the pod says on its line, at the receiver's rate; what the pod hears
+// there comes to it.
+#pragma once
+#include <functional>
+#include <vector>
+
+#include "io_bridges/devices/ublox.hpp"
+#include "io_bridges/rack/devices/pod_host_link.hpp"
+
+namespace whirl::rack {
+
+class PodGps {
+ public:
+  // What is for the pod goes to `send`, packed; each byte and each change of its rate are told besides.
+  struct Ears {
+    std::function<void(const std::vector<std::uint8_t>&)> send;
+    std::function<void(std::uint8_t byte, double baud)> byte = nullptr;
+    std::function<void(double baud)> rate = nullptr;
+  };
+  PodGps(io::EventQueue& queue, io::Ublox& receiver, io::PodLinkReader& reader, Ears ears);
+
+  void tell_rate();
+  // What has gathered: as a host does, with the next millisecond.
+  void flush();
+  std::size_t gathered() const { return bytes_.size(); }
+
+ private:
+  void said(std::uint8_t byte, double baud);
+  void written(const io::PodGpsWritten& written);
+  void follow(double baud);
+
+  io::EventQueue& queue_;
+  io::Ublox& receiver_;
+  Ears ears_;
+  std::uint8_t number_ = 0;
+  std::uint32_t rate_;
+  std::vector<std::uint8_t> bytes_;
+};
+
+}  // namespace whirl::rack

@@ -1,0 +1,66 @@
+#include "io_bridges/rack/devices/pod_receivers.hpp"
+
+#include <cmath>
+#include <utility>
+
+#include "io_bridges/devices/sbus.hpp"
+#include "io_bridges/rack/devices/radio_receiver.hpp"
+
+namespace whirl::rack {
+namespace {
+
+constexpr Nanoseconds kMs = 1'000'000;
+
+io::Ublox::Params gps_of(DeviceSlot& slot) {
+  io::Ublox::Params params;
+  params.name = slot.name() + ".gps";
+  params.first_fix_ns = std::llround(slot.quantity("params.first_fix") * 1e9);
+  params.seed = slot.rack().seed();
+  return params;
+}
+
+}  // namespace
+
+std::vector<DeviceKey> pod_receiver_keys() {
+  const auto first_fix_s = static_cast<double>(io::Ublox::Params{}.first_fix_ns) * 1e-9;
+  return {flag_key("params.gps", "it has a GPS").with(false),
+          quantity_key("params.first_fix", Dimension::time, "s", {0.0, 3600.0},
+                       "of the GPS from power-up, cold")
+              .with(first_fix_s),
+          flag_key("params.receiver", "it has a radio-control receiver with SBUS").with(false)};
+}
+
+PodReceivers::PodReceivers(DeviceSlot& slot, io::PodLinkReader& reader, Send send)
+    : queue_(slot.rack().events()),
+      send_(std::move(send)),
+      place_(slot, {}),
+      radio_(radio_params_, nullptr),
+      has_radio_(slot.flag("params.receiver")),
+      gather_(queue_, [this] { said_->flush(); }),
+      sticks_(queue_, [this] { tell_sticks(); }) {
+  if (!slot.flag("params.gps")) return;
+  gps_ = std::make_unique<io::Ublox>(
+      queue_, gps_of(slot), [this](const io::Ublox::Query& query) { return place_.fix(query); },
+      nullptr, slot.rack().finding());
+  said_ = std::make_unique<PodGps>(queue_, *gps_, reader,
+                                   PodGps::Ears{send_, [this](std::uint8_t, double) {
+                                                  if (!gather_.pending()) gather_.in(kMs);
+                                                }});
+}
+
+void PodReceivers::start() {
+  if (said_ != nullptr) said_->tell_rate();
+  if (has_radio_) sticks_.in(core::receiver::kSbusPeriod_ns);
+}
+
+void PodReceivers::on_sticks(const io::Reader& message) {
+  radio_.on_sticks(sticks_of(message), queue_.now());
+}
+
+void PodReceivers::tell_sticks() {
+  sticks_.in(core::receiver::kSbusPeriod_ns);
+  const auto frame = io::sbus_frame(radio_.at(queue_.now()), radio_params_.failsafe);
+  send_(io::pack_pod_sbus(number_++, frame.value_or(io::SbusFrame{}), !frame));
+}
+
+}  // namespace whirl::rack

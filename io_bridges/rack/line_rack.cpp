@@ -1,0 +1,22 @@
+#include "io_bridges/rack/line_rack.hpp"
+
+namespace whirl::rack {
+
+void LineRack::give(std::span<const std::uint8_t> bytes) {
+  for (const std::uint8_t byte : bytes) {
+    for (io::UartPeer* peer : peers_) peer->receive({.value = byte}, format_, events().now());
+  }
+}
+
+bool LineRack::carries(const BoardDevice& device) const {
+  const auto can = device.value("params.can");
+  return device.type == "pod_parts" && (!can || *can == KeyValue(0.0));
+}
+
+bool LineRack::join_uart(int /*number*/, io::UartPeer& peer) {
+  peer.join([this](const io::UartByte& byte, const io::UartFormat&) { heard_(byte.value); });
+  peers_.push_back(&peer);
+  return true;
+}
+
+}  // namespace whirl::rack
