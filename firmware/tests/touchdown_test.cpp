@@ -2,7 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <random>
+#include <tuple>
 
+#include "firmware/control/position_controller.hpp"
 #include "firmware/tests/vehicle_model.hpp"
 
 namespace fw::test {
@@ -43,6 +45,23 @@ struct Blind {
   Flight flight;
   VehicleModel vehicle;
 };
+
+// By what it has learned of the wind it leans; on its feet, as it lets go, it would tip over them.
+TEST(Touchdown, LeansNoFurtherAsItCarriesLess) {
+  PositionController control;
+  Reference reference;
+  reference.start(Vector3::Zero(), 0.0f);
+  const Quaternion level = Quaternion::Identity();
+  for (int i = 0; i < 400; ++i) {
+    std::ignore =
+        control.step({0.0f, 0.5f, 0.0f}, Vector3::Zero(), level, reference, 1.0f, 0.025f, true);
+  }
+  const auto lean_rad = [&](float lift) {
+    return std::acos(tilt_cosine(control.sink(0.35f, 0.35f, level, 0.0f, lift).q_WB));
+  };
+  EXPECT_GT(lean_rad(1.0f), 0.05f);
+  EXPECT_LT(lean_rad(0.4f), 1.05f * lean_rad(1.0f));
+}
 
 // Each kick throws what the rotors carry up at 0.28 m/s.
 TEST(Touchdown, IsKnownWithinASecondAndAHalfThoughItHopsOnItsFeet) {

@@ -3,10 +3,10 @@
 -- firmware/flight/restart.hpp. What it refuses, it tells: one motor of four lost is a fail-safe, no restart.
 -- Stopped from level flight. A copy's rotors differ, and so does how they run down: in 0.4 s their unequal thrust turns
 -- seed 1's body by 0.9 rad/s about its diagonal, where the drawing's leaves it level. Nothing can stop that with the motors off: it
--- lies on its side after 1.4 s, and upside down after 2.2, and the air that meets its rotors from above turns them
+-- lies on its side after 1.4 s, at 155 degrees after 2.4, and the air that meets its rotors from above turns them
 -- forward. So what a long fall does to the propellers from below is flown by the drawing; on copies, that the image turns it
--- upright and brakes, for as long as what that takes fits above the ground: 60 m are enough for seed 1's until 1.9 s after
--- its rotors were stopped.
+-- upright and brakes, for as long as what that takes fits above the ground: by firmware/flight/restart.hpp
+-- 60 m are enough for seed 1's until 1.9 s after its rotors were stopped.
 include "include/gps.lua"
 include "include/hover.lua"
 include "include/parameter.lua"
