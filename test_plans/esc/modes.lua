@@ -79,6 +79,7 @@ end, 12) -- a start takes up to that of some copies
 mode_plan("power", 4, { { power = "12 W" }, { power = "2.6 W" }, { power = "25 W" }, { power = "60 W" } }, function(t, asked, r, saturated)
   told(t, saturated, false, asked)
   local power_W = r:mean("torque").value * r:mean("speed").value
-  -- 2.6 and 60 W lie outside the speeds at which power was calibrated: by the static map.
-  off(t, asked, power_W, "aerodynamic power", 3)
+  -- 2.6 and 60 W lie outside the speeds at which power was calibrated: by the static map. Of 2.6 W's torque, 11 mN m,
+  -- three sigma of what taring leaves on the bench are 5.4 %: 7.2 % on one of eight copies, 3.9 % at most on the others.
+  off(t, asked, power_W, "aerodynamic power", asked == "2.6 W" and 8.4 or 3)
 end)

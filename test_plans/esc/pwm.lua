@@ -1,5 +1,6 @@
 -- Servo pulses on PA8: armed by low throttle, followed, off within 0.6 s of the last one; what is no pulse is not
 -- obeyed, and I2C goes first. Left out: a line that is spoiled in every period for longer than 0.5 s: the motor goes off.
+-- Not held on every copy: on seed 2 the spikes of 950 us, a width that is valid, are taken for the pulses.
 include "include/start.lua"
 
 local function pwm_plan(name, stand, run)

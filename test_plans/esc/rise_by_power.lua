@@ -31,7 +31,7 @@ local function rise(name, tags, options)
       t:expect(up:response_time "thrust", "command on the wire to 90 %"):at_most "70 ms"
       t:expect(up:overshoot "thrust", "overshoot"):at_most "10 %"
       local band = options.band or "2 %"
-      local share = tonumber(band:match "%d+") / 100
+      local share = tonumber((options.off or band):match "%d+") / 100
       local function ends(record, wanted_N, words)
         t:expect(record:final "thrust", words):within((1 - share) * wanted_N .. " N", (1 + share) * wanted_N .. " N")
       end
@@ -57,4 +57,6 @@ rise("light", { "esc" }, { motor = { inertia = "-12 %" } })
 -- current has gaps and power tells nothing: the image carries what it was told of the wind through that.
 -- From 2.4 N on: the static map's speed of 2 N, by which it begins, is the slowest at which power was calibrated, and
 -- in this wind the current has gaps there.
-rise("downdraft", { "esc" }, { down = "4 m/s", band = "4 %", low_N = 2.4 })
+-- off: a third of what RPM control loses there, 22 % at 3.6 N, as downdraft.lua asks. Not held on every copy: of seeds
+-- 1 to 4 and 11 to 14 two fail, 14 (8 % low after the fall) and 4 (told 3.2 m/s for 4, it loses it and finds it again).
+rise("downdraft", { "esc" }, { down = "4 m/s", band = "4 %", off = "7 %", low_N = 2.4 })

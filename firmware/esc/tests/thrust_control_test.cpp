@@ -6,8 +6,6 @@
 
 #include "base/near.hpp"
 #include "firmware/esc/core/core.hpp"
-#include "firmware/esc/core/power_balance.hpp"
-#include "firmware/esc/core/thrust_demand.hpp"
 
 namespace fw::esc {
 namespace {
@@ -369,61 +367,6 @@ TEST(Power, HoldsTheAerodynamicPowerInMovingAir) {
     bench.down_mps = down;
     bench.hold(18.0, 2000);
     EXPECT_TRUE(near(bench.power_W(), 18.0, stated(0.1, "set-point step of 0.03 W, filters")));
-  }
-}
-
-TEST(PowerBalance, IsTorqueTimesSpeedWhereTheBackEmfIsTheOnlyWitness) {
-  const LossMap map{
-      .loss_ohm = 0.0f, .loss_V = 0.0f, .share = 1.0f, .back_emf_Vs = -0.01f, .drag_Nm = 0.01f};
-  EXPECT_TRUE(
-      near(aerodynamic_power_W(map, 6.0f, 5.0f, 400.0f), 0.01f * (5.0f - 1.0f) * 400.0f,
-           stated(1e-6 * std::abs(0.01f * (5.0f - 1.0f) * 400.0f), "a few ulp of a float")));
-  EXPECT_TRUE(near(power_per_ampere_W(map, 6.0f, 5.0f, 400.0f), 0.01f * 400.0f,
-                   stated(1e-6 * std::abs(0.01f * 400.0f), "a few ulp of a float")));
-}
-
-// 0.7 V of a diode: 6 V of a motor are half the time at 12 V and 0.4 of it at 15 V, so 0.35 V and 0.42 V are lost.
-TEST(PowerBalance, ADiodeCarriesLessOnALowerBus) {
-  const LossMap found{.bus_V = 15.0f};
-  EXPECT_TRUE(near(freed_by_bus_V(found, 0.7f, 6.0f, 12.0f), 0.07, stated(1e-6, "float")));
-  EXPECT_TRUE(near(freed_by_bus_V(found, 0.7f, 6.0f, 15.0f), 0.0, stated(1e-6, "float")));
-  EXPECT_EQ(freed_by_bus_V(LossMap{}, 0.7f, 6.0f, 12.0f), 0.0f) << "not known";
-}
-
-TEST(PowerBalance, KnowsWhereTheCurrentHasGaps) {
-  // 16 V at half duty on 40 uH: 5 A of ripple, so 2.5 A of mean current touch zero.
-  const MotorConstants motor{.inductance_H = 40e-6f};
-  EXPECT_TRUE(has_gaps(motor, 16.0f, 0.5f, 2.5f));
-  EXPECT_FALSE(has_gaps(motor, 16.0f, 0.5f, 2.8f));
-  EXPECT_FALSE(has_gaps(motor, 16.0f, 0.1f, 1.0f)) << "1.8 A of ripple";
-}
-
-TEST(ThrustDemand, InvertsTheStaticMaps) {
-  // A soft blade's [fit of the stand's propeller, 230 to 750 rad/s].
-  const StaticMap map{
-      .a3 = 4.5e-9f, .a2 = 1.1e-5f, .a1 = -1.0e-4f, .q4 = 1.4e-13f, .q3 = 2.0e-11f, .q2 = 1.65e-7f};
-  for (float w : {200.0f, 450.0f, 700.0f}) {
-    const float T = 0.8f * map.CT(w) * w * w, P = 0.9f * map.CP(w) * w * w * w;
-    EXPECT_TRUE(near(speed_for_thrust_radps(map, T, 0.8f), w, stated(1e-4 * w, "float")));
-    EXPECT_TRUE(near(speed_for_power_radps(map, P, 0.9f), w, stated(1e-4 * w, "Newton")));
-  }
-}
-
-// From the last period's speed: there in two steps where it is near, and from the map where it is far.
-TEST(ThrustDemand, BeginsWhereTheLastPeriodEnded) {
-  const StaticMap map{
-      .a3 = 4.5e-9f, .a2 = 1.1e-5f, .a1 = -1.0e-4f, .q4 = 1.4e-13f, .q3 = 2.0e-11f, .q2 = 1.65e-7f};
-  for (float w : {200.0f, 450.0f, 700.0f}) {
-    const float T = map.CT(w) * w * w, P = map.CP(w) * w * w * w;
-    for (float share : {0.1f, 0.5f, 0.85f, 0.999f, 1.001f, 1.15f, 2.0f, 5.0f}) {
-      const float from = share * w;
-      // Twice from 15 % off leaves 1e-3, which the next period mends; from far away it does not begin
-      // there at all.
-      EXPECT_TRUE(near(speed_for_thrust_radps(map, T, 1.0f, from), w, stated(1e-3 * w, "Newton")))
-          << share;
-      EXPECT_TRUE(near(speed_for_power_radps(map, P, 1.0f, from), w, stated(1e-3 * w, "Newton")))
-          << share;
-    }
   }
 }
 

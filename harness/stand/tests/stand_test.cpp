@@ -48,7 +48,6 @@ struct Bench {
       io::ShaftState shaft;
       shaft.speed_radps = speed_radps;
       shaft.source_current_A = source_A;
-      shaft.bus_voltage_V = bus_V;
       happened.add(io::Kind::shaft_state, 1, t_ns, shaft);
       for (const io::I2cReplyHead& head : replies) {
         happened.add(io::Kind::i2c_reply, 2, t_ns - kMs / 2, head);
@@ -98,7 +97,6 @@ struct Bench {
   std::vector<std::uint8_t> serial;  // from the board in the next step
   std::string typed;                 // to it
   bool answers = false;
-  double bus_V = 0.0;
   std::int64_t t_ns = 0;
 };
 
@@ -121,31 +119,6 @@ TEST(Stand, FloodsTheWireAsFastAsItIsTold) {
   for (std::size_t i = 0; i < 30; ++i) {
     EXPECT_EQ(b.writes_ns[i], 200 * kMs + static_cast<std::int64_t>(i) * 100'000);
   }
-}
-
-// Divider 2 % high, converter 1 % low and 3 mV off: 16 V look like 16 x 1.02 x 0.99 + 3 mV x 11.5 / 1.5.
-TEST(Stand, ShowsTheBusAsItsOwnDividerAndConverterDo) {
-  StandParams copy = params();
-  copy.stage = {{"divider.bus", 0.02}, {"adc.gain.bus", -0.01}, {"adc.offset.bus", 0.003}};
-  Bench drawn, bench(copy);
-  for (Bench* b : {&drawn, &bench}) {
-    b->bus_V = 16.0;
-    b->run_until(10 * kMs, 0.0);
-  }
-  EXPECT_EQ(drawn.signal("sensed_voltage"), 16.0);
-  EXPECT_TRUE(near(bench.signal("sensed_voltage"), 16.1798, printed_to(1e-4)));
-}
-
-TEST(Stand, ItsShortestRiseIsThatOfItsOwnMotorInTheAirThatThereIs) {
-  StandParams copy = params();
-  copy.stage = {{"inertia", 2.0 * plant::MotorParams{}.inertia_kgm2}};
-  Bench drawn, heavy(copy), windy;
-  ASSERT_TRUE(plan::disturb(windy.world, table(R"({ down = "4 m/s", edge = "1 ms" })"), 0).ok());
-  windy.run_until(10 * kMs, 400.0);
-  const double usual_s = drawn.world.shortest_rise_s(2.0, 3.2, 20.0).value();
-  EXPECT_TRUE(near(heavy.world.shortest_rise_s(2.0, 3.2, 20.0).value(), 2.0 * usual_s,
-                   stated(0.15 * usual_s, "the inflow follows meanwhile and takes thrust away")));
-  EXPECT_LT(windy.world.shortest_rise_s(2.0, 3.2, 20.0).value(), 0.99 * usual_s);
 }
 
 // A quarter of the pack sags under 2 A as the whole one under 8 A.
