@@ -131,8 +131,10 @@ async function fly() {
   assert.equal(await vehicle.command(22, { 7: 1.1 }), kAccepted)
   await vehicle.next(common.LocalPositionNed, p => p.z < -1.0)
   await go_to(0.8, -0.5, -1.3)
+  const landed = vehicle.next(common.StatusText, text => text.text === 'landed')
   assert.equal(await vehicle.command(21), kAccepted)
   await vehicle.next(minimal.Heartbeat, beat => (beat.baseMode & kArmed) === 0)
+  await landed  // a heartbeat may come before it
 }
 
 function run_json(path) { return JSON.parse(readFileSync(path + '/run.json', 'utf8')) }
