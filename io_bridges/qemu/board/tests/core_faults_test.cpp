@@ -6,6 +6,8 @@
 #include <cstring>
 #include <string>
 
+#include "io_bridges/devices/faults.hpp"
+
 namespace whirl::board {
 namespace {
 
