@@ -46,7 +46,7 @@ results/flight_log       base/ results/flight_log/
 results/spread           base/ io_bridges/messages/ results/
 results/sinks            base/ io_bridges/copper/wire_drawing.hpp io_bridges/copper/edge.hpp io_bridges/messages/ results/messages/ results/sinks/
 harness                  base/ harness/cli/ harness/composition/ harness/target/bench/
-harness/composition      base/ harness/board/ harness/catalogue/ harness/cli/composition.hpp harness/cli/console.hpp harness/cli/find_file.hpp harness/cli/stand_in_request.hpp harness/composition/ harness/flight/ harness/pacing/ harness/plan/needs.hpp harness/stand/ harness/standin/ harness/target/ io_bridges/hid/emulated/ io_bridges/protocols/ io_bridges/rack/devices/table.hpp
+harness/composition      base/ harness/board/ harness/catalogue/ harness/cli/composition.hpp harness/cli/console.hpp harness/cli/find_board.hpp harness/cli/find_file.hpp harness/cli/stand_in_request.hpp harness/composition/ harness/flight/ harness/pacing/ harness/plan/needs.hpp harness/stand/ harness/standin/ harness/target/ io_bridges/hid/emulated/ io_bridges/protocols/ io_bridges/rack/devices/table.hpp
 harness/job              base/ harness/job/
 harness/lua              base/ harness/lua/
 harness/pacing           base/ harness/pacing/

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "harness/lua/table.hpp"
+#include "io_bridges/board_description/bus_kind.hpp"
 #include "io_bridges/board_description/bus_name.hpp"
 #include "io_bridges/copper/channel_name.hpp"
 
@@ -50,7 +51,7 @@ void read_link(const lua::Table& t, bench::BenchDescription& bench) {
     link.rate_Hz =
         t.quantity_or("rate", Dimension::frequency, link.rate_Hz, lua::between(10e3, 400e3));
     bench.bridges.push_back(std::move(link));
-  } else if (number && (bus.starts_with("usart") || bus.starts_with("uart"))) {
+  } else if (number && is_uart(bus)) {
     bench.serials.push_back({name, t.text("path"), port, read_baud(t)});
   } else if (number && bus.starts_with("can")) {
     bench::CanBusLink link;

@@ -3,10 +3,12 @@
 #include <algorithm>
 
 #include "harness/catalogue/bench_file.hpp"
-#include "harness/catalogue/board_file.hpp"
 #include "harness/catalogue/stand_table.hpp"
+#include "harness/cli/find_board.hpp"
 #include "harness/cli/find_file.hpp"
 #include "harness/cli/find_plans.hpp"
+#include "io_bridges/board_description/bus_kind.hpp"
+#include "io_bridges/board_description/bus_name.hpp"
 
 namespace whirl::cli {
 namespace {
@@ -56,8 +58,7 @@ Result<Done> check_links(const plan::Plan& plan, const BoardDescription& board,
 
 bool serial_joins(const BoardDevice& device, const bench::BenchDescription& bench) {
   return std::any_of(bench.serials.begin(), bench.serials.end(), [&](const auto& link) {
-    const std::string number = std::to_string(link.uart);
-    return device.bus == "usart" + number || device.bus == "uart" + number;
+    return is_uart(device.bus) && bus_number(device.bus) == link.uart;
   });
 }
 
@@ -105,10 +106,7 @@ Result<Done> check_flight_links(const BoardDescription& board,
 // The boards of its pods.
 Result<Done> read_pods(bench::BenchDescription& bench, const std::string& root) {
   for (bench::PodLink& link : bench.pods) {
-    const auto file = find_file(link.board, {bench.file, "links." + link.name},
-                                {root + "/test_plans/boards"}, ".lua");
-    if (!file) return file.error();
-    auto board = read_board(shown_path(file.value()));
+    auto board = find_board(link.board, {bench.file, "links." + link.name}, root);
     if (!board) return board.error();
     link.parts = std::move(board.value());
     if (!plays_parts(link.parts)) {

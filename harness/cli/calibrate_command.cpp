@@ -9,6 +9,7 @@
 #include "harness/calibrate/report.hpp"
 #include "harness/catalogue/calibration_file.hpp"
 #include "harness/cli/console.hpp"
+#include "harness/cli/find_board.hpp"
 #include "harness/cli/find_file.hpp"
 #include "harness/cli/find_plans.hpp"
 #include "results/folder.hpp"
@@ -31,9 +32,7 @@ Result<Done> compose(const catalogue::CalibrationFile& file, const Composition& 
   const calibrate::Setup& setup = file.setup;
   const std::string& root = composition.root;
   const Asker who{setup.file, setup.file};
-  const auto board_path = find_file(setup.board, who, {root + "/test_plans/boards"}, ".lua");
-  if (!board_path) return board_path.error();
-  auto board = read_board(shown_path(board_path.value()));
+  const auto board = find_board(setup.board, who, root);
   if (!board) return board.error();
   parts.board = board.value();
   parts.board.watch.clear();

@@ -7,9 +7,9 @@
 #include "base/interruption.hpp"
 #include "base/places.hpp"
 #include "base/random.hpp"
-#include "harness/catalogue/board_file.hpp"
 #include "harness/cli/bench_choice.hpp"
 #include "harness/cli/console.hpp"
+#include "harness/cli/find_board.hpp"
 #include "harness/cli/find_file.hpp"
 #include "harness/cli/find_plans.hpp"
 #include "harness/executive/cpu_fault.hpp"
@@ -48,10 +48,7 @@ Result<Wanted> wanted(const ProbeOptions& options, const Composition& compositio
         ErrorKind::bad_input, bench.value().file, "names no debug probe",
         "probe = { interface = \"interface/stlink.cfg\", target = \"target/stm32f1x.cfg\" }"};
   }
-  const auto board_file =
-      find_file(bench.value().board, who, {root + "/test_plans/boards"}, ".lua");
-  if (!board_file) return board_file.error();
-  const auto board = read_board(shown_path(board_file.value()));
+  const auto board = find_board(bench.value().board, who, root);
   if (!board) return board.error();
   const auto path = find_file(options.image, who, {root + "/build/firmware"}, ".elf");
   if (!path) return path.error();

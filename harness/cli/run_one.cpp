@@ -12,11 +12,14 @@
 #include "base/output_file.hpp"
 #include "base/places.hpp"
 #include "harness/cli/board_wires.hpp"
+#include "harness/cli/find_board.hpp"
 #include "harness/cli/find_file.hpp"
 #include "harness/cli/versions.hpp"
 #include "harness/plan/needs.hpp"
 #include "harness/target/node_set.hpp"
 #include "io_bridges/board_description/board_text.hpp"
+#include "io_bridges/board_description/bus_kind.hpp"
+#include "io_bridges/board_description/bus_name.hpp"
 #include "results/folder.hpp"
 
 namespace whirl::cli {
@@ -34,9 +37,7 @@ void announce_gdb(const Setup& setup) {
 }
 
 Result<Node> read_node(const plan::PlanNode& wanted, const Asker& who, const std::string& root) {
-  const auto path = find_file(wanted.board, who, {root + "/test_plans/boards"}, ".lua");
-  if (!path) return path.error();
-  auto board = read_board(shown_path(path.value()));
+  auto board = find_board(wanted.board, who, root);
   if (!board) return board.error();
   for (const std::string& function : wanted.watch) {
     if (board.value().watch_number(function) < 0) board.value().watch.push_back(function);
@@ -62,8 +63,7 @@ struct Prepared {
 // The part of a board that speaks on that UART to the world outside; null: none does.
 const BoardDevice* serial_on(const BoardDescription& board, std::uint16_t uart) {
   for (const BoardDevice& device : board.devices) {
-    const std::string number = std::to_string(uart);
-    const bool on_it = device.bus == "usart" + number || device.bus == "uart" + number;
+    const bool on_it = is_uart(device.bus) && bus_number(device.bus) == uart;
     if (device.type == "serial" && on_it) return &device;
   }
   return nullptr;

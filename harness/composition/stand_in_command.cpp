@@ -10,9 +10,9 @@
 #include "base/interruption.hpp"
 #include "base/output_file.hpp"
 #include "base/places.hpp"
-#include "harness/catalogue/board_file.hpp"
 #include "harness/catalogue/stand_table.hpp"
 #include "harness/cli/console.hpp"
+#include "harness/cli/find_board.hpp"
 #include "harness/cli/find_file.hpp"
 #include "harness/pacing/host_clock.hpp"
 #include "harness/stand/stand_world.hpp"
@@ -128,10 +128,9 @@ Result<Done> read_stand(const cli::StandInRequest& request, const std::string& r
 }
 
 // What commands it must be there.
-Result<Done> check_wires(const cli::StandInRequest& request, const Parts& parts,
-                         const std::string& file) {
+Result<Done> check_wires(const cli::StandInRequest& request, const Parts& parts) {
   const auto refused = [&](const std::string& what, const std::string& cure) {
-    return Error{ErrorKind::bad_input, file, what, cure};
+    return Error{ErrorKind::bad_input, parts.board.file, what, cure};
   };
   if (request.pod && !request.can.empty()) {
     return refused("its sensors and ESCs hang on the pod, whose host is on a line",
@@ -160,25 +159,21 @@ Result<Done> check_wires(const cli::StandInRequest& request, const Parts& parts,
 }
 
 Result<Done> read_pod(const cli::Asker& asker, const std::string& root, Parts& parts) {
-  const auto board = cli::find_file(kPodBoard, asker, {root + "/test_plans/boards"}, ".lua");
+  auto board = cli::find_board(kPodBoard, asker, root);
   if (!board) return board.error();
-  auto described = read_board(board.value());
-  if (!described) return described.error();
   const auto image = cli::find_file("pod", asker, image_folders(root), ".elf");
   if (!image) return image.error();
-  parts.pod = std::move(described.value());
+  parts.pod = std::move(board.value());
   parts.pod_image = image.value();
   return Done{};
 }
 
 Result<Parts> read_parts(const cli::StandInRequest& request, const std::string& root) {
   const cli::Asker asker{".", "whirl standin"};
-  const auto board = cli::find_file(request.board, asker, {root + "/test_plans/boards"}, ".lua");
+  auto board = cli::find_board(request.board, asker, root);
   if (!board) return board.error();
-  auto described = read_board(board.value());
-  if (!described) return described.error();
   Parts parts;
-  parts.board = std::move(described.value());
+  parts.board = std::move(board.value());
   const char* esc = request.pod ? "esc_i2c" : "esc_dronecan";
   parts.flies = has_type(parts.board, "mavlink_link") && has_type(parts.board, esc);
   const std::string usual = parts.flies ? "flight" : "esc";
@@ -192,9 +187,7 @@ Result<Parts> read_parts(const cli::StandInRequest& request, const std::string& 
   } else if (const auto read = read_stand(request, root, parts); !read) {
     return read.error();
   }
-  if (const auto joined = check_wires(request, parts, board.value()); !joined) {
-    return joined.error();
-  }
+  if (const auto joined = check_wires(request, parts); !joined) return joined.error();
   if (request.pod) {
     if (const auto read = read_pod(asker, root, parts); !read) return read.error();
   }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "io_bridges/board_description/bus_kind.hpp"
 #include "io_bridges/board_description/bus_name.hpp"
 
 namespace whirl {
@@ -68,7 +69,7 @@ std::map<int, double> BoardDescription::bauds_Hz() const {
     const auto number = bus_number(device.bus);
     const auto baud = device.value("baud");
     if (!number || !baud || !std::holds_alternative<double>(*baud)) continue;
-    if (!device.bus.starts_with("usart") && !device.bus.starts_with("uart")) continue;
+    if (!is_uart(device.bus)) continue;
     all[*number] = std::get<double>(*baud);
   }
   return all;
