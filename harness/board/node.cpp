@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "io_bridges/board_description/pod_host.hpp"
+
 namespace whirl {
 
 Result<NodePlace> node_place(const std::vector<Node>& nodes, const std::string& text) {
@@ -25,8 +27,7 @@ Result<NodePlace> node_place(const std::vector<Node>& nodes, const std::string& 
 namespace {
 
 const BoardDevice* host_of(const BoardDescription& board) {
-  const auto host = std::find_if(board.devices.begin(), board.devices.end(),
-                                 [](const BoardDevice& d) { return d.type == "pod_parts"; });
+  const auto host = std::find_if(board.devices.begin(), board.devices.end(), is_pod_host);
   return host == board.devices.end() ? nullptr : &*host;
 }
 
@@ -47,9 +48,7 @@ std::set<std::string> pod_parts(const BoardDescription& board) {
 
 std::optional<int> can_of_host(const BoardDescription& board) {
   const BoardDevice* host = host_of(board);
-  const auto can = host == nullptr ? std::nullopt : host->value("params.can");
-  if (!can || *can == KeyValue(0.0)) return std::nullopt;
-  return static_cast<int>(std::get<double>(*can));
+  return host == nullptr ? std::nullopt : can_of_host(*host);
 }
 
 std::string timing_profile(const std::vector<Node>& nodes) {

@@ -216,8 +216,8 @@ std::string log_of(const cli::Setup& setup, const bench::CanBusLink& link) {
 }
 
 // Each board of a run is another copy of the hardware.
-std::uint64_t seed_of(const cli::Setup& setup) {
-  return setup.seed + (static_cast<std::uint64_t>(setup.node) << 32);
+std::uint64_t seed_of(const cli::Setup& setup, std::size_t node) {
+  return setup.seed + (static_cast<std::uint64_t>(node) << 32);
 }
 
 using Links = std::vector<std::unique_ptr<bench::Link>>;
@@ -250,7 +250,7 @@ Result<Done> add_masters(const cli::Setup& setup, const bench::BridgeMaker& brid
 
 // A pod's board is another copy of the hardware than the flight controller's.
 Result<Done> add_pods(const cli::Setup& setup, const bench::CanMaker& can, Links& links) {
-  const std::uint64_t seed = setup.seed + (std::uint64_t{1} << 32);
+  const std::uint64_t seed = seed_of(setup, 1);
   for (const bench::PodLink& link : setup.bench->pods) {
     const auto params = vehicle_of(setup);
     if (!params) return params.error();
@@ -276,7 +276,7 @@ Result<Done> add_nodes(const cli::Setup& setup, const bench::CanMaker& can, Link
         std::make_unique<bench::NodeLink>(bench::NodeOptions{.link = link,
                                                              .board = setup.board,
                                                              .types = rack::device_types(),
-                                                             .seed = seed_of(setup),
+                                                             .seed = seed_of(setup, setup.node),
                                                              .log = log_of(setup, link)},
                                           can));
   }
@@ -356,7 +356,7 @@ Result<std::unique_ptr<Target>> make_target(const cli::Setup& setup,
                    {.image = setup.image,
                     .flashed = setup.flashed,
                     .wires = setup.wires,
-                    .seed = seed_of(setup),
+                    .seed = seed_of(setup, setup.node),
                     .gdb_port = setup.gdb_port,
                     .folder = setup.folder,
                     .node = setup.plan.nodes[setup.node].name}};

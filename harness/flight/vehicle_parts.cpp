@@ -3,6 +3,7 @@
 #include <functional>
 
 #include "base/check.hpp"
+#include "io_bridges/board_description/pod_host.hpp"
 #include "plant/parts/vehicle.hpp"
 
 namespace whirl::flight {
@@ -92,7 +93,7 @@ void set_parts(BoardDescription& board, const FlightParams& params) {
   };
   for (BoardDevice& device : board.devices) {
     // On SPI, as a node of a CAN bus, or played by a pod.
-    if (!device.type.starts_with("mpu6000") && device.type != "pod_parts") continue;
+    if (!device.type.starts_with("mpu6000") && !is_pod_host(device)) continue;
     for (const auto& [key, value] : params.imu) {
       if (!device.value(key)) WHIRL_CHECK(device.set(key, value), key);
     }

@@ -1,9 +1,9 @@
 #include "harness/standin/bare_board.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <set>
 
+#include "io_bridges/board_description/pod_host.hpp"
 #include "io_bridges/protocols/dronecan/pod_link.hpp"
 
 namespace whirl {
@@ -18,25 +18,26 @@ BoardDevice line_of(const BoardDevice& radio) {
   return line;
 }
 
-}  // namespace
-
-// Without the host; pre: it is one's.
-void leave_host(BoardDevice& host) {
-  const auto can = host.value("params.can");
-  if (can && *can != KeyValue(0.0)) {
-    const auto bus = "can" + std::to_string(std::lround(std::get<double>(*can)));
-    host = {.name = host.name, .type = "can_port", .bus = bus, .place = host.place};
-    return;
+// What is left where a pod's host was.
+BoardDevice end_of_host(const BoardDevice& host) {
+  if (const auto can = can_of_host(host)) {
+    return {.name = host.name,
+            .type = "can_port",
+            .bus = "can" + std::to_string(*can),
+            .place = host.place};
   }
-  host = {.name = host.name, .type = "serial", .bus = "usart1", .place = host.place};
-  host.set("baud", io::kPodBaud);
+  BoardDevice line{.name = host.name, .type = "serial", .bus = "usart1", .place = host.place};
+  line.set("baud", io::kPodBaud);
+  return line;
 }
+
+}  // namespace
 
 BoardDescription bare_board(BoardDescription board) {
   std::set<std::string> buses;
   for (BoardDevice& device : board.devices) {
     if (device.type == "mavlink_link") device = line_of(device);
-    if (device.type == "pod_parts") leave_host(device);
+    if (is_pod_host(device)) device = end_of_host(device);
     if (device.type.ends_with("_dronecan")) buses.insert(device.bus);
   }
   std::erase_if(board.devices,

@@ -1,5 +1,6 @@
 #include "io_bridges/rack/can_rack.hpp"
 
+#include "io_bridges/board_description/pod_host.hpp"
 #include "io_bridges/rack/can_log.hpp"
 
 namespace whirl::rack {
@@ -29,11 +30,9 @@ CanRack::CanRack(int bus, double rate_Hz, std::uint64_t seed, FrameSink heard)
   log_can(bus_, number_, happened());
 }
 
-// A host that plays a board's parts has its bus among its parameters.
 bool CanRack::carries(const BoardDevice& device) const {
-  if (device.bus == "can" + std::to_string(number_)) return true;
-  const auto its = device.value("params.can");
-  return its && *its == KeyValue(static_cast<double>(number_));
+  if (is_pod_host(device)) return can_of_host(device) == number_;
+  return device.bus == "can" + std::to_string(number_);
 }
 
 void CanRack::give(const io::CanFrame& frame) {

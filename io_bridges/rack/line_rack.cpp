@@ -1,5 +1,7 @@
 #include "io_bridges/rack/line_rack.hpp"
 
+#include "io_bridges/board_description/pod_host.hpp"
+
 namespace whirl::rack {
 
 void LineRack::give(std::span<const std::uint8_t> bytes) {
@@ -9,8 +11,7 @@ void LineRack::give(std::span<const std::uint8_t> bytes) {
 }
 
 bool LineRack::carries(const BoardDevice& device) const {
-  const auto can = device.value("params.can");
-  return device.type == "pod_parts" && (!can || *can == KeyValue(0.0));
+  return is_pod_host(device) && !can_of_host(device);
 }
 
 bool LineRack::join_uart(int /*number*/, io::UartPeer& peer) {

@@ -1,0 +1,20 @@
+// The device of a board that is the host of a pod, and how the two are joined.
+#pragma once
+#include <optional>
+
+#include "io_bridges/board_description/board_description.hpp"
+
+namespace whirl {
+
+inline bool is_pod_host(const BoardDevice& device) {
+  return device.type == "pod_parts";
+}
+
+// The CAN bus that the host is on; nothing: it is on a serial line. Pre: it is one.
+inline std::optional<int> can_of_host(const BoardDevice& host) {
+  const auto can = host.value("params.can");
+  if (!can || *can == KeyValue(0.0)) return std::nullopt;
+  return static_cast<int>(std::get<double>(*can));
+}
+
+}  // namespace whirl
