@@ -4,6 +4,7 @@
 #include <map>
 #include <set>
 
+#include "harness/board/wire_ends.hpp"
 #include "io_bridges/board_description/bus_kind.hpp"
 #include "io_bridges/board_description/bus_name.hpp"
 
@@ -114,6 +115,10 @@ std::vector<Pair> pairs_of(const plan::Plan& plan) {
   return pairs;
 }
 
+void add(const std::vector<WireEnd>& more, std::vector<WireEnd>& ends) {
+  ends.insert(ends.end(), more.begin(), more.end());
+}
+
 }  // namespace
 
 Result<Done> check_board_wires(const plan::Plan& plan, const std::vector<Node>& nodes) {
@@ -144,30 +149,17 @@ Result<std::vector<BoardWireLink>> join_boards(const plan::Plan& plan,
   for (Pair& pair : pairs_of(plan)) {
     auto made = io::BoardWire::create(static_cast<int>(nodes.size()));
     if (!made) return made.error();
-    const int fd = made.value().fd();
-    std::vector<std::string> ports;  // buses of the follower
+    const bool plays = plays_parts(nodes[pair.follower].board);
+    std::vector<WirePlace> places;
     for (const plan::PlanBoardWire* wire : pair.wires) {
-      const BoardDevice& device = *nodes[wire->leader].board.find(wire->device);
-      auto port = std::find(ports.begin(), ports.end(), wire->bus);
-      const bool fresh = port == ports.end();
-      if (fresh) port = ports.insert(port, wire->bus);
-      WireEnd end{.device = wire->device,
-                  .fd = fd,
-                  .port = static_cast<int>(port - ports.begin()),
-                  .latency_ns = wire->latency_ns};
-      setups[pair.leader].wires.push_back(end);
-      end.device.clear();
-      end.bus = wire->bus;
-      end.select = wire->select;
-      end.ready = wire->ready;
-      if (fresh) setups[pair.follower].wires.push_back(end);
-      const bool turns = device.motor != 0 && !plays_parts(nodes[pair.follower].board);
-      if (turns) setups[pair.follower].motor = device.motor;
-      setups[pair.leader].far.push_back({pair.follower, device.motor, &nodes[pair.follower].board});
+      places.push_back({wire->device, wire->bus, wire->select, wire->ready, wire->latency_ns});
+      const int motor = nodes[wire->leader].board.find(wire->device)->motor;
+      if (motor != 0 && !plays) setups[pair.follower].motor = motor;
+      setups[pair.leader].far.push_back({pair.follower, motor, &nodes[pair.follower].board});
     }
-    for (WireEnd& end : setups[pair.follower].wires) {
-      if (end.fd == fd) end.shared = ports.size() > 1 || ports.front().starts_with("spi");
-    }
+    const WireEnds ends = wire_ends(places, made.value().fd());
+    add(ends.leading, setups[pair.leader].wires);
+    add(ends.following, setups[pair.follower].wires);
     links.push_back({pair.leader, pair.follower, std::move(made.value())});
   }
   return links;

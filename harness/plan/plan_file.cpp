@@ -1,13 +1,13 @@
 #include "harness/plan/plan_file.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <lua.hpp>
 #include <optional>
 
 #include "base/text.hpp"
+#include "harness/board/wire_ends.hpp"
 #include "harness/lua/node.hpp"
 #include "harness/plan/raise.hpp"
 #include "io_bridges/board_description/bus_kind.hpp"
@@ -21,8 +21,8 @@ constexpr std::int64_t kDefaultTimeout_ns = 120'000'000'000;
 // Of a line from a follower to its leader.
 constexpr std::int64_t kLeastLatency_ns = 2000, kUsualLatency_ns = 100'000,
                        kMostLatency_ns = 1'000'000;
-// Of a UART between boards, the fastest that the follower may speak: ten bits of it, and what a rate may be off by.
-constexpr double kUsualFastest_baud = 115'200.0, kShortest_bits = 10.0 * 0.97;
+// Of a UART between boards, the fastest that the follower may speak.
+constexpr double kUsualFastest_baud = 115'200.0;
 constexpr double kLeastFastest_baud = 1200.0, kMostFastest_baud = 3e6;
 const std::vector<std::string> kSurroundings = {"start",     "room",  "outdoors", "fence",
                                                 "obstacles", "field", "air",      "load"};
@@ -86,7 +86,7 @@ void read_board_wire(const lua::Table& t, Plan& plan) {
   } else if (is_uart(to->second)) {
     const double fastest = t.quantity_or("fastest", Dimension::baud, kUsualFastest_baud,
                                          lua::between(kLeastFastest_baud, kMostFastest_baud));
-    wire.latency_ns = std::llround(kShortest_bits * 1e9 / fastest);
+    wire.latency_ns = shortest_character_ns(fastest);
   }
   plan.board_wires.push_back(std::move(wire));
 }
