@@ -5,8 +5,6 @@
 #include <cmath>
 #include <cstdio>
 #include <fstream>
-#include <map>
-#include <nlohmann/json.hpp>
 
 #include "base/near.hpp"
 #include "base/scratch_folder.hpp"
@@ -15,6 +13,7 @@
 #include "harness/standin/bare_board.hpp"
 #include "harness/standin/no_world.hpp"
 #include "harness/tests/common_clock.hpp"
+#include "harness/tests/composed_run.hpp"
 #include "harness/tests/running_stand_in.hpp"
 #include "io_bridges/socketcan/tests/memory_can.hpp"
 
@@ -56,55 +55,33 @@ std::string bench_file(const std::string& radio) {
   safety = { phrase = "clear", longest = "60 s", heartbeat = "1 s" } })";
 }
 
-struct Flown {
-  int code = -1;
-  nlohmann::json file;  // run.json
-  std::map<std::string, double> figures() const {
-    std::map<std::string, double> all;
-    for (const auto& e : file["expectations"]) all[e["name"]] = e["measured"];
-    return all;
-  }
-};
-
-Flown fly(const std::string& plan, std::vector<std::string> words, const std::string& out,
-          const bench::CanMaker& can, pacing::HostClock* clock) {
-  const auto composition = boards_and_worlds(kRoot, out, nullptr, can, clock);
-  words.insert(words.begin(), {"whirl", "run", plan});
-  std::vector<char*> argv;
-  argv.reserve(words.size());
-  for (std::string& word : words) argv.push_back(word.data());
-  Flown run;
-  run.code = cli::run_program(static_cast<int>(argv.size()), argv.data(), composition);
-  std::ifstream file(out + "/runs/latest/run.json");
-  run.file = nlohmann::json::parse(file);
-  return run;
-}
-
-Flown fly_on_bench(const std::string& plan, const ScratchFolder& folder) {
+ComposedRun fly_on_bench(const std::string& plan, const ScratchFolder& folder) {
   CommonClock clock;
   io::MemoryCan bus([&] { return clock.now_ns(); });
   Metal metal(folder, bus.join(), clock);
   const std::string file = folder.file("bench.lua");
   std::ofstream(file) << bench_file(metal.radio);
-  const Flown flown = fly(
-      plan, {"--target", "bench/" + file, "--arm", "clear"}, folder.file("bench"),
+  const auto composition = boards_and_worlds(
+      kRoot, folder.file("bench"), nullptr,
       [&](const bench::CanBusLink&) -> Result<std::unique_ptr<io::CanPort>> { return bus.join(); },
       &clock);
+  const ComposedRun flown =
+      run_composed(composition, {plan, "--target", "bench/" + file, "--arm", "clear"});
   clock.leave();
   metal.stop();
   return flown;
 }
 
-Flown fly_in_lockstep(const std::string& plan, const ScratchFolder& folder) {
-  return fly(plan, {}, folder.file("lockstep"), nullptr, nullptr);
+ComposedRun fly_in_lockstep(const std::string& plan, const ScratchFolder& folder) {
+  return run_composed(boards_and_worlds(kRoot, folder.file("lockstep"), nullptr), {plan});
 }
 
 TEST(BenchFlight, TheRealImageHoversOverItsWiresAsItDoesInLockstep) {
   const std::string plan = kRoot + "/test_plans/flight/bench_hover.lua";
   const ScratchFolder folder;
-  const Flown flown = fly_on_bench(plan, folder);
+  const ComposedRun flown = fly_on_bench(plan, folder);
   ASSERT_EQ(flown.code, 0) << std::string(flown.file["reason"]);
-  const Flown lockstep = fly_in_lockstep(plan, folder);
+  const ComposedRun lockstep = fly_in_lockstep(plan, folder);
   ASSERT_EQ(lockstep.code, 0) << std::string(lockstep.file["reason"]);
   const auto want = lockstep.figures();
   // Frames are heard 0.13 ms later than in lockstep: what an error of some millimetres makes of it wanders by 5 %.
@@ -143,9 +120,9 @@ TEST(BenchFlight, FaultsOfItsPartsDoWhatTheyDoInLockstep) {
   const ScratchFolder folder;
   const std::string plan = folder.file("cut.lua");
   std::ofstream(plan) << kCut;
-  const Flown flown = fly_on_bench(plan, folder);
+  const ComposedRun flown = fly_on_bench(plan, folder);
   ASSERT_EQ(flown.code, 0) << std::string(flown.file["reason"]);
-  const Flown lockstep = fly_in_lockstep(plan, folder);
+  const ComposedRun lockstep = fly_in_lockstep(plan, folder);
   ASSERT_EQ(lockstep.code, 0) << std::string(lockstep.file["reason"]);
   // Told 10 times a second.
   EXPECT_TRUE(near(flown.figures().at("motors off"), lockstep.figures().at("motors off"),

@@ -6,7 +6,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
-#include <nlohmann/json.hpp>
 
 #include "base/scratch_folder.hpp"
 #include "harness/catalogue/board_file.hpp"
@@ -14,6 +13,7 @@
 #include "harness/standin/no_world.hpp"
 #include "harness/standin/pod_beside.hpp"
 #include "harness/tests/common_clock.hpp"
+#include "harness/tests/composed_run.hpp"
 #include "harness/tests/running_stand_in.hpp"
 
 namespace whirl {
@@ -82,21 +82,16 @@ TEST(BenchPod, TheRealImageFliesOnSensorsAndControllersThatThePodPlays) {
   std::ofstream(up) << kUp;
   const auto composition = boards_and_worlds(kRoot, folder.file("out"), nullptr, nullptr, &clock);
   const char* plan = std::getenv("WHIRL_BENCH_POD_PLAN");
-  std::vector<std::string> words{
-      "whirl", "run", plan != nullptr ? plan : up, "--target", "bench/" + file, "--arm", "clear"};
-  std::vector<char*> argv;
-  argv.reserve(words.size());
-  for (std::string& word : words) argv.push_back(word.data());
-  const int code = cli::run_program(static_cast<int>(argv.size()), argv.data(), composition);
+  const ComposedRun run = run_composed(
+      composition, {plan != nullptr ? plan : up, "--target", "bench/" + file, "--arm", "clear"});
   clock.leave();
   metal.stand_in->stop();
-  std::ifstream run(folder.file("out") + "/runs/latest/run.json");
-  const auto told = nlohmann::json::parse(run);
+  const nlohmann::json& told = run.file;
   for (const auto& e : told["expectations"]) {
     std::printf("%s: %s\n", std::string(e["name"]).c_str(), e["measured"].dump().c_str());
   }
   for (const auto& f : told["findings"]) std::printf("%s\n", std::string(f["text"]).c_str());
-  EXPECT_EQ(code, 0) << told["reason"];
+  EXPECT_EQ(run.code, 0) << told["reason"];
   for (const auto& f : told["findings"]) {
     const std::string text = f["text"];
     // Two samples may fall into one of the stand-in's milliseconds, and none into the next.

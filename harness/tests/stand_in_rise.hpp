@@ -11,6 +11,7 @@
 #include "harness/catalogue/stand_table.hpp"
 #include "harness/composition/boards.hpp"
 #include "harness/stand/stand_world.hpp"
+#include "harness/tests/composed_run.hpp"
 #include "harness/tests/running_stand_in.hpp"
 
 namespace whirl {
@@ -66,37 +67,23 @@ inline std::string bench_file(const Metal& metal, const std::string& link) {
              limits = { { signal = "supply_current", low = "-5 A", high = "22 A" } } } })";
 }
 
-struct BenchRun {
-  nlohmann::json file;  // run.json
-  int code = -1;        // the program's exit code
-};
-
 struct BenchMakers {
   bench::BridgeMaker bridge;
   bench::CanMaker can = bench::socket_can_port;
 };
 
-inline BenchRun run_on_bench(const ScratchFolder& folder, Metal& metal, const std::string& link,
-                             const BenchMakers& makers) {
+inline ComposedRun run_on_bench(const ScratchFolder& folder, Metal& metal, const std::string& link,
+                                const BenchMakers& makers) {
   const std::string bench = folder.file("bench.lua"), out = folder.file("out");
   std::ofstream(bench) << bench_file(metal, link);
   const auto composition = boards_and_worlds(kRoot, out, makers.bridge, makers.can);
   const std::string plan = metal.board_name == "esc32v2" ? "rise.lua" : "rise_can.lua";
-  std::vector<std::string> words{
-      "whirl", "run",  kRoot + "/test_plans/bench/" + plan, "--target", "bench/" + bench,
-      "--arm", "clear"};
-  std::vector<char*> argv;
-  argv.reserve(words.size());
-  for (std::string& word : words) argv.push_back(word.data());
-  BenchRun run;
-  run.code = cli::run_program(static_cast<int>(argv.size()), argv.data(), composition);
-  std::ifstream file(out + "/runs/latest/run.json");
-  run.file = nlohmann::json::parse(file);
-  return run;
+  return run_composed(composition, {kRoot + "/test_plans/bench/" + plan, "--target",
+                                    "bench/" + bench, "--arm", "clear"});
 }
 
 // A run whose host was late is not judged, but for that it says so; nor is one whose metal was, which no metal is.
-inline void expect_a_rise(const BenchRun& run, Metal& metal) {
+inline void expect_a_rise(const ComposedRun& run, Metal& metal) {
   const std::string reason = run.file["reason"];
   metal.stop();
   if (run.code != 0 && (*metal.stand_in)->lateness().slipped_ns > 0) {
