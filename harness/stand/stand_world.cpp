@@ -7,6 +7,7 @@
 #include "base/check.hpp"
 #include "base/rpm.hpp"
 #include "harness/stand/current_bound.hpp"
+#include "plant/parts/esc_stand.hpp"
 
 namespace whirl::stand {
 namespace {
@@ -15,8 +16,7 @@ constexpr const char* kSupply_dip = "supply_dip";
 constexpr double kStep_s = 1e-3;
 constexpr std::int64_t kStep_ns = 1'000'000;
 constexpr double kMost_flow_mps = 20.0;
-constexpr double kSlow_radps = 20.0;     // below, loads go with the square of speed
-constexpr double kDivider = 1.5 / 11.5;  // of the drawing: io_bridges/rack/models/power_stage.hpp
+constexpr double kSlow_radps = 20.0;  // below, loads go with the square of speed
 
 std::int64_t ns_of(double seconds) {
   return std::llround(seconds * 1e9);
@@ -151,7 +151,8 @@ double StandWorld::sensed_V() const {
     return found == params_.stage.end() ? 0.0 : found->second;
   };
   const double shown_V = shaft_.bus_voltage_V * (1.0 + number("divider.bus"));
-  return shown_V * (1.0 + number("adc.gain.bus")) + number("adc.offset.bus") / kDivider;
+  return shown_V * (1.0 + number("adc.gain.bus")) +
+         number("adc.offset.bus") / plant::kVoltageDivider;
 }
 
 std::string StandWorld::status() const {

@@ -17,6 +17,8 @@ namespace whirl::plant {
 std::span<const PartNumber> esc_stand_numbers();
 std::span<const char* const> esc_stand_groups();
 
+// Of its drawing, from a phase or the bus to the converter's pin: 1.5 kohm below 10.
+inline constexpr double kVoltageDivider = 1.5 / 11.5;
 // A divider of two resistors: by which share its ratio is off when they are, by these.
 double divider_error(double upper_error, double lower_error);
 

@@ -4,11 +4,11 @@
 #include <cmath>
 
 #include "base/check.hpp"
+#include "plant/parts/esc_stand.hpp"
 
 namespace whirl::rack {
 namespace {
 
-constexpr double kDivider = 1.5 / 11.5;
 constexpr double kShunt_VpA = 0.5e-3 * 50.9;
 constexpr double kReference_V = 3.3;
 constexpr double kLeast_source_ohm = 1e-3;  // leads; also keeps the bus capacitor's equation sane
@@ -77,12 +77,12 @@ void PowerStage::end_shot(int leg, Nanoseconds now) {
 double PowerStage::phase_V(int leg, Nanoseconds now) {
   advance(now);
   const auto pin = static_cast<std::size_t>(leg);
-  return at_pin(pin, motor_.phase_voltages()[phase_at(pin)], kDivider);
+  return at_pin(pin, motor_.phase_voltages()[phase_at(pin)], plant::kVoltageDivider);
 }
 
 double PowerStage::bus_V(Nanoseconds now) {
   advance(now);
-  return at_pin(PowerStageParams::kBus, bus_V_, kDivider);
+  return at_pin(PowerStageParams::kBus, bus_V_, plant::kVoltageDivider);
 }
 
 double PowerStage::shunt_V(Nanoseconds now) {
