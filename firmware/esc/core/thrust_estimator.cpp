@@ -9,8 +9,8 @@ constexpr float kElectrical_s = 0.003f;                          // of bus curre
 constexpr Innovation kSpeedGains{.kp = 300.0f, .ki = 22500.0f};  // two poles at 150 rad/s
 constexpr float kSmoothing_s = 0.05f;                            // of CP, at constant speed
 constexpr float kCalming_s = 0.025f;                             // after a step
-constexpr float kHeld_s =
-    0.25f;  // how long a told inflow outlasts gaps: a rotor that coasts has them
+// How long a told inflow outlasts gaps: a rotor that coasts has them.
+constexpr float kHeld_s = 0.25f;
 constexpr float kMinSpeed_radps = 150.0f;  // below, w^3 makes noise of everything
 
 constexpr float kUsual_change =
@@ -86,8 +86,8 @@ void ThrustEstimator::update(float bus_V, float duty, float bus_A, float speed_r
   const float unrest = share * share < 1.0f ? share * share : 1.0f;
   unrest_ -= calming_ * unrest_;
   if (unrest > unrest_) unrest_ = unrest;
-  if (!(gaps &&
-        observable())) {  // else what was told before them is carried on, and nothing mixed in
+  // What was told before the gaps is carried on, and nothing mixed in.
+  if (!(gaps && observable())) {
     const float per_still_W = 1.0f / (still_CP * w * w * w);
     watts_per_ampere_ =
         per_duty * power_per_ampere_W(calibration_.losses, voltage_V, current_A_, w);

@@ -1,4 +1,5 @@
 -- A hover of 5 s with what a bench of a flight controller has: this host is the vehicle, the radio is a line.
+include "include/hover.lua"
 include "include/judged_hover.lua"
 
 -- before(t): once it says what it does.
@@ -12,11 +13,7 @@ function bench_hover(name, board, tags, before)
       if before then before(t) end
       t:within("8 s", function(s) return s.told_ready == 1 end, "it says that it can be armed")
       t:step "take-off"
-      t:command { arm = true }
-      t:within("4 s", function(s) return s.told_armed == 1 end, "armed")
-      t:command { takeoff = "1.1 m" }
-      t:within("6 s", function(s) return s.height_m > 1.0 end, "1 m high")
-      t:wait "3 s"
+      take_off(t)
       t:step "hover"
       judged_stay(t, "5 s", "")
       t:step "land"

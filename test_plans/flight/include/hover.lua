@@ -4,6 +4,11 @@
 function hover(t)
   t:within("8 s", function(s) return s.heartbeat_age_s < 1.5 end, "the first heartbeat")
   t:wait "3 s" -- gyro bias on the ground, capture poses, ESC arming zeros
+  take_off(t)
+end
+
+-- Of who is ready: to the same.
+function take_off(t)
   t:command { arm = true }
   t:within("4 s", function(s) return s.told_armed == 1 end, "armed")
   t:command { takeoff = "1.1 m" }
