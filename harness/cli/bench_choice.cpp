@@ -111,7 +111,7 @@ Result<Done> read_pods(bench::BenchDescription& bench, const std::string& root) 
     link.parts = std::move(board.value());
     if (!plays_parts(link.parts)) {
       return refused(bench.file, link.parts.name + " has no pod_parts: it is no pod's board",
-                     "pod_with_parts, pod_with_parts_can");
+                     "pod_with_receivers, or pod_with_receivers_can");
     }
     const std::optional<int> can = can_of_host(link.parts);
     link.can.bus = static_cast<std::uint16_t>(can.value_or(0));

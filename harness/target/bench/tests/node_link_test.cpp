@@ -24,12 +24,22 @@ BoardDescription board_with_an_esc() {
   return board;
 }
 
+BoardDescription pods_board() {
+  BoardDescription board;
+  board.name = "pod";
+  board.devices.push_back({.name = "host", .type = "pod_parts"});
+  board.devices.back().set("params.can", 2.0);
+  return board;
+}
+
 // The host's clock and virtual time run as one, but for what is said of them.
 struct Rig {
-  explicit Rig(std::uint16_t bus = 2)
+  explicit Rig(std::uint16_t bus = 2, BoardDescription board = board_with_an_esc(),
+               bool pod = false)
       : link({.link = {"bus", "can0", bus},
-              .board = board_with_an_esc(),
-              .types = rack::device_types()},
+              .board = std::move(board),
+              .types = rack::device_types(),
+              .pod = pod},
              [this](const CanBusLink&) -> Result<std::unique_ptr<io::CanPort>> {
                return wire.join();
              }) {
@@ -137,6 +147,25 @@ TEST(NodeLink, ABusWithoutDevicesIsRefused) {
   ASSERT_FALSE(opened.ok());
   EXPECT_EQ(opened.error().kind, ErrorKind::bad_input);
   EXPECT_NE(opened.error().what.find("no device on can1"), std::string::npos);
+}
+
+TEST(NodeLink, APodsHostOnCanTellsItsPartsAndWhatThePodSays) {
+  Rig rig(2, pods_board(), true);
+  ASSERT_TRUE(rig.link.open().ok());
+  rig.serve_until(1100 * kMs);
+  // 105 conversions of the barometer a second, a frame each, and 75 of the magnetometer, two each at least.
+  EXPECT_GT(rig.wire.seen().size(), 200u);
+  io::Batch happened;
+  rig.link.finish([](std::int64_t t_ns) { return t_ns; }, rig.now_ns, happened);
+  rig.link.close();
+  EXPECT_EQ(rig.link.findings(), std::vector<std::string>{"the pod said nothing"});
+}
+
+TEST(NodeLink, APodsHostThatIsOnALineIsNoneOfABus) {
+  BoardDescription board = pods_board();
+  board.devices.back().set("params.can", 0.0);
+  Rig rig(2, board, true);
+  EXPECT_FALSE(rig.link.open().ok());
 }
 
 TEST(NodeLink, AnAdapterThatIsPulledEndsTheRun) {
