@@ -5,8 +5,9 @@
 //            finite length whose angular acceleration is continuous, and steps of any size and streams of
 //            sticks add up. Yaw rate: limit of acceleration, then one mean
 //   Lead     the ESC is a lag, its set-points are held for 20 ms. So the vehicle is asked for what the
-//            profile was 20 ms ago, and the rotors for the mean of acceleration + lag x its change over
-//            the 20 ms that the set-point will hold: then the thrust's own impulse is the profile's
+//            profile was 40 ms ago, and the rotors for the mean of acceleration + lag x its change over
+//            the 20 ms that the set-point will hold: then the thrust's own impulse is the profile's. What the
+//            next hold will ask for is told with it, so that the rotors can be brought up in time (mixer.hpp)
 //   Limits   roll, pitch 35 deg, yaw rate 120 deg/s; the lengths by the room that the rotors have about
 //            hover, see attitude_reference.cpp
 //   Step     5 ms, the attitude task's
@@ -61,8 +62,8 @@ class AttitudeReference {
   float yaw_rad() const { return yaw_rad_; }
 
  private:
-  static constexpr std::size_t kFirst = 19, kSecond = 10, kThird = 10;  // steps of 5 ms
-  static constexpr std::size_t kLead = 4;                               // the hold of a set-point
+  static constexpr std::size_t kFirst = 20, kSecond = 9, kThird = 12;  // steps of 5 ms
+  static constexpr std::size_t kLead = 4;                              // the hold of a set-point
 
   struct Point {
     Quaternion q_WB = Quaternion::Identity();
@@ -77,11 +78,13 @@ class AttitudeReference {
     void step(float demand_rad);
   };
 
+  Vector3 mean_alpha(std::size_t newest) const;  // over a hold that ends with that point
+
   AttitudeDemand demand_;
   Angle roll_, pitch_;
   float yaw_rad_ = 0.0f, limited_yaw_rate_radps_ = 0.0f;
   MovingMean<kSecond> mean_yaw_rate_;
-  std::array<Point, kLead + 1> points_{};  // newest first
+  std::array<Point, 2 * kLead + 1> points_{};  // newest first
 };
 
 }  // namespace fw

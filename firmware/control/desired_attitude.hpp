@@ -16,6 +16,8 @@ struct ThrustAndAttitude {
   // Of the wanted attitude, along its own axes; and the velocity that goes with it, for drag.
   Vector3 w_B_radps = Vector3::Zero(), w_dot_B_radps2 = Vector3::Zero();
   Vector3 v_B_mps = Vector3::Zero();
+  Vector3 next_w_dot_B_radps2 =
+      Vector3::Zero();  // of the hold after the next, where that is planned
 };
 
 // f: the force T R e3 wanted, per mass, in W, with its first two derivatives. Of the collective only

@@ -50,7 +50,17 @@ ThrustRanges all_thrusts() {
   return ranges;
 }
 
-RotorThrusts mix(float thrust_N, const Vector3& tau_B_Nm, const ThrustRanges& ranges) {
+PairLifts lifts_for(const ThrustAndAttitude& wanted) {
+  constexpr float kShare = 1.5f;
+  const Vector3 inertia(config::kInertia_kgm2);
+  const Vector3 turn_radps2 =
+      wanted.w_dot_B_radps2.cwiseAbs().cwiseMax(wanted.next_w_dot_B_radps2.cwiseAbs());
+  const Vector3 lift_N = kShare / (2.0f * config::kArm_m) * inertia.cwiseProduct(turn_radps2);
+  return {.fore_and_aft_N = lift_N.y(), .across_N = lift_N.x()};
+}
+
+RotorThrusts mix(float thrust_N, const Vector3& tau_B_Nm, const ThrustRanges& ranges,
+                 const PairLifts& lifts) {
   const float x = tau_B_Nm.x() / (2.0f * config::kArm_m);
   const float y = tau_B_Nm.y() / (2.0f * config::kArm_m);
   const float z = tau_B_Nm.z() / (4.0f * config::kTorquePerThrust_m);
@@ -59,7 +69,8 @@ RotorThrusts mix(float thrust_N, const Vector3& tau_B_Nm, const ThrustRanges& ra
   const Pair fore_and_aft{ranges[0], ranges[2]}, across{ranges[3], ranges[1]};
   const float py = fore_and_aft.difference(share * y), px = across.difference(share * x);
   const ThrustRange room_fore = fore_and_aft.room(py), room_across = across.room(px);
-  const float fore_alone = within(mean, room_fore), sides_alone = within(mean, room_across);
+  const float fore_alone = within(mean + lifts.fore_and_aft_N, room_fore);
+  const float sides_alone = within(mean + lifts.across_N, room_across);
   float fore = within(fore_alone - kOthersShare * (sides_alone - mean), room_fore);
   float sides = within(sides_alone - kOthersShare * (fore_alone - mean), room_across);
   const float least = std::max(room_fore.low_N - fore, sides - room_across.high_N);

@@ -12,6 +12,7 @@
 #include <array>
 #include <cstdint>
 
+#include "firmware/control/desired_attitude.hpp"
 #include "firmware/math.hpp"
 
 namespace fw {
@@ -27,7 +28,17 @@ struct ThrustRange {
 using ThrustRanges = std::array<ThrustRange, 4>;
 ThrustRanges all_thrusts();
 
-RotorThrusts mix(float thrust_N, const Vector3& tau_B_Nm, const ThrustRanges& ranges);
+// What each pair shall carry beyond its share of the thrust.
+struct PairLifts {
+  float fore_and_aft_N = 0.0f, across_N = 0.0f;  // of each rotor
+};
+// Of a turn that is planned: nothing brakes a rotor, and the more it carries, the sooner it falls. So a pair that turns
+// the vehicle is brought up meanwhile, by half as much again as half the difference that it has to make now or in the next hold; what
+// there is no room for is left out.
+PairLifts lifts_for(const ThrustAndAttitude& wanted);
+
+RotorThrusts mix(float thrust_N, const Vector3& tau_B_Nm, const ThrustRanges& ranges,
+                 const PairLifts& lifts = {});
 inline RotorThrusts mix(float thrust_N, const Vector3& tau_B_Nm) {
   return mix(thrust_N, tau_B_Nm, all_thrusts());
 }

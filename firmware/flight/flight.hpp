@@ -31,6 +31,7 @@
 #include "firmware/flight/flight_state.hpp"
 #include "firmware/flight/motor_watch.hpp"
 #include "firmware/flight/pilot.hpp"
+#include "firmware/flight/restart.hpp"
 #include "firmware/flight/supervisor.hpp"
 #include "firmware/math.hpp"
 
@@ -175,6 +176,7 @@ class Flight {
   bool falling_ = false, attitude_lost_ = false;  // since they were stopped
   bool starting_ = false, catching_ = false;      // a restart: the rotors, then the fall
   bool righting_ = false;                         // far from level, and not level since
+  FallDrag fall_drag_;
 
   bool imu_frozen_ = false;
   std::uint32_t imu_missing_ms_ = kNever;

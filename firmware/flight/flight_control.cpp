@@ -9,9 +9,8 @@ using schedule::kAttitudeStep_s, schedule::kPositionStep_s;
 constexpr float kLiftTime_s = 0.8f, kAirborne_m = 0.06f;
 constexpr float kTargetDelay_s = 0.014f;  // 65 bytes at 57600 baud, and half a poll
 // Of the four attitude steps from set-point to set-point: the one by which the steepest pieces of a step fall
-// into holds such that the rotors can follow (10 to 90 % of 20 degrees in 90 ms with 4 % of overshoot; taken at
-// the others 84 to 106 ms, and up to 17 %).
-constexpr unsigned kDemandTaken = 1;
+// into holds such that the rotors can follow (control/attitude_reference.cpp).
+constexpr unsigned kDemandTaken = 3;
 constexpr std::uint16_t kIdle = 1;  // the lowest set-point that turns a rotor
 
 }  // namespace
@@ -170,7 +169,8 @@ void Flight::control() {
   // Until the next position step the wanted attitude goes on turning.
   wanted_.q_WB = turned(wanted_.q_WB, wanted_.w_B_radps, kAttitudeStep_s);
   rotors_.step(kAttitudeStep_s);
-  setpoints_N_ = rotors_.setpoints_for(mix(wanted_.thrust_N, tau_B, rotors_.reach()));
+  setpoints_N_ =
+      rotors_.setpoints_for(mix(wanted_.thrust_N, tau_B, rotors_.reach(), lifts_for(wanted_)));
   for (unsigned i = 0; i < 4; ++i) setpoints_[i] = setpoint_for(setpoints_N_[i]);
 }
 

@@ -17,6 +17,7 @@ void Flight::cut(Reason reason) {
   if (reason == Reason::motor_out) motors_.keep_failed();
   stop_motors(reason, true);
   falling_ = falls;
+  fall_drag_.start();
   attitude_lost_ = false;
   quiet_s_ = 0.0f;
 }
@@ -39,6 +40,7 @@ Reason Flight::restart() {
       .height_m = height_m(),
       .sinking_mps = sinking_mps(),
       .tilt_rad = std::atan2(up_W.head<2>().norm(), up_W.z()),
+      .drag_pm = fall_drag_.least_pm(),
       .rotors_failed = motors_.failed(),
       .esc_problem = first_esc_problem(),
   };
@@ -63,7 +65,9 @@ void Flight::watch_fall() {
   attitude_lost_ =
       attitude_lost_ || now.has(Condition::imu_not_running) || now.has(Condition::imu_frozen);
   const bool speed_known = estimator_.position_known() || estimator_.pressure_fresh();
-  const float off_mps2 = estimator_.imu().a_B_mps2.norm() - config::kGravity_mps2;
+  const Vector3& felt_B_mps2 = estimator_.imu().a_B_mps2;
+  fall_drag_.step(-(estimator_.q_WB() * felt_B_mps2).z(), sinking_mps(), schedule::kAttitudeStep_s);
+  const float off_mps2 = felt_B_mps2.norm() - config::kGravity_mps2;
   const bool quiet = std::abs(off_mps2) < kRest_mps2 &&
                      estimator_.w_WB_B_radps().norm() < kRest_radps &&
                      (!speed_known || std::abs(sinking_mps()) < kRest_mps);

@@ -30,8 +30,11 @@ TEST(AttitudeReference, AStepIsAnSThatEndsWhereItWasAskedWithin250ms) {
     EXPECT_GE(roll, last - 1e-6f);
     const float alpha = (wanted.w_B_radps.x() - rate_before) / kStep_s;
     largest_change = std::max(largest_change, std::abs(alpha - last_alpha));
-    if (last < 2.0f * kDegree) t10 = static_cast<float>(i) * kStep_s;
-    if (last < 18.0f * kDegree) t90 = static_cast<float>(i) * kStep_s;
+    const auto passes = [&](float share) {  // within this step, or later
+      return kStep_s * (static_cast<float>(i) - (roll - share * 20.0f * kDegree) / (roll - last));
+    };
+    if (last < 2.0f * kDegree && roll > last) t10 = passes(0.1f);
+    if (last < 18.0f * kDegree && roll > last) t90 = passes(0.9f);
     last = roll;
     last_alpha = alpha;
   }
@@ -73,6 +76,23 @@ TEST(AttitudeReference, ADemandWaitsUntilItIsTaken) {
   reference.put(wanted);
   EXPECT_TRUE(
       near(2.0 * std::asin(wanted.q_WB.x()), 20.0 * kDegree, stated(1e-4, "single floats")));
+}
+
+// What is told of the next hold is what the next one asks for.
+TEST(AttitudeReference, TellsOfEachHoldBeforeItComes) {
+  AttitudeReference reference;
+  reference.start(Quaternion::Identity());
+  ThrustAndAttitude wanted;
+  float told = 0.0f, largest = 0.0f;
+  for (int i = 0; i < 60; ++i) {
+    reference.step({.roll_rad = 10.0f * kDegree}, true);
+    reference.put(wanted);
+    if (i % 4 != 0) continue;
+    EXPECT_TRUE(near(wanted.w_dot_B_radps2.x(), told, stated(1e-4, "the same sums"))) << i;
+    told = wanted.next_w_dot_B_radps2.x();
+    largest = std::max(largest, std::abs(told));
+  }
+  EXPECT_GT(largest, 20.0f);
 }
 
 // The same about the vertical: the rate that the held accelerations add up to is the one that was
@@ -132,7 +152,7 @@ TEST(AttitudeReference, StaysWithinItsLimits) {
   }
   EXPECT_TRUE(near(std::acos(tilt_cosine(wanted.q_WB)), 35.0 * M_PI / 180.0,
                    stated(1e-3, "round-off of an arc cosine")));
-  EXPECT_LE(fastest_yaw, 3.8f + 120.0f * kDegree);
+  EXPECT_LE(fastest_yaw, 3.4f + 120.0f * kDegree);
   EXPECT_TRUE(near(wanted.w_B_radps.norm(), 120.0 * M_PI / 180.0, stated(1e-3, "float round-off")));
 }
 

@@ -82,6 +82,27 @@ TEST(Mixer, WhereNoPairHasMoreToCarryTheThrustKeepsItsSize) {
   EXPECT_TRUE(near(total_of(thrusts), 8.8, stated(1e-5, "float round-off")));
 }
 
+// Half a newton more on each of the two, 0.3 of it less on each of the others.
+TEST(Mixer, APairThatIsLiftedCarriesMoreAndTheOtherOneLess) {
+  const PairLifts lifts{.fore_and_aft_N = 0.5f};
+  const RotorThrusts thrusts = mix(8.8f, {0.0f, 0.3f, 0.0f}, all_thrusts(), lifts);
+  const Eigen::Vector3d got = torque_of(thrusts);
+  EXPECT_TRUE(near(got.y(), 0.3, stated(1e-5, "float round-off")));
+  EXPECT_TRUE(near(got.x(), 0.0, stated(1e-5, "float round-off")));
+  EXPECT_TRUE(near(0.5 * (double{thrusts[0]} + thrusts[2]), 2.7, stated(1e-5, "float round-off")));
+  EXPECT_TRUE(near(total_of(thrusts), 8.8 + 0.7, stated(1e-5, "float round-off")));
+}
+
+// 1.5 of half the difference: 20 rad/s^2 of 0.0125 kg m^2 at two arms of 0.25 m take 0.5 N beside each rotor's mean.
+TEST(Mixer, ATurnNowOrInTheNextHoldLiftsItsPair) {
+  ThrustAndAttitude wanted;
+  wanted.w_dot_B_radps2 = {-20.0f, 5.0f, 30.0f};
+  wanted.next_w_dot_B_radps2 = {5.0f, -40.0f, 0.0f};
+  const PairLifts lifts = lifts_for(wanted);
+  EXPECT_TRUE(near(lifts.across_N, 1.5 * 0.5, stated(1e-5, "float round-off")));
+  EXPECT_TRUE(near(lifts.fore_and_aft_N, 1.5 * 1.0, stated(1e-5, "float round-off")));
+}
+
 TEST(Mixer, YawAloneNeverCostsThrust) {
   const RotorThrusts thrusts = mix(8.8f, {0.0f, 0.0f, 0.5f});
   EXPECT_TRUE(near(total_of(thrusts), 8.8, stated(1e-5, "float round-off")));

@@ -10,7 +10,7 @@ namespace fw::test {
 namespace {
 
 using whirl::near;
-using whirl::stated;
+using whirl::stated, whirl::Tolerance;
 
 constexpr Fall kGoodFall{
     .attitude_known = true, .speed_known = true, .height_m = 50.0f, .sinking_mps = 10.0f};
@@ -40,28 +40,64 @@ TEST(RestartRule, AllFourMayHaveStoppedButNotSome) {
   }
 }
 
-// From 10 m/s: 0.6 s at 13 m/s in the mean, then 15.9 m/s braked by 12 m/s^2, and 3 m.
+// From 10 m/s: 0.6 s at 13 m/s in the mean, then 15.9 m/s braked by 11.8 m/s^2, and 3 m.
 TEST(RestartRule, HeightIsWhatBrakingTakes) {
-  EXPECT_TRUE(near(restart_height_m(10.0f, 0.0f), 7.77 + 10.5 + 3.0, stated(0.1, "by hand")));
-  EXPECT_LT(restart_height_m(0.0f, 0.0f), 7.0f);
-  EXPECT_EQ(restart_height_m(-5.0f, 0.4f), restart_height_m(0.0f, 0.0f));  // still on its way up
+  const Tolerance by_hand = stated(0.1, "by hand");
+  EXPECT_TRUE(near(restart_height_m(10.0f, 0.0f, 0.0f), 7.77 + 10.7 + 3.0, by_hand));
+  EXPECT_LT(restart_height_m(0.0f, 0.0f, 0.0f), 7.0f);
+  // Still on its way up.
+  EXPECT_EQ(restart_height_m(-5.0f, 0.4f, 0.0f), restart_height_m(0.0f, 0.0f, 0.0f));
   Fall fall = kGoodFall;
-  fall.height_m = restart_height_m(fall.sinking_mps, 0.0f) - 0.1f;
+  fall.height_m = restart_height_m(fall.sinking_mps, 0.0f, 0.0f) - 0.1f;
   EXPECT_EQ(why_not_restart(fall), Reason::too_low);
   fall.height_m += 0.2f;
   EXPECT_EQ(why_not_restart(fall), Reason::none);
-  // On its back it turns for 0.88 s first, which ends at 22 m/s: 23.7 m, 20.2 m, and 3 m.
+  // On its back it turns for 0.88 s first, which ends at 24.6 m/s: 25.7 m, 25.6 m, and 3 m.
   fall.tilt_rad = 3.14159f;
   EXPECT_EQ(why_not_restart(fall), Reason::too_low);
-  EXPECT_TRUE(near(restart_height_m(10.0f, 3.14159f), 46.9, stated(0.1, "by hand")));
-  EXPECT_GT(restart_height_m(30.0f, 0.0f), 60.0f);  // a dive is not slowed by the formula
+  EXPECT_TRUE(near(restart_height_m(10.0f, 3.14159f, 0.0f), 54.3, by_hand));
   fall.height_m = std::nanf("");
   EXPECT_EQ(why_not_restart(fall), Reason::too_low);
 }
 
+// Of 0.02 /m the air holds 2 m/s^2 against 10 m/s: 1.48 s at 7.8 m/s^2 end at 21.6 m/s: 23.4 m, 19.8 m, and 3 m.
+TEST(RestartRule, AirThatWasFeltTakesOffHeight) {
+  EXPECT_TRUE(near(restart_height_m(10.0f, 3.14159f, 0.02f), 46.2, stated(0.1, "by hand")));
+  // A dive beyond the speed that the air allows is not slowed by the formula: 18 m, 38.1 m, and 3 m.
+  EXPECT_TRUE(near(restart_height_m(30.0f, 0.0f, 0.02f), 59.1, stated(0.1, "by hand")));
+  Fall fall = kGoodFall;
+  fall.height_m = 20.9f;  // falling freely, 21.5 m
+  EXPECT_EQ(why_not_restart(fall), Reason::too_low);
+  fall.drag_pm = 0.02f;
+  EXPECT_EQ(why_not_restart(fall), Reason::none);
+}
+
+void fall_for_a_second(FallDrag& drag, float upward_mps2, float sinking_mps) {
+  for (int i = 0; i < 200; ++i) drag.step(upward_mps2, sinking_mps, 0.005f);
+}
+
+TEST(FallDrag, IsTheLeastThatWasFelt) {
+  FallDrag drag;
+  drag.start();
+  fall_for_a_second(drag, 1.0f, 9.0f);  // too slow to tell
+  EXPECT_EQ(drag.least_pm(), 0.0f);
+  const Tolerance mean = stated(1e-5, "ten means of 0.1 s");
+  fall_for_a_second(drag, 9.0f, 9.0f);
+  fall_for_a_second(drag, 9.0f, 15.0f);
+  EXPECT_TRUE(near(drag.least_pm(), 0.04, mean));
+  fall_for_a_second(drag, 4.5f, 15.0f);  // on its edge
+  fall_for_a_second(drag, 9.0f, 15.0f);
+  EXPECT_TRUE(near(drag.least_pm(), 0.02, mean));
+  fall_for_a_second(drag, -1.0f, 15.0f);  // an accelerometer's zero
+  EXPECT_EQ(drag.least_pm(), 0.0f);
+  drag.start();
+  fall_for_a_second(drag, std::nanf(""), std::nanf(""));
+  EXPECT_EQ(drag.least_pm(), 0.0f);
+}
+
 struct High {
   explicit High(double height_m) : vehicle(Scenario{}) {
-    flight.parameters().set(Parameter::fence_top_m, 40.0f);
+    flight.parameters().set(Parameter::fence_top_m, 60.0f);
     flight.parameters().set(Parameter::fence_north_m,
                             0.0f);  // whoever turns upright is thrown aside
     flight.parameters().set(Parameter::fence_east_m, 0.0f);
@@ -70,7 +106,7 @@ struct High {
     vehicle.run(flight, 2.0);
     EXPECT_EQ(flight.take_off(1.1f), Reason::none);
     const auto z_m = static_cast<float>(-height_m);
-    for (int i = 0; i < 60'000 && -vehicle.p_W_.z() < height_m - 0.1; ++i) {
+    for (int i = 0; i < 100'000 && -vehicle.p_W_.z() < height_m - 0.1; ++i) {
       if (i % 100 == 0) flight.on_target({0.0f, 0.0f, z_m}, 0.0f);
       if (i % 1000 == 0) flight.on_link();
       vehicle.step(flight);
@@ -125,6 +161,28 @@ TEST(Restart, RightsItselfFromItsSideAndFromBeyond) {
     EXPECT_LT(high.vehicle.tilt_rad(), 0.1);
     EXPECT_EQ(high.flight.state(), FlightState::flying);
   }
+}
+
+// In air that lets it fall at no more than 14 m/s: from 12.8 m/s, 22 m above the ground. Falling freely it would be
+// refused below 27 m.
+TEST(Restart, CountsWithTheAirThatItsAccelerometerFeels) {
+  High high(40.0);
+  ASSERT_EQ(high.flight.kill(), Reason::none);
+  while (-high.vehicle.p_W_.z() > 22.0) {
+    const Eigen::Vector3d& v_W = high.vehicle.v_W_;
+    high.vehicle.push_W_N_ = -0.9 * 0.05 * v_W.norm() * v_W;
+    high.vehicle.step(high.flight);
+  }
+  EXPECT_GT(high.vehicle.v_W_.z(), 12.0);
+  EXPECT_EQ(high.flight.restart(), Reason::none) << text_of(high.flight.restart());
+  high.vehicle.push_W_N_.setZero();
+  double lowest_m = 100.0;
+  for (int i = 0; i < 5000; ++i) {
+    if (i % 500 == 0) high.flight.on_link();
+    high.vehicle.step(high.flight);
+    lowest_m = std::min(lowest_m, -high.vehicle.p_W_.z());
+  }
+  EXPECT_GT(lowest_m, 3.0);
 }
 
 TEST(Restart, IsRefusedLow) {

@@ -1,6 +1,7 @@
 -- Faults of sensors that are nodes of CAN (board px4fmu_v1_all_can), in mid-hover: by the rules and limits of the
 -- same faults of the board's own (faults.lua, faults_sensors.lua).
 include "include/hover.lua"
+include "include/moment.lua"
 include "include/sensor_fault.lua"
 include "include/all_can.lua"
 
@@ -11,6 +12,7 @@ local function fault_plan(name, run)
     run = function(t)
       boot_all_can(t)
       hover(t)
+      some_moment(t)
       run(t)
     end,
   }

@@ -1,12 +1,14 @@
 -- Faults of the ESCs' CAN bus in flight. Those that pass leave the vehicle where it is, by the limits of
 -- faults_wire.lua; those that last are noticed, and the motors cut, as on I2C.
 include "include/hover.lua"
+include "include/moment.lua"
 include "include/parameter.lua"
 
 local function hover_on_can(t)
   t:within("8 s", function(s) return s.heartbeat_age_s < 1.5 end, "the first heartbeat")
   set_parameter(t, "ESC_BUS", 1)
   hover(t)
+  some_moment(t)
 end
 
 -- The vehicle stays where it was while `fault` acts and for a second more; `look` opens windows beside.

@@ -2,6 +2,7 @@
 -- kRules of firmware/flight/supervisor.hpp, flown. Each ends on the ground, within the fence, motors off.
 -- told_state: 0 disarmed, 2 flying, 3 landing, 4 failsafe landing.
 include "include/hover.lua"
+include "include/moment.lua"
 
 local function fail_safe(name, more, run)
   plan(name) {
@@ -10,7 +11,7 @@ local function fail_safe(name, more, run)
     room = more.room, fence = more.room and { size = { "5 m", "4 m", "3 m" } },
     run = function(t)
       hover(t)
-      t:wait(t:drawn("0 s", "4 s"))
+      some_moment(t)
       run(t)
       t:within("30 s", function(s) return s.told_armed == 0 and s.on_ground == 1 end, "on the ground, disarmed")
       t:wait "1 s"
@@ -144,7 +145,7 @@ for _, f in ipairs { { "baro", "barometer silent" }, { "mag", "magnetometer sile
     tags = { "flight", "fail_safe" }, timeout = "60 s",
     run = function(t)
       hover(t)
-      t:wait(t:drawn("0 s", "4 s"))
+      some_moment(t)
       t:fault { kind = "i2c_nack", device = f[1] }
       t:told("3 s", f[2])
       local r = t:record({ "height", "offset" }, "4 s")

@@ -1,7 +1,8 @@
--- One plan per class of fault, each in mid-hover: what the flight image does about it.
+-- One plan per class of fault, each in a hover at a moment that the seed draws: what the flight image does about it.
 -- told_state: 0 disarmed, 1 armed, 2 flying, 3 landing, 4 failsafe landing.
 
 include "include/hover.lua"
+include "include/moment.lua"
 
 -- The set-points of these ESCs stay on time whatever happens to the others.
 local function on_time(t, escs)
@@ -30,6 +31,7 @@ end
 
 flight_plan("an ESC that refuses for 100 ms is tried again and flown on", function(t)
   hover(t)
+  some_moment(t)
   on_time(t, { "esc1", "esc3", "esc4" })
   t:fault { kind = "i2c_nack", device = "esc2", duration = "100 ms" }
   t:wait "500 ms"
@@ -39,6 +41,7 @@ end)
 -- Half a second without an answer, and up to one more until the next heartbeat says so.
 flight_plan("an ESC that refuses for ever ends the flight within 1.5 s", function(t)
   hover(t)
+  some_moment(t)
   t:fault { kind = "i2c_nack", device = "esc2" }
   t:within("1.5 s", function(s) return s.told_state == 4 or s.told_state == 0 end, "failsafe")
   t:within("15 s", function(s) return s.told_armed == 0 end, "motors off")
@@ -46,6 +49,7 @@ end)
 
 flight_plan("SDA stuck until nine clocks is freed by the image", function(t)
   hover(t)
+  some_moment(t)
   on_time(t, { "esc1", "esc2", "esc3", "esc4" })
   t:fault { kind = "i2c_stuck_sda", bus = "i2c3", duration = "400 ms", value = 9 }
   t:wait "500 ms"
@@ -54,12 +58,14 @@ end)
 
 flight_plan("a frozen IMU stops the motors", function(t)
   hover(t)
+  some_moment(t)
   t:fault { kind = "sensor_frozen", device = "imu" }
   t:within("2 s", function(s) return s.told_armed == 0 end, "motors off")
 end)
 
 flight_plan("a lost capture makes the image land by itself", function(t)
   hover(t)
+  some_moment(t)
   t:fault { kind = "capture_lost" }
   t:within("2 s", function(s) return s.told_state == 4 end, "failsafe landing")
   local tilt = t:always("tilt")
@@ -71,6 +77,7 @@ end)
 
 flight_plan("a radio that falls silent makes the image land by itself", function(t)
   hover(t)
+  some_moment(t)
   t:fault { kind = "uart_silence", device = "radio" }
   t:within("2 s", function(s) return s.told_state == 4 end, "failsafe landing")
   t:within("12 s", function(s) return s.on_ground == 1 end, "on the ground")
@@ -79,6 +86,7 @@ end)
 
 flight_plan("a rate at its rail for 10 ms is not believed", function(t)
   hover(t)
+  some_moment(t)
   t:fault { kind = "sensor_saturated", device = "imu", axis = "gyro_x", duration = "10 ms" }
   t:wait "500 ms"
   flies_on(t)
@@ -86,6 +94,7 @@ end)
 
 flight_plan("an IMU that leaves the bus stops the motors", function(t)
   hover(t)
+  some_moment(t)
   t:fault { kind = "spi_silent", device = "imu" }
   t:within("2 s", function(s) return s.told_armed == 0 end, "motors off")
 end)
@@ -93,6 +102,7 @@ end)
 -- 2048 of a rate's counts in twenty samples: 62 degrees per second that are not there.
 flight_plan("a bit of the IMU's wire that is flipped for 20 ms is flown through", function(t)
   hover(t)
+  some_moment(t)
   t:fault { kind = "spi_flip", device = "imu", duration = "20 ms", value = 8 * 9 + 3 }
   t:wait "500 ms"
   flies_on(t)
@@ -101,6 +111,7 @@ end)
 -- The wire repeats what it last carried. Five samples are no sign of anything; for good, the IMU is lost.
 flight_plan("an IMU's wire that stands still for 5 ms is flown through", function(t)
   hover(t)
+  some_moment(t)
   t:fault { kind = "spi_frozen", device = "imu", duration = "5 ms" }
   t:wait "500 ms"
   flies_on(t)
@@ -108,6 +119,7 @@ end)
 
 flight_plan("an IMU's wire that stands still for good stops the motors", function(t)
   hover(t)
+  some_moment(t)
   t:fault { kind = "spi_frozen", device = "imu" }
   t:within("2 s", function(s) return s.told_armed == 0 end, "motors off")
 end)
@@ -115,6 +127,7 @@ end)
 -- It sleeps until the image has set it up anew: longer than attitude can be held without it.
 flight_plan("an IMU whose supply fails for 5 ms stops the motors, and is set up anew", function(t)
   hover(t)
+  some_moment(t)
   t:fault { kind = "sensor_brown_out", device = "imu", duration = "5 ms" }
   t:within("2 s", function(s) return s.told_armed == 0 end, "motors off")
   t:within("3 s", function(s) return s.on_ground == 1 end, "down")
@@ -138,6 +151,7 @@ end)
 for _, f in ipairs { { is = "lost", kind = "uart_loss" }, { is = "with a flipped bit", kind = "uart_flip" } } do
   flight_plan("one radio byte in a hundred " .. f.is .. " is flown through", function(t)
     hover(t)
+    some_moment(t)
     t:fault { kind = f.kind, device = "radio", duration = "1 s", value = 0.01 }
     t:wait "1 s"
     flies_on(t)

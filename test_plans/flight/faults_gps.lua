@@ -3,11 +3,13 @@
 -- down near by.
 include "include/gps.lua"
 include "include/gps_faults.lua"
+include "include/moment.lua"
 
 local function gps_plan(name, run) gps_fault_plan("px4fmu_v1", name, run) end
 
 gps_plan("gps: one solution in three lost is flown through", function(t)
   hover_by_gps(t)
+  some_moment(t)
   t:fault { kind = "gnss_dropout", device = "gps", value = 0.3, duration = "20 s" }
   local r = t:record({ "receiver_north", "receiver_east", "told_state" }, "20 s")
   t:expect(r:max "told_state", "it flies on"):at_most(2)
@@ -22,6 +24,7 @@ for _, f in ipairs {
 } do
   gps_plan(f.name, function(t)
     hover_by_gps(t)
+    some_moment(t)
     t:fault { kind = f.kind, device = f.device, value = f.value, duration = "20 s" }
     local r = t:record({ "receiver_north", "receiver_east", "told_state" }, "20 s")
     t:expect(r:max "told_state", "it flies on"):at_most(2)
@@ -31,18 +34,21 @@ end
 
 gps_plan("gps: a receiver that is not heard any more ends the flight", function(t)
   hover_by_gps(t)
+  some_moment(t)
   t:fault { kind = "uart_silence", device = "gps" }
   comes_down(t)
 end)
 
 gps_plan("gps: no solutions any more end the flight", function(t)
   hover_by_gps(t)
+  some_moment(t)
   t:fault { kind = "gnss_dropout", device = "gps", value = 1 }
   comes_down(t)
 end)
 
 gps_plan("gps: a jammed receiver ends the flight", function(t)
   hover_by_gps(t)
+  some_moment(t)
   t:fault { kind = "gnss_jammed", device = "gps" }
   comes_down(t)
 end)
@@ -58,6 +64,7 @@ end)
 -- What cannot be noticed: no sensor on board tells it from wind. The vehicle goes along, no faster.
 gps_plan("gps: a place that drifts at 0.3 m/s carries the vehicle along", function(t)
   hover_by_gps(t)
+  some_moment(t)
   t:fault { kind = "gnss_spoofed", device = "gps", axis = "east", value = "0.3 m/s", duration = "20 s" }
   local r = t:record({ "receiver_north", "receiver_east", "told_state" }, "20 s")
   t:expect(r:max "told_state", "it flies on"):at_most(2)

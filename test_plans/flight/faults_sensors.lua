@@ -1,6 +1,7 @@
 -- Faults of the barometer, of the magnetometer and of their bus, most for two seconds in mid-hover. The capture
 -- system is there: the vehicle flies on as if nothing had been, and what the parts tell is back soon after.
 include "include/hover.lua"
+include "include/moment.lua"
 include "include/sensor_fault.lua"
 
 local faults = {
@@ -31,6 +32,7 @@ for _, f in ipairs(faults) do
     tags = { "flight", "faults" }, timeout = "60 s",
     run = function(t)
       hover(t)
+      some_moment(t)
       t:budget("fw::imu_task") { period = "1 ms", jitter = "20 us", during = "3 s" }
       t:bus { device = "esc1", direction = "write", period = "20 ms", tolerance = "0.5 ms", during = "3 s" }
       judged_sensor_fault(t, f)

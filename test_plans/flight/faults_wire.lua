@@ -1,6 +1,7 @@
 -- Faults that a sound flight survives without leaving its place: single bits, late answers, short
 -- silences, a sagging supply. What the image must do about lasting ones is in faults.lua.
 include "include/hover.lua"
+include "include/moment.lua"
 
 -- The vehicle stays where it was while `fault` acts and for a second more. refused: how many set-points the ESCs throw
 -- away meanwhile.
@@ -10,6 +11,7 @@ local function unmoved(name, fault, height, refused)
     tags = { "quick", "flight", "faults" }, timeout = "60 s",
     run = function(t)
       hover(t)
+      some_moment(t)
       local before = t:value "setpoints_refused"
       local record = t:record({ "height", "offset", "tilt", "setpoints_refused" }, "2 s", function() t:fault(fault) end)
       local thrown_away = record:final("setpoints_refused").value - before.value

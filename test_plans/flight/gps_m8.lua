@@ -3,6 +3,7 @@
 -- in by another way.
 include "include/gps.lua"
 include "include/gps_faults.lua"
+include "include/moment.lua"
 include "include/judged_gps.lua"
 
 local board = "px4fmu_v1_m8"
@@ -23,6 +24,7 @@ local function m8_plan(name, run) gps_fault_plan(board, "gps m8: " .. name, run)
 
 m8_plan("what spoils a few solutions is flown through, jamming ends the flight", function(t)
   hover_by_gps(t)
+  some_moment(t)
   local few = {
     { kind = "gnss_dropout", device = "m8", value = 0.3, duration = "10 s" },
     { kind = "uart_loss", device = "m8", value = 0.0005, duration = "10 s" },

@@ -2,6 +2,7 @@
 -- attitude, given to the autopilot to land. Then what must not happen: arming with the throttle up, and
 -- flying on when the transmitter is gone; and that a receiver's nonsense, frame by frame, moves nothing.
 include "include/by_hand.lua"
+include "include/moment.lua"
 
 plan "manual" {
   image = "flight", board = "px4fmu_v1", vehicle = "hp_quad",

@@ -1,6 +1,7 @@
 -- Flown by hand with a receiver that speaks SBUS: the image finds it by itself. That its flags, its silence and its
 -- nonsense lead where a lost sum signal does (manual.lua), and that single bad frames are flown through.
 include "include/by_hand.lua"
+include "include/moment.lua"
 
 plan "sbus" {
   image = "flight", board = "px4fmu_v1_sbus", vehicle = "hp_quad",

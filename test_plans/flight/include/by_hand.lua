@@ -1,4 +1,4 @@
--- What the plans share that are flown by hand, whichever receiver brings the sticks.
+-- What the plans share that are flown by hand, whichever receiver brings the sticks; with include/moment.lua.
 
 function boot_by_hand(t)
   t:within("8 s", function(s) return s.heartbeat_age_s < 1.5 end, "the first heartbeat")
@@ -30,6 +30,7 @@ function loss_by_hand(family, board, mode, name, lose, words)
       take_off_by_hand(t)
       t:command { rc = { mode = mode } }
       t:wait "0.5 s"
+      some_moment(t)
       t:always("tilt"):at_most "25 deg"
       t:step "lost"
       lose(t)

@@ -1,4 +1,4 @@
--- What the plans share in which a GPS receiver fails; with include/gps.lua.
+-- What the plans share in which a GPS receiver fails; with include/gps.lua and include/moment.lua.
 
 -- Blind it comes down in some 20 s, and the wind carries it meanwhile: 3 m/s for so long, at most.
 function gps_fault_plan(board, name, run)
@@ -20,6 +20,7 @@ end
 -- What is wrong with the solutions is noticed before it has been followed.
 function noticed(t, fault)
   hover_by_gps(t)
+  some_moment(t)
   t:fault(fault)
   stays_near(t, "3 m", "2 s")
   comes_down(t)
@@ -28,6 +29,7 @@ end
 -- It begins anew at 9600 baud with NMEA at 1 Hz: the driver finds it, sets it up, and the estimate has it back.
 function found_again_in_flight(t, brown_out)
   hover_by_gps(t)
+  some_moment(t)
   t:fault(brown_out)
   comes_down(t)
   t:wait "20 s"
