@@ -40,7 +40,9 @@ inline constexpr float kFlux_per_Kt = 486'700.0f / 0.01005f;
 struct Pace {
   std::uint32_t revolution = 0;  // the last six sectors; 0: not running
   std::uint32_t sector = 0;  // mean of the last two, or of the next one so far if that is longer
-  bool slowing = false;      // the last two took longer than the two before, by more than noise
+  std::uint32_t four =
+      0;  // the last four sectors, or the next one so far if a sector of them is shorter
+  bool slowing = false;  // the last two took longer than the two before, by more than noise
   float radps(std::uint32_t ticks, unsigned sectors, const CommutationConfig& config) const {
     constexpr float kSixth = 1.0471976f;
     if (ticks == 0) return 0.0f;

@@ -204,7 +204,8 @@ Sensed MotorDrive::sense() {
           .speed_radps = speed_.update(revolution_radps, pace.revolution > 0),
           .in_sync = pace.revolution > 0,
           .slowing = pace.slowing,
-          .latest_radps = pace.radps(pace.sector, 1, config)};
+          .latest_radps = pace.radps(pace.sector, 1, config),
+          .recent_radps = pace.radps(pace.four, 4, config)};
 }
 
 bool MotorDrive::tripped() {
