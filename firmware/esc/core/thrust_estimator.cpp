@@ -1,6 +1,7 @@
 #include "firmware/esc/core/thrust_estimator.hpp"
 
 #include "firmware/esc/core/power_balance.hpp"
+#include "firmware/esc/core/square_root.hpp"
 
 namespace fw::esc {
 namespace {
@@ -9,8 +10,13 @@ constexpr float kElectrical_s = 0.003f;                          // of bus curre
 constexpr Innovation kSpeedGains{.kp = 300.0f, .ki = 22500.0f};  // two poles at 150 rad/s
 constexpr float kSmoothing_s = 0.05f;                            // of CP, at constant speed
 constexpr float kCalming_s = 0.025f;                             // after a step
+constexpr float kCalm = 1e-3f;  // of unrest: the inertial torque is 3 % of the air's
 // How long a told inflow outlasts gaps: a rotor that coasts has them.
 constexpr float kHeld_s = 0.25f;
+// No wind takes more power than still air. What seems to is an error of the balance, a bearing colder than at the
+// calibration: taken off the torque, for as long as a motor takes to warm up by a good part.
+constexpr float kExcess_s = 0.3f, kExcess_lasts_s = 20.0f;
+constexpr float kExcess_share = 0.05f;     // of still air's torque, at most: more is no bearing
 constexpr float kMinSpeed_radps = 150.0f;  // below, w^3 makes noise of everything
 
 constexpr float kUsual_change =
@@ -48,7 +54,7 @@ void ThrustEstimator::restart(float speed_radps) {
   speed_.restart(speed_radps);
   solver_.restart();
   last_ = {};
-  power_W_ = thrust_N_ = CP_ = CT_ = 0.0f;
+  power_W_ = thrust_N_ = CP_ = CT_ = excess_Nm_ = 0.0f;
   power_ratio_ = thrust_ratio_ = 1.0f;
 }
 
@@ -75,7 +81,7 @@ void ThrustEstimator::update(float bus_V, float duty, float bus_A, float speed_r
   const float shaft_Nm = shaft_W / w;
   speed_.update(shaft_Nm, w);
   const float acceleration_Nm = calibration_.motor.inertia_kgm2 * speed_.acceleration_radps2();
-  const float torque_Nm = shaft_Nm - acceleration_Nm;
+  const float torque_Nm = shaft_Nm - acceleration_Nm - excess_Nm_;
   power_W_ = torque_Nm * w;
   const bool gaps = has_gaps(calibration_.motor, bus_V, duty_.value(), current_A_);
   gapless_s_ = gaps ? 0.0f : gapless_s_ + period_s_;
@@ -97,6 +103,8 @@ void ThrustEstimator::update(float bus_V, float duty, float bus_A, float speed_r
                         ? blend_ * trust * (power_W_ * per_still_W - power_ratio_)
                         : blend_ * (1.0f - power_ratio_);
   }
+  if (calibration_.identified && !gaps && calibration_.power.holds(w))
+    note_excess(still_CP * w * w);
   CP_ = power_ratio_ * still_CP;
   last_ = conclude();
   confidence_ = confidence();
@@ -106,16 +114,37 @@ void ThrustEstimator::update(float bus_V, float duty, float bus_A, float speed_r
   thrust_N_ = CT_ * w * w;
 }
 
+void ThrustEstimator::note_excess(float still_Nm) {
+  const float more_Nm = (power_ratio_ - 1.0f) * still_Nm;
+  if (more_Nm < 0.0f) {
+    excess_Nm_ -= period_s_ / kExcess_lasts_s * excess_Nm_;
+  } else if (unrest_ < kCalm && excess_Nm_ < kExcess_share * still_Nm) {
+    excess_Nm_ += period_s_ / kExcess_s * more_Nm;
+  }
+}
+
 // After a speed step the wind (m/s) is unchanged, so inflow ratio = wind / (w R) shrinks. Rescale both
 // ratios now instead of waiting for the filter.
 void ThrustEstimator::carry_to(float w) {
   if (observable()) {
-    const float less = last_.slope * last_.ls * (1.0f - speed_radps_ / w) * per_still_CP_;
-    const float taken = (1.0f - power_ratio_) * effect_at(speed_radps_);
-    thrust_ratio_ *= 1.0f - confidence_ * last_.leverage * less / (1.0f - taken);
-    power_ratio_ = 1.0f - (taken + less) / effect_at(w);
+    thrust_ratio_ *= 1.0f + confidence_ * last_.leverage * given_back_at(w) / (1.0f - taken());
+    power_ratio_ = power_ratio_at(w);
   }
   speed_radps_ = w;
+}
+
+// Of the share of power that the told wind takes now, what it would not take at w. Below 0: more is taken there.
+float ThrustEstimator::given_back_at(float w) const {
+  return -last_.slope * last_.ls * (1.0f - speed_radps_ / w) * per_still_CP_;
+}
+
+// Of still air's power, the share that the model's inflow takes.
+float ThrustEstimator::taken() const {
+  return (1.0f - power_ratio_) * effect_at(speed_radps_);
+}
+
+float ThrustEstimator::power_ratio_at(float w) const {
+  return 1.0f - (taken() - given_back_at(w)) / effect_at(w);
 }
 
 ThrustEstimate ThrustEstimator::conclude() {
@@ -123,14 +152,17 @@ ThrustEstimate ThrustEstimator::conclude() {
   if (!calibration_.identified || !still_.real) return nothing;
   nothing.status = Estimate::not_observable;
   const float highest = calibration_.shared_power < 1.0f ? calibration_.shared_power : 1.0f;
-  const float sigmas_needed = observable() ? 1.0f : 2.0f;  // hysteresis
-  if (power_ratio_ >= highest - sigmas_needed * power_error_) return nothing;
+  // Hysteresis; and a wind that was told is judged by what it takes at still air's speed, for what was
+  // told has made the rotor faster, and of a faster one it takes a smaller share.
+  const bool told = observable();
+  const float ratio =
+      told ? power_ratio_at(square_root(thrust_ratio_) * speed_radps_) : power_ratio_;
+  if (ratio >= highest - (told ? 1.0f : 2.0f) * power_error_) return nothing;
   // The smoothed ratio still holds what gaps made of it, unless an inflow was told before them.
   const bool told_before = observable() && blind_s_ < kHeld_s;
   if (gapless_s_ < kSmoothing_s && !told_before) return nothing;
   if (!calibration_.power.holds(speed_radps_)) return nothing;
-  const float taken = (1.0f - power_ratio_) * effect_at(speed_radps_);
-  return solver_.solve((1.0f - taken) * still_.CP);
+  return solver_.solve((1.0f - taken()) * still_.CP);
 }
 
 float ThrustEstimator::effect_at(float w) const {

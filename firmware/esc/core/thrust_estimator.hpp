@@ -36,6 +36,10 @@ class ThrustEstimator {
 
  private:
   void carry_to(float speed_radps);
+  void note_excess(float still_Nm);
+  float taken() const;
+  float given_back_at(float speed_radps) const;
+  float power_ratio_at(float speed_radps) const;  // in the wind that is told
   ThrustEstimate conclude();
   float confidence() const;
   float effect_at(float speed_radps) const;  // PowerRange::speed_effect
@@ -62,6 +66,7 @@ class ThrustEstimator {
   float gapless_s_ = 0.0f;  // how long the winding current has had none
   float blind_s_ = 0.0f;    // how long power has told nothing for gaps, and for the smoothing after
   float power_ratio_ = 1.0f;
+  float excess_Nm_ = 0.0f;  // by which the balance has found more than any air takes
   float thrust_ratio_ = 1.0f;
   float thrust_N_ = 0.0f;
 };
