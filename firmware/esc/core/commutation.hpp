@@ -43,11 +43,9 @@ struct Pace {
   std::uint32_t four =
       0;  // the last four sectors, or the next one so far if a sector of them is shorter
   bool slowing = false;  // the last two took longer than the two before, by more than noise
-  float radps(std::uint32_t ticks, unsigned sectors, const CommutationConfig& config) const {
-    constexpr float kSixth = 1.0471976f;
-    if (ticks == 0) return 0.0f;
-    return kSixth * static_cast<float>(sectors) * config.ticks_per_s /
-           (static_cast<float>(ticks) * static_cast<float>(config.pole_pairs));
+  // one_radps: of a sector that takes one tick, mechanical.
+  static float radps(std::uint32_t ticks, float sectors, float one_radps) {
+    return ticks == 0 ? 0.0f : sectors * one_radps / static_cast<float>(ticks);
   }
 };
 
@@ -63,7 +61,9 @@ class Commutation {
   };
 
   constexpr explicit Commutation(const CommutationConfig& config)
-      : config_(config), start_clear_counts_(config.start_clear_counts) {}
+      : config_(config),
+        one_radps_(kSixth * config.ticks_per_s / static_cast<float>(config.pole_pairs)),
+        start_clear_counts_(config.start_clear_counts) {}
 
   void stop();
   void know(float Kt_NmpA) {
@@ -84,8 +84,9 @@ class Commutation {
   Pace pace();
   float speed_radps() {  // mechanical, of the last revolution (electrical); 0 unless running
     const Pace p = pace();
-    return p.radps(p.revolution, 6, config_);
+    return Pace::radps(p.revolution, 6.0f, one_radps_);
   }
+  float one_radps() const { return one_radps_; }  // of a sector that takes one tick
   // Pace::slowing as of the last crossing, for those who come by more often.
   bool braked() const { return braked_; }
   const CommutationConfig& config() const { return config_; }
@@ -93,7 +94,8 @@ class Commutation {
   std::uint32_t bad_detections() const { return bad_detections_; }
 
  private:
-  static constexpr int kInARow = 6;  // crossings that make a start, or their lack a loss
+  static constexpr float kSixth = 1.0471976f;  // of a turn
+  static constexpr int kInARow = 6;            // crossings that make a start, or their lack a loss
   // While starting, samples pass a mean of the last few: its noise is 2.6 times less, and it comes 150 us late.
   static constexpr int kSmoothing = 4;
   static constexpr Ticks kSmoothing_lag = 300;
@@ -120,6 +122,7 @@ class Commutation {
   Order order(Ticks at);
 
   CommutationConfig config_;
+  float one_radps_;
   State state_ = State::stopped;
   std::uint8_t step_ = 0;
   Ticks sector_ = 0;  // expected length
