@@ -33,6 +33,11 @@ struct CommutationConfig {
   // Line-to-line back-EMF in counts times a sector's ticks: the same at every speed. 0.01005 V s over
   // a sixth of one of 7 turns, at 6.177 mV per count.
   std::uint32_t flux_count_ticks = 486'700;
+
+  constexpr float one_radps() const {  // mechanical, of a sector that takes one tick
+    constexpr float kSixth = 1.0471976f;
+    return kSixth * ticks_per_s / static_cast<float>(pole_pairs);
+  }
 };
 inline constexpr float kFlux_per_Kt = 486'700.0f / 0.01005f;
 
@@ -43,7 +48,7 @@ struct Pace {
   std::uint32_t four =
       0;  // the last four sectors, or the next one so far if a sector of them is shorter
   bool slowing = false;  // the last two took longer than the two before, by more than noise
-  // one_radps: of a sector that takes one tick, mechanical.
+  // one_radps: CommutationConfig::one_radps().
   static float radps(std::uint32_t ticks, float sectors, float one_radps) {
     return ticks == 0 ? 0.0f : sectors * one_radps / static_cast<float>(ticks);
   }
@@ -62,7 +67,7 @@ class Commutation {
 
   constexpr explicit Commutation(const CommutationConfig& config)
       : config_(config),
-        one_radps_(kSixth * config.ticks_per_s / static_cast<float>(config.pole_pairs)),
+        one_radps_(config.one_radps()),
         start_clear_counts_(config.start_clear_counts) {}
 
   void stop();
@@ -94,8 +99,7 @@ class Commutation {
   std::uint32_t bad_detections() const { return bad_detections_; }
 
  private:
-  static constexpr float kSixth = 1.0471976f;  // of a turn
-  static constexpr int kInARow = 6;            // crossings that make a start, or their lack a loss
+  static constexpr int kInARow = 6;  // crossings that make a start, or their lack a loss
   // While starting, samples pass a mean of the last few: its noise is 2.6 times less, and it comes 150 us late.
   static constexpr int kSmoothing = 4;
   static constexpr Ticks kSmoothing_lag = 300;
