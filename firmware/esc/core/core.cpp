@@ -35,7 +35,7 @@ Core::Core(const Calibration& calibration)
       supervisor_({.arming_voltage_V = calibration.arming_voltage_V}),
       estimator_(calibration, kPeriod_s),
       speed_control_(calibration.motor_within_limits(), calibration.free_air, SpeedGains{},
-                     kPeriod_s) {}
+                     kPeriod_s, calibration.identified) {}
 
 void Core::on_setpoint(std::uint16_t v) {
   command_given_ = false;
@@ -64,7 +64,7 @@ bool Core::recalibrate(const Calibration& calibration) {
   supervisor_.limit({.arming_voltage_V = calibration.arming_voltage_V});
   estimator_ = ThrustEstimator(calibration_, kPeriod_s);
   speed_control_ = SpeedController(calibration.motor_within_limits(), calibration.free_air,
-                                   SpeedGains{}, kPeriod_s);
+                                   SpeedGains{}, kPeriod_s, calibration.identified);
   return true;
 }
 

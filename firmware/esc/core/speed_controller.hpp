@@ -67,12 +67,14 @@ struct RotorSpeed {
 class SpeedController {
  public:
   SpeedController(const MotorConstants& motor, const StaticMap& free_air, const SpeedGains& gains,
-                  float period_s)
+                  float period_s, bool told)
       : motor_(motor),
         free_air_(free_air),
         gains_(gains),
         period_s_(period_s),
-        learning_per_V_(period_s / (kLearning_s * 400.0f * motor.Kt_NmpA)) {}
+        learning_per_V_(period_s / (kLearning_s * 400.0f * motor.Kt_NmpA)),
+        open_share_(told ? 0.0f : kOpen_share),
+        less_(open_share_) {}
 
   VoltageDemand update(float wanted_radps, const RotorSpeed& speed, float bus_V,
                        float share = 1.0f) {
@@ -99,7 +101,7 @@ class SpeedController {
   // Steady running that takes less voltage than believed tells of a smaller back-EMF. Without a division.
   void learn(float latest_less_V) {
     less_ += learning_per_V_ * (-integral_V_ - latest_less_V);
-    less_ = less_ < 0.0f ? 0.0f : less_ > kOpen_share ? kOpen_share : less_;
+    less_ = less_ < 0.0f ? 0.0f : less_ > open_share_ ? open_share_ : less_;
   }
 
   MotorConstants motor_;
@@ -107,8 +109,8 @@ class SpeedController {
   SpeedGains gains_;
   float period_s_, learning_per_V_;
   float integral_V_ = 0.0f;
-  float less_ =
-      kOpen_share;  // by which the back-EMF may be less, as a share; not forgotten at rest
+  float open_share_;  // nothing of a motor whose own constant has been told
+  float less_;        // by which the back-EMF may be less, as a share; not forgotten at rest
 };
 
 }  // namespace fw::esc
