@@ -57,6 +57,7 @@ fw::esc::Sensed NativeEsc::sense(std::int64_t now_ns, const plant::MotorState& m
   sensed.speed_radps = speed_.update(crossings_.radps(pace.revolution, 6), sensed.in_sync);
   sensed.slowing = pace.slowing;
   sensed.latest_radps = crossings_.radps(pace.sector, 1);
+  sensed.recent_radps = crossings_.radps(pace.four, 4);
   return sensed;
 }
 

@@ -63,7 +63,7 @@ fw::esc::Pace ZeroCrossings::pace() const {
 }
 
 float ZeroCrossings::radps(std::uint32_t ticks, unsigned sectors) const {
-  return fw::esc::Pace{}.radps(ticks, sectors, config_);
+  return fw::esc::Pace::radps(ticks, static_cast<float>(sectors), config_.one_radps());
 }
 
 }  // namespace whirl::flight

@@ -1,6 +1,7 @@
 -- Servo pulses on PA8: armed by low throttle, followed, off within 0.6 s of the last one; what is no pulse is not
 -- obeyed, and I2C goes first. Left out: a line that is spoiled in every period for longer than 0.5 s: the motor goes off.
--- Not held on every copy: on seed 2 the spikes of 950 us, a width that is valid, are taken for the pulses.
+-- Spikes of a valid width: the image looks once a millisecond, by its own crystal, so that each copy looks at other instants
+-- of a pulse. A train of 49.9 Hz, 40 us off from one pulse to the next, meets all of them in half a second.
 include "include/start.lua"
 
 local function pwm_plan(name, stand, run)
@@ -60,6 +61,7 @@ pwm_plan("pwm_glitches", { throttle = "pwm" }, function(t)
   ignored(t, "cut in two", { width = "1900 us", glitch = "50 us", glitch_after = "600 us" })
   ignored(t, "spikes of 100 us between", { width = "1500 us", glitch = "100 us", glitch_after = "9 ms" })
   ignored(t, "spikes of 950 us between", { width = "1500 us", glitch = "950 us", glitch_after = "9 ms" })
+  ignored(t, "spikes of 950 us, wherever it looks", { width = "1500 us", rate = "49.9 Hz", glitch = "950 us", glitch_after = "9 ms" }, "1 s")
   ignored(t, "far too fast", { width = "300 us", rate = "2000 Hz" })
   ignored(t, "too fast", { width = "1200 us", rate = "600 Hz" })
   ignored(t, "too slow", { width = "1900 us", rate = "30 Hz" })

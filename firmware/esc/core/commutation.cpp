@@ -278,7 +278,9 @@ Pace pace_of(const std::array<Ticks, 6>& sectors, std::uint8_t newest, std::uint
   const std::uint32_t two = last(1) + last(2), before = last(3) + last(4);
   pace.slowing = two * 64u > before * 65u || waited * 20u > two * 11u;
   pace.sector = two / 2u;
+  pace.four = two + before;
   if (waited > pace.sector) pace.sector = waited;
+  if (4u * waited > pace.four) pace.four = 4u * waited;
   return pace;
 }
 

@@ -33,6 +33,11 @@ struct CommutationConfig {
   // Line-to-line back-EMF in counts times a sector's ticks: the same at every speed. 0.01005 V s over
   // a sixth of one of 7 turns, at 6.177 mV per count.
   std::uint32_t flux_count_ticks = 486'700;
+
+  constexpr float one_radps() const {  // mechanical, of a sector that takes one tick
+    constexpr float kSixth = 1.0471976f;
+    return kSixth * ticks_per_s / static_cast<float>(pole_pairs);
+  }
 };
 inline constexpr float kFlux_per_Kt = 486'700.0f / 0.01005f;
 
@@ -40,12 +45,12 @@ inline constexpr float kFlux_per_Kt = 486'700.0f / 0.01005f;
 struct Pace {
   std::uint32_t revolution = 0;  // the last six sectors; 0: not running
   std::uint32_t sector = 0;  // mean of the last two, or of the next one so far if that is longer
-  bool slowing = false;      // the last two took longer than the two before, by more than noise
-  float radps(std::uint32_t ticks, unsigned sectors, const CommutationConfig& config) const {
-    constexpr float kSixth = 1.0471976f;
-    if (ticks == 0) return 0.0f;
-    return kSixth * static_cast<float>(sectors) * config.ticks_per_s /
-           (static_cast<float>(ticks) * static_cast<float>(config.pole_pairs));
+  std::uint32_t four =
+      0;  // the last four sectors, or the next one so far if a sector of them is shorter
+  bool slowing = false;  // the last two took longer than the two before, by more than noise
+  // one_radps: CommutationConfig::one_radps().
+  static float radps(std::uint32_t ticks, float sectors, float one_radps) {
+    return ticks == 0 ? 0.0f : sectors * one_radps / static_cast<float>(ticks);
   }
 };
 
@@ -61,7 +66,9 @@ class Commutation {
   };
 
   constexpr explicit Commutation(const CommutationConfig& config)
-      : config_(config), start_clear_counts_(config.start_clear_counts) {}
+      : config_(config),
+        one_radps_(config.one_radps()),
+        start_clear_counts_(config.start_clear_counts) {}
 
   void stop();
   void know(float Kt_NmpA) {
@@ -82,8 +89,9 @@ class Commutation {
   Pace pace();
   float speed_radps() {  // mechanical, of the last revolution (electrical); 0 unless running
     const Pace p = pace();
-    return p.radps(p.revolution, 6, config_);
+    return Pace::radps(p.revolution, 6.0f, one_radps_);
   }
+  float one_radps() const { return one_radps_; }  // of a sector that takes one tick
   // Pace::slowing as of the last crossing, for those who come by more often.
   bool braked() const { return braked_; }
   const CommutationConfig& config() const { return config_; }
@@ -118,6 +126,7 @@ class Commutation {
   Order order(Ticks at);
 
   CommutationConfig config_;
+  float one_radps_;
   State state_ = State::stopped;
   std::uint8_t step_ = 0;
   Ticks sector_ = 0;  // expected length

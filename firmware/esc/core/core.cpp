@@ -35,7 +35,7 @@ Core::Core(const Calibration& calibration)
       supervisor_({.arming_voltage_V = calibration.arming_voltage_V}),
       estimator_(calibration, kPeriod_s),
       speed_control_(calibration.motor_within_limits(), calibration.free_air, SpeedGains{},
-                     kPeriod_s) {}
+                     kPeriod_s, calibration.identified) {}
 
 void Core::on_setpoint(std::uint16_t v) {
   command_given_ = false;
@@ -64,7 +64,7 @@ bool Core::recalibrate(const Calibration& calibration) {
   supervisor_.limit({.arming_voltage_V = calibration.arming_voltage_V});
   estimator_ = ThrustEstimator(calibration_, kPeriod_s);
   speed_control_ = SpeedController(calibration.motor_within_limits(), calibration.free_air,
-                                   SpeedGains{}, kPeriod_s);
+                                   SpeedGains{}, kPeriod_s, calibration.identified);
   return true;
 }
 
@@ -159,12 +159,14 @@ Drive Core::regulate(float value) {
     demand = within_current_limits(calibration_.motor_within_limits(), value * bus_V, latest_radps,
                                    bus_V, share);
     // At little duty the current has gaps and the rotor would slow down until nothing is sensed.
-    const float held_V = speed_control_.update(kHeld_radps, latest_radps, bus_V, share).voltage_V;
+    const float held_V =
+        speed_control_.update(kHeld_radps, {latest_radps, latest_radps}, bus_V, share).voltage_V;
     if (demand.voltage_V < held_V) demand = {held_V, true};
   } else {
     wanted_radps_ = solved_radps_ = speed_for(value);
     if (wanted_radps_ < kSlowest_radps) wanted_radps_ = kSlowest_radps;
-    demand = speed_control_.update(wanted_radps_, latest_radps, bus_V, share);
+    const float recent_radps = sensed_.recent_radps >= 0.0f ? sensed_.recent_radps : latest_radps;
+    demand = speed_control_.update(wanted_radps_, {recent_radps, latest_radps}, bus_V, share);
   }
   if (demand.voltage_V < kLeast_V) demand = {kLeast_V, true};
   saturated_ = demand.saturated;

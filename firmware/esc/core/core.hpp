@@ -24,6 +24,9 @@ struct Sensed {
   bool in_sync = false;        // commutation follows the rotor
   bool slowing = false;        // from one crossing to the next, by more than noise
   float latest_radps = -1.0f;  // speed without lag and rather too low, for limits; < 0: not known
+  // Of all crossings since the last period, so that what one comes late by is taken off again by the next: for
+  // control. < 0: as the latest.
+  float recent_radps = -1.0f;
 };
 
 struct Drive {

@@ -6,7 +6,7 @@ void SpeedFilter::update(float torque_Nm, float speed_radps) {
   const float drag_Nm = free_air_.CP(speed_radps_) * speed_radps_ * speed_radps_;
   const float innovation = speed_radps - speed_radps_;
   offset_radps2_ += gains_.ki * period_s_ * innovation;
-  acceleration_radps2_ = (torque_Nm - drag_Nm) / motor_.inertia_kgm2 + offset_radps2_;
+  acceleration_radps2_ = (torque_Nm - drag_Nm) * per_inertia_ + offset_radps2_;
   speed_radps_ += period_s_ * (acceleration_radps2_ + gains_.kp * innovation);
 }
 

@@ -34,7 +34,10 @@ class SpeedFilter {
  public:
   SpeedFilter(const MotorConstants& motor, const StaticMap& free_air, float period_s,
               Innovation gains)
-      : motor_(motor), free_air_(free_air), period_s_(period_s), gains_(gains) {}
+      : free_air_(free_air),
+        per_inertia_(1.0f / motor.inertia_kgm2),
+        period_s_(period_s),
+        gains_(gains) {}
   // torque_Nm: of the motor on the shaft, losses taken off; speed: measured.
   void update(float torque_Nm, float speed_radps);
   float speed_radps() const { return speed_radps_; }
@@ -42,9 +45,8 @@ class SpeedFilter {
   void restart(float speed_radps);
 
  private:
-  MotorConstants motor_;
   StaticMap free_air_;
-  float period_s_;
+  float per_inertia_, period_s_;
   Innovation gains_;
   float speed_radps_ = 0.0f;
   float acceleration_radps2_ = 0.0f;

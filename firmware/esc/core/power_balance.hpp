@@ -32,9 +32,8 @@ inline float freed_by_bus_V(const LossMap& map, float freewheel_V, float voltage
 // half its ripple; the losses are others then.
 inline bool has_gaps(const MotorConstants& motor, float bus_V, float duty, float current_A) {
   constexpr float kPwm_Hz = 20e3f;
-  constexpr float kMargin = 1.1f;
-  const float ripple_A = bus_V * duty * (1.0f - duty) / (motor.inductance_H * kPwm_Hz);
-  return current_A < kMargin * 0.5f * ripple_A;
+  const float ripple_V = bus_V * duty * (1.0f - duty);  // over L f it is a current
+  return current_A * (motor.inductance_H * kPwm_Hz) < 0.5f * ripple_V;
 }
 
 // What one ampere more would add to it; over the duty, one of the bus: how far an offset of the shunt

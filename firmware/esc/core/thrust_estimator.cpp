@@ -9,8 +9,13 @@ constexpr float kElectrical_s = 0.003f;                          // of bus curre
 constexpr Innovation kSpeedGains{.kp = 300.0f, .ki = 22500.0f};  // two poles at 150 rad/s
 constexpr float kSmoothing_s = 0.05f;                            // of CP, at constant speed
 constexpr float kCalming_s = 0.025f;                             // after a step
+constexpr float kCalm = 1e-3f;  // of unrest: the inertial torque is 3 % of the air's
 // How long a told inflow outlasts gaps: a rotor that coasts has them.
 constexpr float kHeld_s = 0.25f;
+// No wind takes more power than still air. What seems to is an error of the balance, a bearing colder than at the
+// calibration: taken off the torque, for as long as a motor takes to warm up by a good part.
+constexpr float kExcess_s = 0.3f, kExcess_lasts_s = 20.0f;
+constexpr float kExcess_share = 0.05f;     // of still air's torque, at most: more is no bearing
 constexpr float kMinSpeed_radps = 150.0f;  // below, w^3 makes noise of everything
 
 constexpr float kUsual_change =
@@ -31,7 +36,9 @@ ThrustEstimator::ThrustEstimator(const Calibration& calibration, float period_s)
       period_s_(period_s),
       blend_(period_s / (kSmoothing_s + period_s)),
       calming_(period_s / kCalming_s),
-      per_middle_(2.0f / (calibration.power.from_radps + calibration.power.to_radps)),
+      still_effect_(1.0f - calibration.power.speed_effect),
+      effect_slope_s_(2.0f * calibration.power.speed_effect /
+                      (calibration.power.from_radps + calibration.power.to_radps)),
       expected_ratio_(expected(calibration)),
       bus_A_(kElectrical_s, period_s),
       duty_(kElectrical_s, period_s),
@@ -48,7 +55,7 @@ void ThrustEstimator::restart(float speed_radps) {
   speed_.restart(speed_radps);
   solver_.restart();
   last_ = {};
-  power_W_ = thrust_N_ = CP_ = CT_ = 0.0f;
+  power_W_ = thrust_N_ = CP_ = CT_ = excess_Nm_ = 0.0f;
   power_ratio_ = thrust_ratio_ = 1.0f;
 }
 
@@ -75,12 +82,12 @@ void ThrustEstimator::update(float bus_V, float duty, float bus_A, float speed_r
   const float shaft_Nm = shaft_W / w;
   speed_.update(shaft_Nm, w);
   const float acceleration_Nm = calibration_.motor.inertia_kgm2 * speed_.acceleration_radps2();
-  const float torque_Nm = shaft_Nm - acceleration_Nm;
+  const float torque_Nm = shaft_Nm - acceleration_Nm - excess_Nm_;
   power_W_ = torque_Nm * w;
   const bool gaps = has_gaps(calibration_.motor, bus_V, duty_.value(), current_A_);
   gapless_s_ = gaps ? 0.0f : gapless_s_ + period_s_;
   blind_s_ = gapless_s_ < kSmoothing_s ? blind_s_ + period_s_ : 0.0f;
-  const float still_CP = calibration_.free_air.CP(w);
+  const float still_CP = calibration_.free_air.CP(w), still_Nm = still_CP * w * w;
   // While the rotor accelerates, and a little after, the inertial term's error dominates.
   const float share = acceleration_Nm / torque_Nm;
   const float unrest = share * share < 1.0f ? share * share : 1.0f;
@@ -88,7 +95,7 @@ void ThrustEstimator::update(float bus_V, float duty, float bus_A, float speed_r
   if (unrest > unrest_) unrest_ = unrest;
   // What was told before the gaps is carried on, and nothing mixed in.
   if (!(gaps && observable())) {
-    const float per_still_W = 1.0f / (still_CP * w * w * w);
+    const float per_still_W = 1.0f / (still_Nm * w);
     watts_per_ampere_ =
         per_duty * power_per_ampere_W(calibration_.losses, voltage_V, current_A_, w);
     power_error_ = offset_A * watts_per_ampere_ * per_still_W;
@@ -97,8 +104,10 @@ void ThrustEstimator::update(float bus_V, float duty, float bus_A, float speed_r
                         ? blend_ * trust * (power_W_ * per_still_W - power_ratio_)
                         : blend_ * (1.0f - power_ratio_);
   }
+  if (calibration_.identified && !gaps && calibration_.power.holds(w)) note_excess(still_Nm);
   CP_ = power_ratio_ * still_CP;
   last_ = conclude();
+  swing_ = -last_.slope * last_.ls * per_still_CP_;
   confidence_ = confidence();
   const float found = expected_ratio_ + confidence_ * (last_.CT * per_still_CT_ - expected_ratio_);
   thrust_ratio_ += blend_ * (found - thrust_ratio_);
@@ -106,14 +115,24 @@ void ThrustEstimator::update(float bus_V, float duty, float bus_A, float speed_r
   thrust_N_ = CT_ * w * w;
 }
 
+void ThrustEstimator::note_excess(float still_Nm) {
+  const float more_Nm = (power_ratio_ - 1.0f) * still_Nm;
+  if (more_Nm < 0.0f) {
+    excess_Nm_ -= period_s_ / kExcess_lasts_s * excess_Nm_;
+  } else if (unrest_ < kCalm && excess_Nm_ < kExcess_share * still_Nm) {
+    excess_Nm_ += period_s_ / kExcess_s * more_Nm;
+  }
+}
+
 // After a speed step the wind (m/s) is unchanged, so inflow ratio = wind / (w R) shrinks. Rescale both
 // ratios now instead of waiting for the filter.
 void ThrustEstimator::carry_to(float w) {
+  effect_ = still_effect_ + effect_slope_s_ * w;
   if (observable()) {
-    const float less = last_.slope * last_.ls * (1.0f - speed_radps_ / w) * per_still_CP_;
-    const float taken = (1.0f - power_ratio_) * effect_at(speed_radps_);
-    thrust_ratio_ *= 1.0f - confidence_ * last_.leverage * less / (1.0f - taken);
-    power_ratio_ = 1.0f - (taken + less) / effect_at(w);
+    const float less = swing_ * (1.0f - speed_radps_ / w);
+    thrust_ratio_ *= 1.0f + confidence_ * last_.leverage * less / (1.0f - taken_);
+    taken_ -= less;
+    power_ratio_ = 1.0f - taken_ / effect_;
   }
   speed_radps_ = w;
 }
@@ -122,19 +141,24 @@ ThrustEstimate ThrustEstimator::conclude() {
   ThrustEstimate nothing;
   if (!calibration_.identified || !still_.real) return nothing;
   nothing.status = Estimate::not_observable;
+  taken_ = (1.0f - power_ratio_) * effect_;
   const float highest = calibration_.shared_power < 1.0f ? calibration_.shared_power : 1.0f;
   const float sigmas_needed = observable() ? 1.0f : 2.0f;  // hysteresis
-  if (power_ratio_ >= highest - sigmas_needed * power_error_) return nothing;
+  const float limit = highest - sigmas_needed * power_error_;
+  if (power_ratio_ >= limit && !(observable() && outlasts(limit))) return nothing;
   // The smoothed ratio still holds what gaps made of it, unless an inflow was told before them.
   const bool told_before = observable() && blind_s_ < kHeld_s;
   if (gapless_s_ < kSmoothing_s && !told_before) return nothing;
   if (!calibration_.power.holds(speed_radps_)) return nothing;
-  const float taken = (1.0f - power_ratio_) * effect_at(speed_radps_);
-  return solver_.solve((1.0f - taken) * still_.CP);
+  return solver_.solve((1.0f - taken_) * still_.CP);
 }
 
-float ThrustEstimator::effect_at(float w) const {
-  return 1.0f + calibration_.power.speed_effect * (w * per_middle_ - 1.0f);
+// What was told has made the rotor faster, and of a faster one the same wind takes a smaller share: at still air's
+// speed, slower by the thrust ratio's root (to its square), it would be told.
+bool ThrustEstimator::outlasts(float limit) const {
+  const float less = 1.0f - thrust_ratio_;
+  const float taken = taken_ + swing_ * less * (0.5f + 0.375f * less);
+  return taken > (1.0f - limit) * (effect_ - 0.5f * less * effect_slope_s_ * speed_radps_);
 }
 
 // Weight of what power says against what is expected, by inverse variances.

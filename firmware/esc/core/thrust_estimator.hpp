@@ -36,14 +36,16 @@ class ThrustEstimator {
 
  private:
   void carry_to(float speed_radps);
+  void note_excess(float still_Nm);
+  bool outlasts(float limit) const;
   ThrustEstimate conclude();
   float confidence() const;
-  float effect_at(float speed_radps) const;  // PowerRange::speed_effect
 
   Calibration calibration_;
   float period_s_;
-  float blend_, calming_, per_middle_;
-  float expected_ratio_;  // of thrust, where power tells nothing
+  float blend_, calming_;
+  float still_effect_, effect_slope_s_;  // PowerRange::speed_effect, over speed
+  float expected_ratio_;                 // of thrust, where power tells nothing
   LowPass bus_A_, duty_;
   SpeedFilter speed_;
   ThrustSolver solver_;
@@ -62,6 +64,11 @@ class ThrustEstimator {
   float gapless_s_ = 0.0f;  // how long the winding current has had none
   float blind_s_ = 0.0f;    // how long power has told nothing for gaps, and for the smoothing after
   float power_ratio_ = 1.0f;
+  float effect_ = 1.0f;  // PowerRange::speed_effect at this speed
+  float taken_ = 0.0f;   // of still air's power, the share that the model's inflow takes
+  float swing_ =
+      0.0f;  // how much of it the told wind does not take of a faster rotor, per relative speed
+  float excess_Nm_ = 0.0f;  // by which the balance has found more than any air takes
   float thrust_ratio_ = 1.0f;
   float thrust_N_ = 0.0f;
 };

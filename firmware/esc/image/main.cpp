@@ -66,7 +66,7 @@ void take_setpoints() {
   std::uint16_t v = 0;
   if (i2c_slave::take_setpoint(v)) follow(Source::i2c, v);
   if (can_node::take_setpoint(core->mode(), v)) follow(Source::can, v);
-  pulse_input::Pulse pulse;
+  Pulse pulse;
   if (pulse_input::read(pulse) && pulses.read(pulse.width_us, pulse.period_us, v)) {
     follow(Source::pulses, v);
   }

@@ -196,15 +196,16 @@ Sensed MotorDrive::sense() {
     guard_.tick();
     pace = commutation_.pace();
   }
-  const CommutationConfig& config = commutation_.config();
-  const float revolution_radps = pace.radps(pace.revolution, 6, config);
+  const float one_radps = commutation_.one_radps();
+  const float revolution_radps = Pace::radps(pace.revolution, 6.0f, one_radps);
   const float per_sample = n > 0 ? 1.0f / static_cast<float>(n) : 0.0f;
   return {.bus_voltage_V = static_cast<float>(bus) * per_sample * kVolts_per_count,
           .bus_current_A = static_cast<float>(shunt) * per_sample * kAmperes_per_count,
           .speed_radps = speed_.update(revolution_radps, pace.revolution > 0),
           .in_sync = pace.revolution > 0,
           .slowing = pace.slowing,
-          .latest_radps = pace.radps(pace.sector, 1, config)};
+          .latest_radps = Pace::radps(pace.sector, 1.0f, one_radps),
+          .recent_radps = Pace::radps(pace.four, 4.0f, one_radps)};
 }
 
 bool MotorDrive::tripped() {

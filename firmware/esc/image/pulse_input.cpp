@@ -6,6 +6,12 @@ namespace fw::esc::pulse_input {
 
 using namespace f103;
 
+namespace {
+
+constinit PulseEdges edges;
+
+}  // namespace
+
 void start() {
   RCC::APB2ENR::set(RCC::TIM1EN);
   GPIOA::BSRR::write(bit(8 + 16));
@@ -23,12 +29,18 @@ void start() {
 
 bool read(Pulse& pulse) {
   const std::uint32_t sr = TIM1::SR::read();
-  if ((sr & TIM1::CC1IF) == 0) return false;
-  pulse.width_us = TIM1::CCR2::read();
-  pulse.period_us = TIM1::CCR1::read();  // clears CC1IF
-  TIM1::SR::write(~(TIM1::UIF | TIM1::CC1OF));
-  if ((sr & TIM1::CC1OF) != 0) pulse.period_us = 0;
-  return (sr & TIM1::UIF) == 0;  // else the counter has gone round: the period is not what it says
+  const auto number = [sr](std::uint32_t once, std::uint32_t again) {
+    return (sr & once) == 0 ? 0u : (sr & again) == 0 ? 1u : 2u;
+  };
+  Captured seen{.rises = number(TIM1::CC1IF, TIM1::CC1OF),
+                .falls = number(TIM1::CC2IF, TIM1::CC2OF)};
+  if (seen.falls > 0) seen.width_us = TIM1::CCR2::read();  // clears CC2IF
+  if (seen.rises > 0) seen.period_us = TIM1::CCR1::read();
+  const bool ended = edges.look(seen, pulse);
+  // Only of the flags that have been seen: an edge may come in here.
+  TIM1::SR::write(~(sr & (TIM1::CC1OF | TIM1::CC2OF | (ended ? TIM1::UIF : 0u))));
+  return ended &&
+         (sr & TIM1::UIF) == 0;  // else the counter has gone round: the period is not what it says
 }
 
 }  // namespace fw::esc::pulse_input

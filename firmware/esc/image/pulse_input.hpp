@@ -2,16 +2,12 @@
 //
 //   Timing   1 MHz; edges shorter than 14 us do not pass the filter; no interrupt
 #pragma once
-#include <cstdint>
+#include "firmware/esc/core/pulse_edges.hpp"
 
 namespace fw::esc::pulse_input {
 
-struct Pulse {
-  std::uint32_t width_us = 0, period_us = 0;
-};
-
 void start();
-// What ended at a rising edge since the last call. Two of them in a millisecond: a period of 0.
+// What ended at a rising edge since the last call, once a millisecond. Not a whole pulse: a period of 0.
 bool read(Pulse& pulse);
 
 }  // namespace fw::esc::pulse_input

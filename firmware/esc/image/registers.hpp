@@ -106,8 +106,8 @@ struct Timer {
                                  OC4PE = bit(11);
   static constexpr std::uint32_t CC1E = bit(0), CC2E = bit(4), CC3E = bit(8), CC4E = bit(12);
   // PWM input: both captures look at TI1, channel 2 at its falling edge.
-  static constexpr std::uint32_t UIF = bit(0), CC1OF = bit(9), URS = bit(2), CKD_DIV4 = 2u << 8,
-                                 CC2P = bit(5);
+  static constexpr std::uint32_t UIF = bit(0), CC2IF = bit(2), CC1OF = bit(9), CC2OF = bit(10),
+                                 URS = bit(2), CKD_DIV4 = 2u << 8, CC2P = bit(5);
   static constexpr std::uint32_t CC1S_TI1 = 1u, CC2S_TI1 = 2u << 8, IC1F_LONGEST = 15u << 4,
                                  IC2F_LONGEST = 15u << 12;
   static constexpr std::uint32_t TS_TI1FP1 = 5u << 4, SMS_RESET = 4u;

@@ -242,5 +242,14 @@ TEST(Commutation, PhaseAtARailIsNoCrossing) {
   }
 }
 
+// Of four sectors one that came late and the next, by so much shorter, are no change of speed.
+TEST(Pace, ACrossingThatComesLateIsTakenOffByTheNext) {
+  const Pace even = pace_of({600, 600, 600, 600, 600, 600}, 0, 0);
+  const Pace late = pace_of({600, 600, 600, 630, 570, 600}, 0, 0);
+  EXPECT_EQ(late.four, even.four);
+  EXPECT_NE(late.sector, even.sector);
+  EXPECT_EQ(pace_of({600, 600, 600, 600, 600, 600}, 0, 900).four, 3600u) << "a rotor that is held";
+}
+
 }  // namespace
 }  // namespace fw::esc

@@ -1,11 +1,10 @@
 // Modes 4 and 5 in closed loop with a rotor in moving air, the shunt's noise and a sagging supply.
 #include <algorithm>
 #include <cmath>
-#include <random>
 #include <vector>
 
 #include "base/near.hpp"
-#include "firmware/esc/core/core.hpp"
+#include "firmware/esc/tests/air_bench.hpp"
 
 namespace fw::esc {
 namespace {
@@ -13,99 +12,10 @@ namespace {
 using whirl::near;
 using whirl::stated;
 
-// The rotor of [Bangura 2017, table 5.3] with the c4 that closes its hover: at 490 rad/s and 4.2 m/s
-// thrust falls by a sixth and power by a tenth; power rises in an updraft.
-constexpr ThrustModel kRotor{.c0 = 0.0724f,
-                             .c1 = 6.149e-5f,
-                             .c2 = 0.2993f,
-                             .c3 = 1.2998e-8f,
-                             .c4 = 1.54e-3f,
-                             .d0 = 4.2959f,
-                             .d1 = -1.7154e5f};
-constexpr float kRadius_m = 0.127f;
-
-Calibration calibrated(Mode mode) {
-  Calibration c;
-  c.mode = mode;
-  c.motor.inductance_H = 1e-4f;
-  c.motor.overlap_ohm_s = 0.0f;  // the bench has no commutation
-  c.losses = {.loss_ohm = 0.16f, .loss_V = 0.0f, .drag_Nm = 0.01005f};
-  c.rotor = kRotor;
-  c.free_air = {.a2 = at_inflow(kRotor, 0.0f).CT, .a1 = 0.0f, .q2 = at_inflow(kRotor, 0.0f).CP};
-  c.identified = true;
-  c.sense.warm_up_A = 0.0f;
-  c.shared_power = 1.0f;  // this rotor's power rises in an updraft
-  return c;
-}
-
-class Bench {
- public:
-  explicit Bench(Mode mode) : core(calibrated(mode)) {}
-  explicit Bench(const Calibration& calibration) : core(calibration) {}
-
-  // Set-points as the bus sends them: one every 20 ms.
-  void hold(double value, int ms) {
-    const Range range = range_of(core.mode());
-    const auto v = static_cast<std::uint16_t>(
-        std::lround(1.0 + 2046.0 * (value - range.min) / (range.max - range.min)));
-    for (int i = 0; i < ms; ++i) {
-      if (i % 20 == 0) core.on_setpoint(value > 0.0 ? v : std::uint16_t{0});
-      const Drive drive = core.tick(sensed());
-      for (int k = 0; k < 50; ++k) step(drive, 2e-5);
-      thrust_log.push_back(thrust_N());
-      peak_A = std::max(peak_A, current_A);
-    }
-  }
-  void start(double value) {
-    hold(0.0, 600);
-    hold(value, 2000);
-  }
-  double mean_thrust_N(int ms) const {
-    double sum = 0.0;
-    for (std::size_t i = thrust_log.size() - static_cast<std::size_t>(ms); i < thrust_log.size();
-         ++i) {
-      sum += thrust_log[i];
-    }
-    return sum / ms;
-  }
-  RotorPoint point() const {
-    return at_inflow(kRotor, static_cast<float>(down_mps / (std::max(speed, 50.0) * kRadius_m)));
-  }
-  double thrust_N() const { return point().CT * speed * speed; }
-  double power_W() const { return point().CP * speed * speed * speed; }
-
-  Core core;
-  double speed = 0.0, current_A = 0.0, peak_A = 0.0, down_mps = 0.0, bus_V = 16.4;
-  double shunt_noise_A = 0.0, shunt_offset_A = 0.0;
-  std::vector<double> thrust_log;
-
- private:
-  Sensed sensed() {
-    return {.bus_voltage_V = static_cast<float>(bus_V),
-            .bus_current_A =
-                static_cast<float>(bus_A_ + shunt_offset_A + shunt_noise_A * normal_(random_)),
-            .speed_radps = static_cast<float>(speed),
-            .in_sync = speed > 100.0};
-  }
-  void step(const Drive& drive, double dt) {
-    const double applied_V = drive.duty * bus_V;
-    current_A += dt / 1e-4 * (applied_V - 0.01005 * speed - 0.16 * current_A);
-    if (!drive.energised || current_A < 0.0) current_A = 0.0;  // diodes let nothing flow back
-    bus_A_ = drive.duty * current_A;
-    const double friction_Nm = speed > 1.0 ? 0.01005 : 0.0;
-    speed += dt / 3.752e-5 * (0.01005 * current_A - friction_Nm - point().CP * speed * speed);
-    speed = std::max(speed, 0.0);
-  }
-
-  double bus_A_ = 0.0;
-  std::mt19937 random_{1};
-  std::normal_distribution<double> normal_;
-};
-
 TEST(ThrustByPower, HoldsThrustInADowndraftThatTheRpmControllerGivesWayTo) {
   for (double down : {0.8, 2.2, 4.2}) {
-    Bench by_rpm(Mode::thrust_by_speed), by_power(Mode::thrust_by_power);
-    for (Bench* bench : {&by_rpm, &by_power}) {
+    AirBench by_rpm(Mode::thrust_by_speed), by_power(Mode::thrust_by_power);
+    for (AirBench* bench : {&by_rpm, &by_power}) {
       bench->start(3.2);
       bench->down_mps = down;
       bench->hold(3.2, 1500);
@@ -120,8 +30,8 @@ TEST(ThrustByPower, HoldsThrustInADowndraftThatTheRpmControllerGivesWayTo) {
 }
 
 TEST(ThrustByPower, AnUpdraftLeavesItWithTheStaticMapAndItSaysSo) {
-  Bench by_rpm(Mode::thrust_by_speed), by_power(Mode::thrust_by_power);
-  for (Bench* bench : {&by_rpm, &by_power}) {
+  AirBench by_rpm(Mode::thrust_by_speed), by_power(Mode::thrust_by_power);
+  for (AirBench* bench : {&by_rpm, &by_power}) {
     bench->start(3.2);
     bench->down_mps = -2.0;
     bench->hold(3.2, 1500);
@@ -136,7 +46,7 @@ TEST(ThrustByPower, WithAirFromAboveOnlyItErrsLittleWherePowerTellsNothing) {
   Calibration one_sided = calibrated(Mode::thrust_by_power);
   one_sided.shared_power = 2.0f;
   one_sided.free_air.q2 *= 0.98f;  // so that still air reads as more power than there is
-  Bench bench(one_sided);
+  AirBench bench(one_sided);
   bench.start(3.2);
   EXPECT_FALSE(bench.core.estimator().observable());
   EXPECT_TRUE(near(bench.mean_thrust_N(500), 3.2 * 1.017, stated(0.01, "set-point step")));
@@ -146,7 +56,7 @@ TEST(ThrustByPower, BeyondItsCalibratedSpeedsItIsTheStaticMap) {
   const auto lost_N = [](const PowerRange& range, bool& observable) {
     Calibration c = calibrated(Mode::thrust_by_power);
     c.power = range;
-    Bench bench(c);
+    AirBench bench(c);
     bench.start(3.2);
     bench.down_mps = 4.2;
     bench.hold(3.2, 1500);
@@ -169,7 +79,7 @@ TEST(ThrustByPower, WaitsForTheShuntToSettle) {
   Calibration cold = calibrated(Mode::thrust_by_power);
   cold.sense.warm_up_A = 0.4f;
   for (const bool settled : {false, true}) {
-    Bench bench(cold);
+    AirBench bench(cold);
     bench.hold(0.0, settled ? 120'000 : 600);
     bench.start(3.2);
     bench.down_mps = 1.2;
@@ -183,8 +93,8 @@ TEST(ThrustByPower, WaitsForTheShuntToSettle) {
 TEST(ThrustByPower, FollowsTheSpeedsEffectOnWhatInflowTakes) {
   Calibration told = calibrated(Mode::thrust_by_power);
   told.power = {.from_radps = 300.0f, .to_radps = 500.0f, .speed_effect = -1.0f};
-  Bench with(told), without(calibrated(Mode::thrust_by_power));
-  for (Bench* bench : {&with, &without}) {
+  AirBench with(told), without(calibrated(Mode::thrust_by_power));
+  for (AirBench* bench : {&with, &without}) {
     bench->start(3.2);
     bench->down_mps = 4.2;
     bench->hold(3.2, 1500);
@@ -194,7 +104,7 @@ TEST(ThrustByPower, FollowsTheSpeedsEffectOnWhatInflowTakes) {
 }
 
 TEST(ThrustByPower, WithoutACalibrationItIsTheStaticMap) {
-  Bench bench(Mode::thrust_by_power);
+  AirBench bench(Mode::thrust_by_power);
   Calibration bare = calibrated(Mode::thrust_by_power);
   bare.rotor = {};
   bare.identified = false;
@@ -207,7 +117,7 @@ TEST(ThrustByPower, WithoutACalibrationItIsTheStaticMap) {
 // Told that an updraft may share this power, it concludes nothing from it.
 TEST(ThrustByPower, ConcludesNothingFromPowerThatAnUpdraftMayShare) {
   for (double down : {2.2, 4.2}) {
-    Bench bench(Mode::thrust_by_power);
+    AirBench bench(Mode::thrust_by_power);
     Calibration cautious = calibrated(Mode::thrust_by_power);
     cautious.shared_power = 0.94f;
     bench.hold(0.0, 10);
@@ -221,27 +131,9 @@ TEST(ThrustByPower, ConcludesNothingFromPowerThatAnUpdraftMayShare) {
   }
 }
 
-TEST(ThrustByPower, DoesNotWaverWhereItJustBeginsToTell) {
-  Calibration cautious = calibrated(Mode::thrust_by_power);
-  cautious.shared_power = 0.96f;
-  Bench bench(cautious);
-  bench.start(3.2);
-  const auto turns = [&](bool wanted, double step_mps) {
-    for (int i = 0; i < 200 && bench.core.estimator().observable() != wanted; ++i) {
-      bench.down_mps += step_mps;
-      bench.hold(3.2, 300);
-    }
-    return bench.down_mps;
-  };
-  const double on_mps = turns(true, 0.05), off_mps = turns(false, -0.05);
-  EXPECT_GT(on_mps, 1.0);
-  EXPECT_GT(off_mps, 1.0);
-  EXPECT_LT(off_mps, on_mps - 0.1);
-}
-
 TEST(ThrustByPower, RisesAsTheRpmControllerDoesOnAnySupply) {
   for (double volts : {14.0, 15.7, 16.8}) {
-    Bench bench(Mode::thrust_by_power);
+    AirBench bench(Mode::thrust_by_power);
     bench.shunt_noise_A = 0.01;
     bench.start(2.0);
     bench.bus_V = volts;
@@ -267,7 +159,7 @@ TEST(ThrustByPower, RisesAsTheRpmControllerDoesOnAnySupply) {
 // The wind stays while the rotor gains a fifth in speed: what it takes changes at once, not with the
 // smoothing of power.
 TEST(ThrustByPower, RisesInADowndraftAsInStillAir) {
-  Bench bench(Mode::thrust_by_power);
+  AirBench bench(Mode::thrust_by_power);
   bench.down_mps = 3.5;
   bench.start(2.0);
   ASSERT_TRUE(bench.core.estimator().observable());
@@ -283,7 +175,7 @@ TEST(ThrustByPower, RisesInADowndraftAsInStillAir) {
 
 // A falling rotor coasts and its current has gaps, but the wind has not gone meanwhile.
 TEST(ThrustByPower, FallsInADowndraftAsInStillAir) {
-  Bench bench(Mode::thrust_by_power);
+  AirBench bench(Mode::thrust_by_power);
   bench.down_mps = 3.5;
   bench.start(3.2);
   ASSERT_TRUE(bench.core.estimator().observable());
@@ -320,7 +212,7 @@ TEST(ThrustEstimator, MixesNothingOfGapsIntoWhatWasTold) {
 TEST(ThrustByPower, GivesUpAToldInflowWhereGapsLast) {
   Calibration rippling = calibrated(Mode::thrust_by_power);
   rippling.motor.inductance_H = 30e-6f;  // 1.1 N has gaps, 3.2 N has none
-  Bench bench(rippling);
+  AirBench bench(rippling);
   bench.down_mps = 3.5;
   bench.start(3.2);
   ASSERT_TRUE(bench.core.estimator().observable());
@@ -331,7 +223,7 @@ TEST(ThrustByPower, GivesUpAToldInflowWhereGapsLast) {
 }
 
 TEST(ThrustByPower, StaysQuietUnderTheNoiseOfTheShunt) {
-  Bench bench(Mode::thrust_by_power);
+  AirBench bench(Mode::thrust_by_power);
   bench.shunt_noise_A = 0.01;  // of a millisecond's mean
   bench.down_mps = 3.0;
   bench.start(3.2);
@@ -346,9 +238,9 @@ TEST(ThrustByPower, StaysQuietUnderTheNoiseOfTheShunt) {
 
 // The sensitivity that is told is the one that an offset really has.
 TEST(ThrustByPower, KnowsWhatAnAmpereTooMuchDoesToIt) {
-  Bench right(Mode::thrust_by_power), wrong(Mode::thrust_by_power);
+  AirBench right(Mode::thrust_by_power), wrong(Mode::thrust_by_power);
   wrong.shunt_offset_A = 0.01;
-  for (Bench* bench : {&right, &wrong}) {
+  for (AirBench* bench : {&right, &wrong}) {
     bench->down_mps = 3.0;
     bench->start(3.2);
     bench->hold(3.2, 1000);
@@ -362,7 +254,7 @@ TEST(ThrustByPower, KnowsWhatAnAmpereTooMuchDoesToIt) {
 
 TEST(Power, HoldsTheAerodynamicPowerInMovingAir) {
   for (double down : {0.0, 4.0}) {
-    Bench bench(Mode::power);
+    AirBench bench(Mode::power);
     bench.start(18.0);
     bench.down_mps = down;
     bench.hold(18.0, 2000);
