@@ -1,5 +1,8 @@
 #include "io_bridges/rack/devices/pod_host_link.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "io_bridges/protocols/dronecan/imu_samples.hpp"
 #include "io_bridges/protocols/dronecan/pod.hpp"
 
@@ -18,7 +21,10 @@ std::vector<DeviceKey> pod_link_keys() {
   return {uart.with(1.0), can.with(0.0),
           word_key("params.sample", "counts or imu14 or imu16",
                    "how a sample is told; the last two over CAN only")
-              .with(std::string("counts"))};
+              .with(std::string("counts")),
+          quantity_key("params.jitter", Dimension::time, "s", {0.0, 0.005},
+                       "a sample leaves up to so much late, at random, in its turn")
+              .with(0.0)};
 }
 
 PodFigures figures_of(const io::PodStatus& status) {
@@ -41,6 +47,9 @@ PodHostLink::PodHostLink(DeviceSlot& slot, io::PodLinkReader& reader)
       happened_(slot.rack().happened()),
       reader_(reader),
       uart_(slot.whole("params.uart")),
+      jitter_ns_(std::llround(slot.quantity("params.jitter") * 1e9)),
+      chance_(slot.rack().seed(), slot.name() + ".jitter"),
+      leaves_(queue_, [this] { send_held(); }),
       line_(queue_, {.baud = io::kPodBaud},
             [this](const io::UartByte& byte, const io::UartFormat& format) {
               UartPeer::send(byte, format);
@@ -52,8 +61,8 @@ PodHostLink::PodHostLink(DeviceSlot& slot, io::PodLinkReader& reader)
     return;
   }
   const std::string sample = slot.text("params.sample");
-  if (sample == "imu14") sample_ = Sample::imu14;
-  if (sample == "imu16") sample_ = Sample::imu16;
+  if (sample == "imu14") form_ = Form::imu14;
+  if (sample == "imu16") form_ = Form::imu16;
   node_.emplace(queue_, *bus,
                 io::DroneCanNode::Setup{.name = slot.name(),
                                         .info = "org.whirlstand.pod_host",
@@ -72,10 +81,25 @@ void PodHostLink::send(const std::vector<std::uint8_t>& frame) {
 }
 
 void PodHostLink::send_sample(std::uint8_t number, const std::array<std::int16_t, 7>& counts) {
-  if (!over_can()) return line_.add(io::pack_pod_sample(number, counts));
-  if (sample_ == Sample::imu14) return send_imu<io::dronecan::Imu14>(counts);
-  if (sample_ == Sample::imu16) return send_imu<io::dronecan::Imu16>(counts);
-  node_->send(io::dronecan::PodSample{number, counts}, kUrgent);
+  const Nanoseconds now = queue_.now();
+  if (jitter_ns_ == 0) return send_now({now, number, counts});
+  const Nanoseconds held_ns = std::llround(chance_.uniform() * static_cast<double>(jitter_ns_));
+  const Nanoseconds before_ns = held_.empty() ? 0 : held_.back().leaves_ns;
+  held_.push_back({std::max<Nanoseconds>(before_ns, now + held_ns), number, counts});
+  if (!leaves_.pending()) leaves_.at(held_.front().leaves_ns);
+}
+
+void PodHostLink::send_held() {
+  send_now(held_.front());
+  held_.pop_front();
+  if (!held_.empty()) leaves_.at(held_.front().leaves_ns);
+}
+
+void PodHostLink::send_now(const Sample& sample) {
+  if (!over_can()) return line_.add(io::pack_pod_sample(sample.number, sample.counts));
+  if (form_ == Form::imu14) return send_imu<io::dronecan::Imu14>(sample);
+  if (form_ == Form::imu16) return send_imu<io::dronecan::Imu16>(sample);
+  node_->send(io::dronecan::PodSample{sample.number, sample.counts}, kUrgent);
 }
 
 std::string PodHostLink::asked(const io::Reader& message) {
@@ -100,12 +124,12 @@ bool PodHostLink::tell(const std::string& name, const PodFigures& figures) {
 }
 
 template <typename Imu>
-void PodHostLink::send_imu(const std::array<std::int16_t, 7>& counts) {
+void PodHostLink::send_imu(const Sample& sample) {
   constexpr int kCoarser = std::is_same_v<Imu, io::dronecan::Imu14> ? 4 : 1;
   Imu imu;
   for (unsigned i = 0; i < 3; ++i) {
-    imu.rate[i] = static_cast<std::int16_t>(counts[4 + i] / kCoarser);
-    imu.acceleration[i] = static_cast<std::int16_t>(counts[i] / kCoarser);
+    imu.rate[i] = static_cast<std::int16_t>(sample.counts[4 + i] / kCoarser);
+    imu.acceleration[i] = static_cast<std::int16_t>(sample.counts[i] / kCoarser);
   }
   imu.time = static_cast<std::uint16_t>(queue_.now() / Imu::kTime_step_ns);
   node_->send(imu, kUrgent);
