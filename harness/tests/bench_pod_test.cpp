@@ -99,17 +99,18 @@ constexpr const char* kUp = R"(plan "up" {
 })";
 
 // Samples fall into the stand-in's milliseconds, two into one and none into the next: the flight controller's IMU is to be
-// even all the same, and what the pod counts of them little.
+// even all the same, and what the pod counts of them little: a pseudo-terminal delivers one in some hundred a millisecond later
+// than usual, which the flight controller sees in two periods.
 void expect_even(const ComposedRun& run, const Periods& periods) {
-  std::printf("data-ready: %lld periods of %lld to %lld ns\n",
+  std::printf("data-ready: %lld periods of %lld to %lld ns, %lld over 20 us off\n",
               static_cast<long long>(periods.count), static_cast<long long>(periods.least_ns),
-              static_cast<long long>(periods.most_ns));
+              static_cast<long long>(periods.most_ns), static_cast<long long>(periods.far));
   EXPECT_GT(periods.count, 2000);
-  EXPECT_LT(periods.most_ns - periods.least_ns, 20'000);
+  EXPECT_LT(periods.far, periods.count / 50);
   for (const auto& f : run.file["findings"]) {
     const std::string text = f["text"];
     if (!text.ends_with("late to it")) continue;
-    EXPECT_LT(std::stoi(text), 20) << "of 6000";
+    EXPECT_LT(std::stoi(text), periods.count / 100);
   }
 }
 
@@ -152,6 +153,7 @@ TEST(BenchPod, AndWithThePodsHostOnCan) {
       [&](const bench::CanBusLink&) -> Result<std::unique_ptr<io::CanPort>> { return bus.join(); });
   EXPECT_EQ(run.code, 0) << run.file["reason"];
   expect_even(run, metal.periods);
+  EXPECT_EQ(metal.periods.far, 0);
   EXPECT_GT(bus.seen().size(), 15'000u);  // 3 frames for each of 5000 samples at the least
 }
 

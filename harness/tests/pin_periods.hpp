@@ -2,6 +2,7 @@
 #pragma once
 #include <algorithm>
 #include <cstdint>
+#include <cstdlib>
 #include <memory>
 #include <utility>
 
@@ -10,10 +11,13 @@
 namespace whirl {
 
 struct Periods {
+  static constexpr std::int64_t kUsual_ns = 1'000'000, kFar_ns = 20'000;
   std::int64_t count = 0, least_ns = 0, most_ns = 0;
+  std::int64_t far = 0;  // further than kFar_ns from a millisecond
   void add(std::int64_t period_ns) {
     least_ns = count == 0 ? period_ns : std::min(least_ns, period_ns);
     most_ns = std::max(most_ns, period_ns);
+    if (std::abs(period_ns - kUsual_ns) > kFar_ns) ++far;
     ++count;
   }
 };
