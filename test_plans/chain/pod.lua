@@ -2,8 +2,7 @@
 -- own: SPI and I2C join the two, byte by byte in time; the line of data-ready comes 100 us later than the pod puts it
 -- out; what an ESC is told reaches the plant by the pod's host alone, and so comes its status back. Limits
 -- are those of test_plans/flight/hover.lua. A register's answer has half a period of 656 kHz, 762 ns: half of that
--- is to be left. Jitter of the IMU's task: hover's 20 us, and the 20 us within which the pod's data-ready follows a sample
--- (docs/pod.md).
+-- is to be left. Jitter of the IMU's task: hover's 20 us, and 5 of the pod's clock (docs/pod.md).
 include "include/flights.lua"
 
 local function sensors()
@@ -42,7 +41,7 @@ pod_plan("pod hover", function(t)
   heartbeat(t)
   t:command { arm = true }
   t:within("4 s", function(s) return s.told_armed == 1 end, "armed")
-  t:budget("flight/fw::imu_task") { period = "1 ms", jitter = "40 us", execution = "100 us", during = "10 s" }
+  t:budget("flight/fw::imu_task") { period = "1 ms", jitter = "25 us", execution = "100 us", during = "10 s" }
   t:budget("pod/spi1_handler") { execution = "0.6 us", latency = "0.25 us", during = "10 s" }
   t:budget("pod/exti15_10_handler") { execution = "20 us", latency = "1.5 us", during = "10 s" }
 
