@@ -35,7 +35,7 @@ io_bridges/serial        base/ io_bridges/serial/
 io_bridges/socketcan     base/ io_bridges/protocols/ io_bridges/socketcan/
 io_bridges/rack          base/ io_bridges/board_description/ io_bridges/devices/ io_bridges/messages/ io_bridges/rack/
 io_bridges/rack/models   base/ io_bridges/devices/ io_bridges/messages/ io_bridges/rack/models/ plant/
-io_bridges/rack/devices  base/ io_bridges/devices/ io_bridges/messages/ io_bridges/protocols/ io_bridges/rack/ plant/
+io_bridges/rack/devices  base/ io_bridges/board_description/ io_bridges/devices/ io_bridges/messages/ io_bridges/protocols/ io_bridges/rack/ plant/
 io_bridges/qemu/cycles   io_bridges/qemu/cycles/
 io_bridges/qemu/stm32    base/ io_bridges/protocols/ io_bridges/devices/ io_bridges/qemu/stm32/ io_bridges/qemu/cycles/flash_timing.hpp
 io_bridges/qemu/plugin   base/ io_bridges/
@@ -46,7 +46,7 @@ results/flight_log       base/ results/flight_log/
 results/spread           base/ io_bridges/messages/ results/
 results/sinks            base/ io_bridges/copper/wire_drawing.hpp io_bridges/copper/edge.hpp io_bridges/messages/ results/messages/ results/sinks/
 harness                  base/ harness/cli/ harness/composition/ harness/target/bench/
-harness/composition      base/ harness/board/ harness/catalogue/ harness/cli/composition.hpp harness/cli/console.hpp harness/cli/find_board.hpp harness/cli/find_file.hpp harness/cli/stand_in_request.hpp harness/composition/ harness/flight/ harness/pacing/ harness/plan/needs.hpp harness/stand/ harness/standin/ harness/target/ io_bridges/hid/emulated/ io_bridges/protocols/ io_bridges/rack/devices/table.hpp
+harness/composition      base/ harness/board/ harness/catalogue/ harness/cli/composition.hpp harness/cli/console.hpp harness/cli/find_board.hpp harness/cli/find_file.hpp harness/cli/stand_in_request.hpp harness/composition/ harness/flight/ harness/pacing/ harness/plan/needs.hpp harness/stand/ harness/standin/ harness/target/ io_bridges/board_description/ io_bridges/hid/emulated/ io_bridges/protocols/ io_bridges/rack/devices/pod_faults.hpp io_bridges/rack/devices/table.hpp
 harness/job              base/ harness/job/
 harness/lua              base/ harness/lua/
 harness/pacing           base/ harness/pacing/
@@ -60,15 +60,15 @@ harness/plan             base/ harness/board/ harness/lua/ harness/metrics/ harn
 harness/executive        base/ harness/board/ harness/executive/ harness/lockstep/ harness/metrics/ harness/plan/ harness/target/ harness/world/ io_bridges/devices/faults.hpp io_bridges/messages/ results/
 harness/catalogue        base/ harness/calibrate/setup.hpp harness/catalogue/ harness/flight/ harness/lua/ harness/stand/ harness/target/bench/bench_description.hpp harness/world/drawn_part.hpp io_bridges/board_description/ io_bridges/copper/channel_name.hpp io_bridges/protocols/ io_bridges/rack/ plant/ firmware/esc/core/
 harness/flight           base/ harness/flight/ harness/world/ io_bridges/board_description/ io_bridges/messages/ io_bridges/protocols/ plant/ firmware/esc/core/
-harness/standin          base/ harness/board/ harness/lockstep/ harness/pacing/ harness/standin/ harness/target/ harness/world/ io_bridges/board_description/ io_bridges/link/ io_bridges/messages/ io_bridges/protocols/ io_bridges/serial/ io_bridges/socketcan/
+harness/standin          base/ harness/board/ harness/lockstep/ harness/pacing/ harness/standin/ harness/target/ harness/world/ io_bridges/board_description/ io_bridges/devices/core/receiver.hpp io_bridges/link/ io_bridges/messages/ io_bridges/protocols/ io_bridges/serial/ io_bridges/socketcan/
 harness/stand            base/ harness/stand/ harness/world/ io_bridges/board_description/ io_bridges/messages/ io_bridges/protocols/ plant/
 harness/inflow_bound     base/ harness/inflow_bound/ plant/ results/
 harness/sweep            base/ harness/flight/controllers.hpp harness/flight/flight_params.hpp harness/regression/ harness/sweep/ plant/ results/
 harness/timing           base/ harness/target/ harness/timing/
 harness/regression       base/ harness/regression/
 harness/calibrate        base/ harness/calibrate/ harness/lockstep/ harness/regression/ harness/target/ harness/world/ io_bridges/protocols/ results/ firmware/esc/core/
-harness/live             base/ harness/executive/companion.hpp harness/live/ harness/pacing/ harness/world/ io_bridges/messages/
-harness/cli              base/ harness/board/ harness/calibrate/ harness/catalogue/ harness/cli/ harness/executive/ harness/inflow_bound/ harness/job/ harness/live/ harness/pacing/ harness/plan/ harness/sweep/ harness/target/ harness/timing/ harness/world/ io_bridges/board_description/ io_bridges/copper/decoding.hpp io_bridges/openocd/ io_bridges/protocols/esc_codec.hpp io_bridges/qemu/board/image.hpp io_bridges/sigrok/capture.hpp io_bridges/rack/ plant/validation/ results/
+harness/live             base/ harness/executive/companion.hpp harness/live/ harness/lua/ harness/pacing/ harness/world/ io_bridges/hid/ io_bridges/messages/
+harness/cli              base/ harness/board/ harness/calibrate/ harness/catalogue/ harness/cli/ harness/executive/ harness/inflow_bound/ harness/job/ harness/live/ harness/pacing/ harness/plan/ harness/sweep/ harness/target/ harness/timing/ harness/world/ io_bridges/board_description/ io_bridges/copper/decoding.hpp io_bridges/hid/hid_device.hpp io_bridges/openocd/ io_bridges/protocols/esc_codec.hpp io_bridges/qemu/board/image.hpp io_bridges/sigrok/capture.hpp io_bridges/rack/ plant/validation/ results/
 harness/fuzz             base/ harness/calibrate/ harness/catalogue/ harness/fuzz/ harness/plan/ io_bridges/ plant/ results/
 cmake                    cmake/
 cmake/mutate             cmake/mutate/

@@ -8,13 +8,15 @@
 #   Speed      QEMU translates (no KVM: a host may offer it and still boot no stock kernel): 2 s to boot; whole
 #              numbers at nearly the machine's speed, floats 26 to 50 times slower. One core: with two, one round
 #              trip of a HID report takes 6.5 ms on a busy host in place of 0.1 ms
+#   SECONDS    of this machine's time; with its own clock of QEMU's processor time, for on a busy machine it may get a tenth
+#              of a processor, and then ten times as long is given up
 #   Own clock  the guest's time is its instructions, 2 ns each, and leaps to the next timer when it has nothing to do:
 #              a busy machine makes it slow and never late, and waiting costs nothing. It leaps also while it waits for
 #              a file of this machine: who times something there keeps it busy meanwhile (standin_run.sh)
 set -euo pipefail
-clock=()
+clock=() of_processor=
 if [[ $1 == --own-clock ]]; then
-  clock=(-icount shift=1,sleep=off)
+  clock=(-icount shift=1,sleep=off) of_processor=1
   shift
 fi
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -32,8 +34,12 @@ printf '%s=%q\n' folder "$folder" checkout "$PWD" modules "$modules" own_clock "
 # Reads on when nobody listens any more, for QEMU would wait for ever.
 tee --output-error=warn "$folder/output.txt" <"$run/output" &
 listener=$!
-status=0
-timeout -k 5 "$seconds" qemu-system-x86_64 -accel tcg,tb-size=256 "${clock[@]}" -M q35 -cpu max -smp 1 -m 1024 \
+status=0 most=$seconds
+if [[ $of_processor ]]; then
+  most=$((10 * seconds))
+  ulimit -S -t "$seconds"
+fi
+timeout -k 5 "$most" qemu-system-x86_64 -accel tcg,tb-size=256 "${clock[@]}" -M q35 -cpu max -smp 1 -m 1024 \
   -nodefaults -no-user-config -display none -no-reboot \
   -kernel "$folder/kernel.elf" -initrd "$folder/first.cpio" \
   -append "console=ttyS0 quiet panic=-1 reboot=t mitigations=off random.trust_cpu=on cryptomgr.notests audit=0 apparmor=0" \
@@ -50,8 +56,9 @@ timeout -k 5 "$seconds" qemu-system-x86_64 -accel tcg,tb-size=256 "${clock[@]}" 
 wait "$listener" || true
 
 if [[ -s $run/report/exit_code ]]; then exit "$(cat "$run/report/exit_code")"; fi
+if [[ $of_processor && $status == 152 ]]; then status=124; fi  # SIGXCPU
 if [[ -e $run/report/started && $status == 124 ]]; then
-  echo "guest: not ended within $seconds s" >&2
+  echo "guest: not ended within $seconds s${of_processor:+ of a processor, or ten times as long}" >&2
   exit 124
 fi
 if ((status == 124)); then reason="it did not come up within $seconds s"; else reason="QEMU ended with $status"; fi

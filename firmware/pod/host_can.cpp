@@ -79,12 +79,11 @@ bool HostCan::on_frame(const hal::CanFrame& frame, Frame& out) {
     out.length = static_cast<std::uint8_t>(at + payload.size());
   };
   if (is_message(frame.id, kPodSample)) {
-    if (!sample_.take(frame, kPodSample) || sample_.payload().size() != 15) return false;
+    if (!sample_.take(frame, kPodSample) || sample_.payload().size() != 17) return false;
     out.kind = FrameKind::sample;
     out.sequence = sample_.payload()[0];
-    out.payload[0] = 0;
-    put(sample_.payload().subspan(1), 1);
-    temperature_ = out.word(7);
+    put(sample_.payload().subspan(1), 0);
+    temperature_ = out.word(2 + 2 * 3);
     return true;
   }
   if (is_message(frame.id, kPodFrame)) {
@@ -111,12 +110,15 @@ void HostCan::from_imu(unsigned bits, Frame& out) {
   }
   out.kind = FrameKind::sample;
   out.sequence = stamps_.number(in.get(bits == 14 ? 12 : 16), bits == 14 ? 1u << 12 : 1u << 16);
-  out.payload[0] = 0;
+  const auto half = [&out](std::size_t at, unsigned value) {
+    out.payload[at] = static_cast<std::uint8_t>(value);
+    out.payload[at + 1] = static_cast<std::uint8_t>(value >> 8);
+  };
+  half(0, stamps_.now_us());
   for (std::size_t i = 0; i < counts.size(); ++i) {
-    out.payload[1 + 2 * i] = static_cast<std::uint8_t>(counts[i]);
-    out.payload[2 + 2 * i] = static_cast<std::uint8_t>(counts[i] >> 8);
+    half(2 + 2 * i, static_cast<std::uint16_t>(counts[i]));
   }
-  out.length = 1 + 2 * counts.size();
+  out.length = 2 + 2 * counts.size();
 }
 
 bool HostCan::send(FrameWriter& frame) {

@@ -1,12 +1,13 @@
 // The link to the host over CAN2 (PB12, PB13) at 1 Mbit/s: the frames of the UART's link as DroneCAN messages.
 //
-//   In       whirl.PodSample (20110), three frames: sequence, 7 x int16 as in a sample of host_frame.hpp.
+//   In       whirl.PodSample (20110), three frames: sequence, and a sample of host_frame.hpp.
 //            whirl.PodFrame (20111): kind, sequence, payload, of any other kind.
 //            whirl.Imu14, whirl.Imu16, which the host's IMU tells a flight controller on CAN, as a sample: their
 //            steps of 16 g and 2000 deg/s come as counts of the range that the part is set to
 //   Out      whirl.PodSetpoint (20112), one frame: sequence, ESC, valid, value. whirl.PodFrame: the rest
 //   Host     the node that spoke first; another one after a second of its silence
 //   Quiet    nothing goes out before a host has spoken; then NodeStatus each second, and who asks is answered
+//   Time     of the IMU's message in steps of 10 us: so even is its data-ready
 //   Error    a gyro step of Imu16 is taken as a count: 0.1 % less than the part's own scale factor (16.4 a deg/s)
 #pragma once
 #include <cstdint>
@@ -18,7 +19,7 @@
 
 namespace fw::pod {
 
-inline constexpr dronecan::Type kPodSample{20110, 0xA30B36657FFAEE91},
+inline constexpr dronecan::Type kPodSample{20110, 0xA6E196084285CE00},
     kPodFrame{20111, 0x9EE88C79F3C2B090}, kPodSetpoint{20112, 0x5FF3AE2E7F29F206};
 
 class HostCan {
@@ -39,7 +40,7 @@ class HostCan {
   bool is_host(const hal::CanFrame& frame, std::uint32_t now_us);
   void from_imu(unsigned bits, Frame& out);
 
-  dronecan::Reassembly<15> sample_;
+  dronecan::Reassembly<17> sample_;
   dronecan::Reassembly<2 + kMostPayload> frame_;
   dronecan::Reassembly<14> imu_;
   StampCounter stamps_;

@@ -2,7 +2,8 @@
 // (as in link/crc16.hpp, over kind to payload, low byte first). Each direction counts its sequence per
 // kind.
 //
-//   Host to pod   0x01 sample: flags, 7 x int16 (accelerometer, temperature, gyro; counts)
+//   Host to pod   0x01 sample: the host's time of it (u16, us, wraps), 7 x int16 (accelerometer, temperature, gyro;
+//                 counts)
 //                 0x02 faults: flags (bit 0 frozen, bit 1 no supply), identity (0: its own)
 //                 0x03 barometer: quantity (0 pressure, 1 temperature), counts (u32)
 //                 0x04 its PROM: 8 x u16      0x05 magnetometer: 3 x int16 (x, y, z; counts)

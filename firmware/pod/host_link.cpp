@@ -18,7 +18,7 @@ namespace mpu = whirl::core::mpu;
 
 constexpr std::uint32_t kStatus_us = 10'000, kStatus_on_can_us = 50'000;
 constexpr std::uint8_t kFrozen = 1, kNo_supply = 2;
-constexpr std::uint8_t kSample_bytes = 15, kFault_bytes = 2;
+constexpr std::uint8_t kSample_bytes = 16, kFault_bytes = 2;
 constexpr std::uint8_t kTold[] = {mpu::PWR_MGMT_1,  mpu::CONFIG,       mpu::SMPLRT_DIV,
                                   mpu::GYRO_CONFIG, mpu::ACCEL_CONFIG, mpu::INT_ENABLE,
                                   mpu::INT_PIN_CFG, mpu::USER_CTRL};
@@ -54,10 +54,11 @@ void HostLink::poll(std::uint32_t now_us) {
 
 void HostLink::on_frame(const Frame& frame, std::uint32_t now_us) {
   if (frame.kind == FrameKind::sample && frame.length == kSample_bytes) {
-    std::array<std::int16_t, 7> counts{};
-    for (std::size_t i = 0; i < counts.size(); ++i) counts[i] = frame.word(1 + 2 * i);
-    imu.sample(counts);
-    watch_.came(frame.sequence, now_us);
+    PodImu::Counts counts{};
+    for (std::size_t i = 0; i < counts.size(); ++i) counts[i] = frame.word(2 + 2 * i);
+    const SampleClock::Place place = clock_.place(frame.half(0), now_us);
+    imu.sample(counts, place.due_us);
+    watch_.came(frame.sequence, place.due_us, place.late);
   }
   if (frame.kind == FrameKind::faults && frame.length == kFault_bytes) {
     const std::uint8_t flags = frame.payload[0];
@@ -150,7 +151,7 @@ void HostLink::send_status(std::uint32_t now_us) {
        {spi.transfers, spi.bursts, imu.samples(), longest_turn_us_, now_us}) {
     out.word(count);
   }
-  for (const std::uint32_t count : {gps_out.dropped(), unsent_}) {
+  for (const std::uint32_t count : {gps_out.dropped(), unsent_, clock_.longest_wait_us()}) {
     out.half(std::min<std::uint32_t>(count, 0xFFFF));
   }
   send(out);

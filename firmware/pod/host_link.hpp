@@ -2,16 +2,18 @@
 //
 //   Ways     UART and CAN are heard alike; what the pod tells goes where the host spoke last
 //   Read     from the main loop, more often than the UART's ring of 256 bytes wraps (0.85 ms)
-//   Status   0x81, 52 bytes: PWR_MGMT_1, CONFIG, SMPLRT_DIV, GYRO_CONFIG, ACCEL_CONFIG, INT_ENABLE,
+//   Status   0x81, 54 bytes: PWR_MGMT_1, CONFIG, SMPLRT_DIV, GYRO_CONFIG, ACCEL_CONFIG, INT_ENABLE,
 //            INT_PIN_CFG, USER_CTRL; number of the newest sample, of the newest oddity, samples overdue
 //            (0, 1), a zero; then as u32 the samples' flags (bit 0: the newest; lost or late), as u16
 //            samples lost, late, damaged frames, oddities, overlaps, late re-arms, and as u32 transfers,
 //            bursts, samples taken, the longest turn of the main loop in us, the pod's time in us, as u16 pieces
-//            of the GPS and frames of the pod's own for which there was no room
+//            of the GPS and frames of the pod's own for which there was no room, and the longest wait of a sample for
+//            its time in the last whole second, us
 #pragma once
 #include <cstdint>
 
 #include "firmware/pod/host_frame.hpp"
+#include "firmware/pod/sample_clock.hpp"
 #include "firmware/pod/sample_watch.hpp"
 
 namespace fw::pod {
@@ -31,6 +33,7 @@ class HostLink {
   void send_status(std::uint32_t now_us);
 
   FrameReader reader_;
+  SampleClock clock_;
   SampleWatch watch_;
   std::uint32_t status_due_us_ = 0, turned_us_ = 0, longest_turn_us_ = 0;
   std::uint8_t status_number_ = 0, setpoint_number_ = 0, gps_number_ = 0;

@@ -67,8 +67,27 @@ void PodImu::pulse_over() {
 
 // ---- The host's side
 
-void PodImu::sample(const std::array<std::int16_t, 7>& counts) {
+// Without room the one that is next comes early: its host is no part's any more.
+void PodImu::sample(const Counts& counts, std::uint32_t due_us) {
   const PartsLock lock;
+  if (waits_ == kRoom) waiting_[first_].due_us = now_us();
+  if (waits_ == kRoom) show_due();
+  waiting_[(first_ + waits_++) % kRoom] = {due_us, counts};
+  show_due();
+}
+
+void PodImu::show_due() {
+  while (waits_ != 0) {
+    const Waiting& next = waiting_[first_];
+    const auto left_us = static_cast<std::int32_t>(next.due_us - now_us());
+    if (left_us > 0) return alarm_timer(static_cast<std::uint32_t>(left_us));
+    first_ = (first_ + 1) % kRoom;
+    --waits_;
+    show(next.counts);
+  }
+}
+
+void PodImu::show(const Counts& counts) {
   const std::int64_t now = now_ns();
   if (!powered_ || clock_ns_ == whirl::core::kNever || now < clock_ns_) return;
   ++samples_;
@@ -131,6 +150,10 @@ void transfer_over(const Transfer& transfer) {
 
 void pulse_over() {
   imu.pulse_over();
+}
+
+void alarm() {
+  imu.alarm();
 }
 
 }  // namespace fw::pod

@@ -22,14 +22,28 @@ void load(std::uint32_t reload) {
   Timer::SR::write(0);
 }
 
+// An update after so long, once.
+template <typename Timer>
+void begin(std::uint32_t us) {
+  Timer::CR1::clear(Timer::CEN);
+  Timer::SR::write(0);
+  if (us == 0) return;
+  Timer::ARR::write(us);
+  Timer::CNT::write(0);
+  Timer::CR1::set(Timer::OPM | Timer::CEN);
+}
+
 }  // namespace
 
 void start_time() {
-  RCC::APB1ENR::set(RCC::TIM2EN | RCC::TIM7EN);
+  RCC::APB1ENR::set(RCC::TIM2EN | RCC::TIM5EN | RCC::TIM7EN);
   load<TIM2>(0xFFFF'FFFF);
   TIM2::CR1::set(TIM2::CEN);
+  load<TIM5>(0xFFFF'FFFF);
   load<TIM7>(0xFFFF);
+  TIM5::DIER::write(TIM5::UIE);
   TIM7::DIER::write(TIM7::UIE);
+  Nvic<Irq::TIM5_Global>::enable(kPriorityParts);
   Nvic<Irq::TIM7_Global>::enable(kPriorityParts);
 }
 
@@ -46,16 +60,19 @@ std::int64_t now_ns() {
 }
 
 void pulse_timer(std::uint32_t us) {
-  TIM7::CR1::clear(TIM7::CEN);
-  TIM7::SR::write(0);
-  if (us == 0) return;
-  TIM7::ARR::write(us);
-  TIM7::CNT::write(0);
-  TIM7::CR1::set(TIM7::OPM | TIM7::CEN);
+  begin<TIM7>(us);
+}
+
+void alarm_timer(std::uint32_t us) {
+  begin<TIM5>(us);
 }
 
 }  // namespace fw::pod
 
+extern "C" void tim5_handler() {
+  fw::hw::TIM5::SR::write(0);
+  fw::pod::alarm();
+}
 extern "C" void tim7_handler() {
   fw::hw::TIM7::SR::write(0);
   fw::pod::pulse_over();

@@ -95,6 +95,10 @@ Result<Done> check_flight_links(const BoardDescription& board,
                                 const bench::BenchDescription& bench) {
   for (const BoardDevice& device : board.devices) {
     if (const auto played = check_played(device, board, bench); !played) return played;
+    if (device.type != "sbus" || !serial_joins(device, bench) || !pod_plays(device, bench))
+      continue;
+    return refused(bench.file, "both a pod and a line play " + device.name,
+                   "one of the two, or a pod's board without receiver: pod_with_parts");
   }
   if (!bench.safety.limits.empty()) {
     return refused(bench.file, "limits: of a flight controller's bench nothing is measured",

@@ -49,7 +49,8 @@ void BenchWords::add_stand_in(CLI::App& app) {
                         "where its lines and its bench file stand (standin)");
   stand_in_->add_option("--serial", standing_.serial, "number of the played bridge");
   stand_in_->add_flag("!--no-bridge", standing_.bridge, "play no USB bridge (no /dev/uhid)");
-  stand_in_->add_option("--can", standing_.can, "interface that its CAN is joined to: vcan0");
+  stand_in_->add_option("--can", standing_.can,
+                        "interface that its CAN, or the pod's, is joined to: vcan0");
   stand_in_->add_flag("--pod", standing_.pod,
                       "a pod beside it plays its sensors and ESCs: px4fmu_v1_sbus");
   stand_in_->add_option("--seconds", standing_.seconds, "end after so long (default: a signal)");

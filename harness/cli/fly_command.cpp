@@ -5,11 +5,14 @@
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
+#include <optional>
 
 #include "harness/cli/console.hpp"
 #include "harness/cli/find_plans.hpp"
 #include "harness/cli/run_one.hpp"
 #include "harness/live/live_flight.hpp"
+#include "harness/live/pilot_stick.hpp"
+#include "io_bridges/hid/hid_device.hpp"
 
 namespace whirl::cli {
 namespace {
@@ -79,6 +82,14 @@ live::FlownPlan flown_plan(const plan::Plan& plan, const std::vector<std::string
   return flown;
 }
 
+Result<live::PilotStick> plug_in(const std::string& file) {
+  auto map = live::read_stick(file);
+  if (!map) return map.error();
+  auto port = io::open_hid(map.value().device);
+  if (!port) return port.error();
+  return live::PilotStick::start(std::move(port.value()), std::move(map.value()));
+}
+
 void show(const std::string& line) {
   const bool in_place = is_terminal();
   std::fprintf(in_place ? stderr : stdout, in_place ? "\r\033[K%s" : "%s\n", line.c_str());
@@ -94,6 +105,12 @@ int fly_command(const FlyOptions& options, const RunOptions& run, const Composit
   if (!plan) return complain(plan.error());
   auto port = live::UdpPort::open(options.udp, options.listen);
   if (!port) return complain(port.error());
+  std::optional<live::PilotStick> stick;
+  if (!options.stick.empty()) {
+    auto plugged = plug_in(options.stick);
+    if (!plugged) return complain(plugged.error());
+    stick.emplace(std::move(plugged.value()));
+  }
   catch_end();
   std::printf("flying %s at %g x real time; MAVLink to UDP %s, and from any at port %u. %s ends.\n",
               plan.value().name.c_str(), options.pace, options.udp.c_str(),
@@ -106,6 +123,7 @@ int fly_command(const FlyOptions& options, const RunOptions& run, const Composit
   if (options.seconds > 0.0) live.end_ns = std::llround(options.seconds * 1e9);
   live.wants_end = [] { return end_wanted.load(); };
   live.show = show;
+  if (stick) live.sticks = [&stick] { return stick->read(); };
   live::LiveFlight flight(clock, std::move(port.value()), live);
   const Company company{
       flight, [&](const std::string& folder, results::Report& report, const plan::Plan& flown,

@@ -15,6 +15,7 @@ struct FlyOptions {
   double pace = 1.0;
   double seconds = 0.0;               // virtual; 0: until it is interrupted
   std::string image, board, vehicle;  // empty: the plan's
+  std::string stick;                  // file of a person's game controller; empty: none
 };
 
 // INT, TERM and HUP end it in order. 0: it was flown; no verdict is given. Else as of whirl run.

@@ -89,6 +89,8 @@ CLI::App* add_fly(CLI::App& app, FlyOptions& options, RunCommand& run) {
   fly->add_option("--image", options.image, "instead of the plan's");
   fly->add_option("--board", options.board, "instead of the plan's");
   fly->add_option("--vehicle", options.vehicle, "instead of the plan's");
+  fly->add_option("--stick", options.stick,
+                  "a game controller as the transmitter's sticks: a file (test_plans/sticks)");
   fly->add_option("--seed", run.seed, "instead of the plan's own")->check(seed_complaint);
   fly->add_option("--out", run.options.out, "where the run goes (default: results)");
   return fly;

@@ -12,7 +12,7 @@ struct StandInRequest {
   std::string folder = "standin";   // of the links to its lines, and of a bench file for it
   std::string serial = "STANDIN1";  // number of the played bridge
   bool bridge = true;               // its I2C behind an MCP2221A that uhid plays
-  std::string can;                  // interface that the board's CAN is joined to; empty: none
+  std::string can;   // interface that the board's CAN, or the pod's, is joined to; empty: none
   bool pod = false;  // beside it the pod on a board of its own, which plays its sensors and ESCs
   double seconds = 0.0;  // of the host; 0: until a signal
 };

@@ -1,52 +1,26 @@
 #include "harness/composition/boards.hpp"
 
-#include <poll.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cstdlib>
 #include <set>
 
 #include "base/check.hpp"
 #include "harness/board/node.hpp"
-#include "harness/catalogue/stand_table.hpp"
 #include "harness/catalogue/surroundings_table.hpp"
-#include "harness/catalogue/vehicle_file.hpp"
+#include "harness/composition/bench_boards.hpp"
+#include "harness/composition/copies.hpp"
 #include "harness/composition/stand_in_command.hpp"
 #include "harness/flight/flight_world.hpp"
-#include "harness/flight/vehicle_parts.hpp"
 #include "harness/pacing/host_clock.hpp"
 #include "harness/plan/needs.hpp"
 #include "harness/stand/bench_stand.hpp"
-#include "harness/stand/stand_parts.hpp"
 #include "harness/stand/stand_world.hpp"
-#include "harness/target/bench/analyser_link.hpp"
-#include "harness/target/bench/bench_target.hpp"
-#include "harness/target/bench/bridge_link.hpp"
-#include "harness/target/bench/node_link.hpp"
-#include "harness/target/bench/pod_line.hpp"
-#include "harness/target/bench/serial_links.hpp"
+#include "harness/target/bench/receiver_line.hpp"
 #include "harness/target/copper_target.hpp"
 #include "harness/target/virtual_board.hpp"
-#include "io_bridges/protocols/esc_codec.hpp"
-#include "io_bridges/rack/devices/table.hpp"
 
 namespace whirl {
 namespace {
-
-Result<stand::StandParams> stand_of(const cli::Setup& setup) {
-  auto params = catalogue::read_stand(*setup.plan.stand, setup.root + "/test_plans/propellers");
-  if (params && setup.bench == nullptr) {
-    stand::draw_parts(params.value(), setup.board, setup.seed);
-  }
-  return params;
-}
-
-Result<flight::FlightParams> vehicle_of(const cli::Setup& setup) {
-  auto params = catalogue::read_vehicle(setup.vehicle_file, setup.settings);
-  if (params) flight::draw_parts(params.value(), setup.seed);
-  return params;
-}
 
 // Each motor has its ESC on the board, and each ESC its motor.
 Result<Done> check_escs(const cli::Setup& setup, const flight::FlightParams& params) {
@@ -143,6 +117,14 @@ bool plays_receiver(const BoardDescription& board) {
   return pod_parts(board).count("sbus") != 0;
 }
 
+// By a pod, or on a line of its own.
+bool bench_plays_receiver(const bench::BenchDescription& bench, const BoardDescription& board) {
+  return std::any_of(bench.pods.begin(), bench.pods.end(),
+                     [](const bench::PodLink& link) { return plays_receiver(link.parts); }) ||
+         std::any_of(bench.serials.begin(), bench.serials.end(),
+                     [&](const auto& link) { return bench::receiver_at(board, link) != nullptr; });
+}
+
 // What of the ground the first board hears, itself or by a board in a part's place.
 flight::BoardEars ears_of(const cli::Setup& setup) {
   flight::BoardEars ears{.radio = false, .receiver = false};
@@ -188,10 +170,7 @@ Result<std::unique_ptr<World>> make_world(const cli::Setup& setup) {
   if (const auto joined = check_escs(setup, params.value()); !joined) return joined.error();
   params.value().ears = ears_of(setup);
   if (setup.bench != nullptr) {
-    const auto& pods = setup.bench->pods;
-    params.value().ears.receiver =
-        std::any_of(pods.begin(), pods.end(),
-                    [](const bench::PodLink& link) { return plays_receiver(link.parts); });
+    params.value().ears.receiver = bench_plays_receiver(*setup.bench, setup.board);
   }
   auto far = far_shafts(setup, params.value());
   if (!far) return far.error();
@@ -203,125 +182,6 @@ Result<std::unique_ptr<World>> make_world(const cli::Setup& setup) {
 pacing::MonotonicClock& host_clock() {
   static pacing::MonotonicClock clock;
   return clock;
-}
-
-// Enter, where a person sits at the terminal.
-bool enter_pressed() {
-  pollfd terminal{STDIN_FILENO, POLLIN, 0};
-  return isatty(STDIN_FILENO) == 1 && poll(&terminal, 1, 0) == 1;
-}
-
-std::string log_of(const cli::Setup& setup, const bench::CanBusLink& link) {
-  return setup.folder.empty() ? "" : setup.folder + "/" + link.name + ".log";
-}
-
-// Each board of a run is another copy of the hardware.
-std::uint64_t seed_of(const cli::Setup& setup, std::size_t node) {
-  return setup.seed + (static_cast<std::uint64_t>(node) << 32);
-}
-
-using Links = std::vector<std::unique_ptr<bench::Link>>;
-
-// Of a thrust stand: what commands the ESC.
-Result<Done> add_masters(const cli::Setup& setup, const bench::BridgeMaker& bridge,
-                         const bench::CanMaker& can, Links& links) {
-  const auto params = stand_of(setup);
-  if (!params) return params.error();
-  const bench::BenchDescription& bench = *setup.bench;
-  for (const bench::BridgeLink& link : bench.bridges) {
-    auto port = bridge(link);
-    if (!port) return port.error();
-    const auto zero = io::pack_setpoint(params.value().esc.address, 0);
-    links.push_back(std::make_unique<bench::BridgeThread>(
-        bench::BridgeOptions{.name = link.name,
-                             .bus = link.bus,
-                             .safe = {params.value().esc.address, {zero.begin(), zero.end()}, 0},
-                             .heartbeat_ns = bench.safety.heartbeat_ns},
-        std::move(port.value())));
-  }
-  for (const bench::CanBusLink& link : bench.cans) {
-    links.push_back(std::make_unique<bench::CanLink>(
-        bench::CanOptions{
-            .link = link, .heartbeat_ns = bench.safety.heartbeat_ns, .log = log_of(setup, link)},
-        can));
-  }
-  return Done{};
-}
-
-// A pod's board is another copy of the hardware than the flight controller's.
-Result<Done> add_pods(const cli::Setup& setup, const bench::CanMaker& can, Links& links) {
-  const std::uint64_t seed = seed_of(setup, 1);
-  for (const bench::PodLink& link : setup.bench->pods) {
-    const auto params = vehicle_of(setup);
-    if (!params) return params.error();
-    BoardDescription board = link.parts;
-    flight::set_parts(board, params.value());
-    if (link.path.empty()) {
-      links.push_back(std::make_unique<bench::NodeLink>(
-          bench::NodeOptions{link.can, board, rack::device_types(), seed, log_of(setup, link.can),
-                             true},
-          can));
-    } else {
-      links.push_back(std::make_unique<bench::PodLine>(
-          bench::PodLineOptions{link, board, rack::device_types(), seed}));
-    }
-  }
-  return Done{};
-}
-
-// Of a vehicle: its nodes, for the flight controller.
-Result<Done> add_nodes(const cli::Setup& setup, const bench::CanMaker& can, Links& links) {
-  for (const bench::CanBusLink& link : setup.bench->cans) {
-    links.push_back(
-        std::make_unique<bench::NodeLink>(bench::NodeOptions{.link = link,
-                                                             .board = setup.board,
-                                                             .types = rack::device_types(),
-                                                             .seed = seed_of(setup, setup.node),
-                                                             .log = log_of(setup, link)},
-                                          can));
-  }
-  return add_pods(setup, can, links);
-}
-
-// Of a vehicle's nodes: what the plan may spoil.
-std::set<std::string> played_parts(const cli::Setup& setup) {
-  std::set<std::string> all;
-  if (setup.plan.stand) return all;
-  for (const bench::CanBusLink& link : setup.bench->cans) {
-    const std::string bus = "can" + std::to_string(link.bus);
-    all.insert(bus);
-    for (const BoardDevice& device : setup.board.devices) {
-      if (device.bus == bus) all.insert(device.name);
-    }
-  }
-  return all;
-}
-
-Result<std::unique_ptr<Target>> bench_target(const cli::Setup& setup,
-                                             const bench::BridgeMaker& bridge,
-                                             const bench::CanMaker& can, pacing::HostClock& clock) {
-  const bench::BenchDescription& bench = *setup.bench;
-  Links links;
-  const auto added =
-      setup.plan.stand ? add_masters(setup, bridge, can, links) : add_nodes(setup, can, links);
-  if (!added) return added.error();
-  for (const bench::SerialLink& link : bench.serials) {
-    links.push_back(std::make_unique<bench::BoardSerial>(link));
-  }
-  std::uint16_t port = 0;
-  for (const bench::Instrument& instrument : bench.instruments) {
-    links.push_back(std::make_unique<bench::InstrumentLine>(instrument, port));
-    port = static_cast<std::uint16_t>(port + instrument.readings.size());
-  }
-  if (bench.analyser) {
-    links.push_back(std::make_unique<bench::AnalyserLink>(
-        "analyser", bench::sigrok_source(*bench.analyser),
-        bench::rts_marker(bench.analyser->marker), copper_names(setup.board)));
-  }
-  return std::unique_ptr<Target>(std::make_unique<bench::BenchTarget>(
-      bench::BenchOptions{
-          .bench = bench, .operator_stops = enter_pressed, .played = played_parts(setup)},
-      std::move(links), clock));
 }
 
 // What this run's copy of the hardware changes on the board: a stand's stage and instruments, a vehicle's IMU

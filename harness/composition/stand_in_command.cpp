@@ -10,6 +10,7 @@
 #include "base/interruption.hpp"
 #include "base/output_file.hpp"
 #include "base/places.hpp"
+#include "harness/board/node.hpp"
 #include "harness/catalogue/stand_table.hpp"
 #include "harness/cli/console.hpp"
 #include "harness/cli/find_board.hpp"
@@ -77,7 +78,7 @@ class PlayedBridge {
   std::unique_ptr<io::UhidDevice> device_;
 };
 
-constexpr const char* kPodBoard = "pod_with_receivers";
+constexpr const char *kPodBoard = "pod_with_receivers", *kPodBoardOnCan = "pod_with_receivers_can";
 constexpr double kSupply_V = 16.0;  // that a flight controller's divider sees
 
 struct Parts {
@@ -89,6 +90,8 @@ struct Parts {
   stand::StandParams stand;  // of an ESC
   bool bridge = false;       // its I2C is played
   std::uint16_t can_bus = 1, uart = 1;
+  std::uint8_t can_board = 0;  // whose the CAN is: 1, the pod's
+  std::uint16_t sticks = 0;    // the UART of its receiver, that the bench plays; 0: none
 };
 
 bool has_type(const BoardDescription& board, const std::string& type) {
@@ -132,10 +135,6 @@ Result<Done> check_wires(const cli::StandInRequest& request, const Parts& parts)
   const auto refused = [&](const std::string& what, const std::string& cure) {
     return Error{ErrorKind::bad_input, parts.board.file, what, cure};
   };
-  if (request.pod && !request.can.empty()) {
-    return refused("its sensors and ESCs hang on the pod, whose host is on a line",
-                   "--pod without --can");
-  }
   if (parts.flies) {
     if (!request.can.empty() || request.pod) return Done{};
     return refused("is a flight controller's: its sensors and ESCs are played over CAN",
@@ -159,12 +158,15 @@ Result<Done> check_wires(const cli::StandInRequest& request, const Parts& parts)
 }
 
 Result<Done> read_pod(const cli::Asker& asker, const std::string& root, Parts& parts) {
-  auto board = cli::find_board(kPodBoard, asker, root);
+  const bool on_can = parts.can_board == 1;
+  auto board = cli::find_board(on_can ? kPodBoardOnCan : kPodBoard, asker, root);
   if (!board) return board.error();
   const auto image = cli::find_file("pod", asker, image_folders(root), ".elf");
   if (!image) return image.error();
   parts.pod = std::move(board.value());
   parts.pod_image = image.value();
+  if (!on_can) return Done{};
+  parts.can_bus = static_cast<std::uint16_t>(can_of_host(parts.pod).value_or(0));
   return Done{};
 }
 
@@ -184,11 +186,14 @@ Result<Parts> read_parts(const cli::StandInRequest& request, const std::string& 
   if (parts.flies) {
     parts.can_bus = number_of(parts.board, "_dronecan");
     parts.uart = number_of(parts.board, "mavlink_link");
+    if (!request.pod && has_type(parts.board, "sbus"))
+      parts.sticks = number_of(parts.board, "sbus");
   } else if (const auto read = read_stand(request, root, parts); !read) {
     return read.error();
   }
   if (const auto joined = check_wires(request, parts); !joined) return joined.error();
   if (request.pod) {
+    parts.can_board = request.can.empty() ? 0 : 1;
     if (const auto read = read_pod(asker, root, parts); !read) return read.error();
   }
   return parts;
@@ -201,13 +206,13 @@ std::string bench_file(const cli::StandInRequest& request, const Parts& parts) {
   text += "return {\n  bench = \"stand_in\", board = \"" + parts.board.name +
           "\", pace = " + std::to_string(request.pace) +
           ",\n  late = \"5 ms\", late_share = \"2 %\",\n  links = {\n";
-  if (!request.can.empty()) {
+  if (request.pod) {
+    text += "    { name = \"pod\", pod = \"" + parts.pod.name + "\", " +
+            (request.can.empty() ? "path = \"" + folder + "/pod" : "interface = \"" + request.can) +
+            "\" },\n";
+  } else if (!request.can.empty()) {
     text += "    { name = \"bus\", bus = \"can" + std::to_string(parts.can_bus) +
             "\", interface = \"" + request.can + "\" },\n";
-  }
-  if (request.pod) {
-    text += "    { name = \"pod\", pod = \"" + std::string(kPodBoard) + "\", path = \"" + folder +
-            "/pod\" },\n";
   }
   if (parts.bridge) {
     text += "    { name = \"throttle\", bus = \"i2c" + std::to_string(parts.stand.esc.i2c) +
@@ -215,7 +220,12 @@ std::string bench_file(const cli::StandInRequest& request, const Parts& parts) {
   }
   text += "    { name = \"terminal\", bus = \"usart" + std::to_string(parts.uart) +
           "\", path = \"" + folder + "/serial\", baud = \"" + std::to_string(baud_of_line(parts)) +
-          " baud\" },\n  },\n";
+          " baud\" },\n";
+  if (parts.sticks != 0) {
+    text += "    { name = \"sticks\", bus = \"usart" + std::to_string(parts.sticks) +
+            "\", path = \"" + folder + "/sticks\" },\n";
+  }
+  text += "  },\n";
   if (parts.flies) {
     return text +
            "  safety = { phrase = \"nothing turns\", longest = \"120 s\", heartbeat = \"1 s\" "
@@ -242,10 +252,15 @@ Result<StandInOptions> open_wires(const cli::StandInRequest& request, const Part
   auto serial = io::PseudoTerminal::open(request.folder + "/serial");
   if (!serial) return serial.error();
   wires.lines.push_back({parts.uart, std::move(serial.value())});
-  if (request.pod) {
+  if (request.pod && request.can.empty()) {
     auto host = io::PseudoTerminal::open(request.folder + "/pod");
     if (!host) return host.error();
     wires.lines.push_back({1, std::move(host.value()), 1});
+  }
+  if (parts.sticks != 0) {
+    auto sticks = io::PseudoTerminal::open(request.folder + "/sticks");
+    if (!sticks) return sticks.error();
+    wires.lines.push_back({parts.sticks, std::move(sticks.value())});
   }
   if (!parts.flies) {
     auto instruments = io::PseudoTerminal::open(request.folder + "/instruments");
@@ -258,6 +273,7 @@ Result<StandInOptions> open_wires(const cli::StandInRequest& request, const Part
     if (!can) return can.error();
     wires.can = std::move(can.value());
     wires.can_bus = parts.can_bus;
+    wires.can_board = parts.can_board;
   }
   const auto written = write_text(request.folder + "/bench.lua", bench_file(request, parts));
   if (!written) return written.error();

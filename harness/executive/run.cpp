@@ -74,7 +74,9 @@ class Run {
         lockstep_(parts.world, parts.target),
         acted_(parts.nodes.size()) {
     stage_.folder = parts.folder;
-    stage_.spoils = [&parts](const std::string& what) { return parts.target.spoils(what); };
+    stage_.spoils = [&parts](const std::string& what, const std::string& kind) {
+      return parts.target.spoils(what, kind);
+    };
     stage_.sees = [&parts](const std::string& wires) { return parts.target.sees(wires); };
     results::Report& r = record_.report;
     r.plan = parts.plan.name;

@@ -3,15 +3,12 @@
 #include <algorithm>
 #include <span>
 
+#include "io_bridges/board_description/pod_host.hpp"
+
 namespace whirl::flight {
-namespace {
-
-constexpr std::uint16_t kLine = 1;  // the UART of a pod's host
-
-}  // namespace
 
 bool FarParts::hears(const io::Header& head) const {
-  return head.kind == io::Kind::uart_received && head.port == kLine && !boards_.empty() &&
+  return head.kind == io::Kind::uart_received && head.port == kPodHostUart && !boards_.empty() &&
          head.board == boards_.front();
 }
 
@@ -42,7 +39,7 @@ void FarParts::send(std::int64_t t_ns, const io::BodyMotion& motion, io::Batch& 
     sensed.add(head, {{reinterpret_cast<const std::uint8_t*>(&motion), sizeof motion}});
   }
   if (to_send_.empty()) return;
-  const io::Header head{t_ns, io::Kind::uart_frame, boards_.front(), kLine, 0};
+  const io::Header head{t_ns, io::Kind::uart_frame, boards_.front(), kPodHostUart, 0};
   sensed.add(head, {{reinterpret_cast<const std::uint8_t*>(to_send_.data()), to_send_.size()}});
   to_send_.clear();
 }

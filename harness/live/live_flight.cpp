@@ -10,7 +10,7 @@
 namespace whirl::live {
 namespace {
 
-constexpr std::int64_t kShowEvery_ns = 1'000'000'000;
+constexpr std::int64_t kShowEvery_ns = 1'000'000'000, kStickPeriod_ns = 20'000'000;
 constexpr double kLine_Bpstep = 5.76, kLineHolds_B = 1024.0;  // 57600 baud, 8N1, 1 ms
 constexpr double kForFrames_B = kLineHolds_B / 2.0;           // that other bytes may not fill
 constexpr std::size_t kLongestDatagram_B = 1500;              // as a network carries in one piece
@@ -22,6 +22,16 @@ std::string mode_name(double state) {
   if (std::isnan(state)) return "silent";
   const auto i = static_cast<std::size_t>(std::max(0.0, state));
   return i < kNames.size() ? kNames[i] : "mode " + std::to_string(i);
+}
+
+// To the step in which they are read.
+bool alike(const request::Sticks& a, const request::Sticks& b) {
+  const auto step = [](const std::optional<double>& share) {
+    return share ? std::optional(std::lround(1000.0 * *share)) : std::nullopt;
+  };
+  return step(a.roll) == step(b.roll) && step(a.pitch) == step(b.pitch) &&
+         step(a.yaw) == step(b.yaw) && step(a.thrust) == step(b.thrust) && a.mode == b.mode &&
+         a.arm == b.arm && a.transmitter_on == b.transmitter_on;
 }
 
 double ms(std::int64_t ns) {
@@ -43,7 +53,18 @@ Result<bool> LiveFlight::turn(std::int64_t t_ns, World& world) {
   pacer_.wait_for(t_ns);
   if (options_.wants_end()) return false;
   if (const auto taken = take_in(t_ns, world); !taken) return taken.error();
+  if (const auto looked = look_at_sticks(t_ns, world); !looked) return looked.error();
   return true;
+}
+
+Result<Done> LiveFlight::look_at_sticks(std::int64_t t_ns, World& world) {
+  if (!options_.sticks || t_ns < next_sticks_ns_) return Done{};
+  next_sticks_ns_ = t_ns + kStickPeriod_ns;
+  const request::Sticks now = options_.sticks();
+  if (sticks_ && alike(*sticks_, now)) return Done{};
+  sticks_ = now;
+  recording_.add(t_ns, now);
+  return world.command(now, t_ns);
 }
 
 Result<Done> LiveFlight::take_in(std::int64_t t_ns, World& world) {

@@ -5,6 +5,8 @@
 //            (datagram_pieces.hpp), recorded, and goes into the radio with that step. The serial line to the
 //            radio takes 5760 B/s and holds 1024 B, half of it for frames only: a flood loses what is beyond,
 //            and so is a datagram of more than 1500 B; the loss is told of
+//   Sticks   of a person's game controller, where there is one (pilot_stick.hpp): looked at each 20 ms, as a transmitter
+//            does; what has changed goes to the vehicle's receiver and is recorded
 //   Shown    once a second of the host: time, armed, mode, place, lateness
 #pragma once
 #include <functional>
@@ -23,6 +25,7 @@ struct LiveOptions {
   std::optional<std::int64_t> end_ns;            // virtual; none: until wants_end
   std::function<bool()> wants_end;               // asked before each step
   std::function<void(const std::string&)> show;  // the line of state
+  std::function<request::Sticks()> sticks;       // null: nobody is at any
 };
 
 class LiveFlight final : public Companion {
@@ -42,6 +45,7 @@ class LiveFlight final : public Companion {
 
  private:
   Result<Done> take_in(std::int64_t t_ns, World& world);
+  Result<Done> look_at_sticks(std::int64_t t_ns, World& world);
   void show_state(std::int64_t t_ns, const World& world);
   std::string state_line(std::int64_t t_ns) const;
 
@@ -52,7 +56,8 @@ class LiveFlight final : public Companion {
   Recording recording_;
   std::vector<std::string> names_;  // of the signals
   std::vector<double> values_;
-  std::int64_t ended_ns_ = 0, next_shown_ns_ = 0;
+  std::int64_t ended_ns_ = 0, next_shown_ns_ = 0, next_sticks_ns_ = 0;
+  std::optional<request::Sticks> sticks_;  // as they were told last
   double line_free_B_;
   std::uint64_t datagrams_ = 0, dropped_B_ = 0;
 };

@@ -32,6 +32,27 @@ std::string hex(const std::vector<std::uint8_t>& bytes) {
   return text;
 }
 
+std::string as_command(const std::vector<std::uint8_t>& piece) {
+  return "radio = \"" + hex(piece) + "\"";
+}
+
+// Travel in tenths of a percent, as a stick is read.
+std::string as_command(const request::Sticks& sticks) {
+  std::string text = "rc = { ";
+  const auto add = [&](const char* name, const std::optional<double>& share) {
+    char value[48];
+    std::snprintf(value, sizeof value, "%s = \"%.1f %%\", ", name, 100.0 * share.value_or(0.0));
+    if (share) text += value;
+  };
+  add("roll", sticks.roll);
+  add("pitch", sticks.pitch);
+  add("yaw", sticks.yaw);
+  add("thrust", sticks.thrust);
+  if (sticks.mode) text += "mode = " + std::to_string(*sticks.mode) + ", ";
+  if (sticks.arm) text += std::string("arm = ") + (*sticks.arm ? "true, " : "false, ");
+  return text + "on = " + (sticks.transmitter_on ? "true" : "false") + " }";
+}
+
 // A Lua text that stands for these bytes.
 std::string quoted(const std::string& text) {
   std::string out = "\"";
@@ -103,7 +124,12 @@ std::string ends(const FlownPlan& flown) {
 }  // namespace
 
 void Recording::add(std::int64_t t_ns, std::span<const std::uint8_t> piece) {
-  pieces_.push_back({t_ns, {piece.begin(), piece.end()}});
+  entries_.push_back({t_ns, std::vector<std::uint8_t>(piece.begin(), piece.end())});
+  ++pieces_;
+}
+
+void Recording::add(std::int64_t t_ns, const request::Sticks& sticks) {
+  entries_.push_back({t_ns, sticks});
 }
 
 Result<Done> Recording::write(const std::string& folder, const FlownPlan& flown) const {
@@ -116,11 +142,12 @@ Result<Done> Recording::write(const std::string& folder, const FlownPlan& flown)
   }
   std::string includes;
   number = 0;
-  for (std::size_t i = 0; i < pieces_.size();) {
+  for (std::size_t i = 0; i < entries_.size();) {
     std::string text = "return function(t)\n";
-    for (; i < pieces_.size() && text.size() < kLongestFile_B; ++i) {
-      text += "t:at(\"" + seconds(pieces_[i].t_ns) + " s\", { radio = \"" + hex(pieces_[i].bytes) +
-              "\" })\n";
+    for (; i < entries_.size() && text.size() < kLongestFile_B; ++i) {
+      const auto& [t_ns, what] = entries_[i];
+      text += "t:at(\"" + seconds(t_ns) + " s\", { " +
+              std::visit([](const auto& one) { return as_command(one); }, what) + " })\n";
     }
     const std::string name = free_name(flown, "commands", number);
     if (const auto done = write_text(folder + "/" + name, text + "end\n"); !done) return done;

@@ -9,9 +9,11 @@
 #include <span>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "base/result.hpp"
+#include "harness/world/request.hpp"
 
 namespace whirl::live {
 
@@ -29,17 +31,19 @@ class Recording {
  public:
   // In order of time.
   void add(std::int64_t t_ns, std::span<const std::uint8_t> piece);
-  std::size_t pieces() const { return pieces_.size(); }
+  void add(std::int64_t t_ns, const request::Sticks& sticks);
+  std::size_t pieces() const { return pieces_; }  // of the radio
 
   // Errors  host: a file cannot be written; bad_input: one of the plan's cannot be read any more
   Result<Done> write(const std::string& folder, const FlownPlan& flown) const;
 
  private:
-  struct Piece {
+  struct Entry {
     std::int64_t t_ns;
-    std::vector<std::uint8_t> bytes;
+    std::variant<std::vector<std::uint8_t>, request::Sticks> what;
   };
-  std::vector<Piece> pieces_;
+  std::vector<Entry> entries_;
+  std::size_t pieces_ = 0;
 };
 
 }  // namespace whirl::live

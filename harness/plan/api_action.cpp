@@ -140,7 +140,8 @@ int axis_number(const lua::Table& asked, const FaultPlace& place, const BoardDes
 }
 
 bool can_spoil(const Stage& stage, const FaultSpec& fault) {
-  return stage.spoils ? stage.spoils(target_of(fault)) : stage.offers.has(Offer::wire_faults);
+  return stage.spoils ? stage.spoils(target_of(fault), fault.kind)
+                      : stage.offers.has(Offer::wire_faults);
 }
 
 // t:fault { kind = "i2c_nack", device = "esc2", start = "0 s", duration = "100 ms", value = 1 }

@@ -35,6 +35,15 @@ Result<Done> check_offers(const Plan& plan, const Offers& offers) {
   return Done{};
 }
 
+Result<Done> check_faults(const Plan& plan, const std::function<bool(const std::string&)>& acts) {
+  for (const SourceCall& word : plan.words) {
+    if (acts(word.name)) continue;
+    return Error{ErrorKind::bad_input, plan.file + ":" + std::to_string(word.line),
+                 not_offered("a fault of kind " + word.name, Offer::wire_faults), ""};
+  }
+  return Done{};
+}
+
 Result<Done> check_signals(const Plan& plan, const std::vector<Signal>& here,
                            const std::vector<Signal>& elsewhere) {
   const SignalTable own(here), other(elsewhere);

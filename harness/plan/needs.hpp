@@ -1,5 +1,6 @@
 // What a plan asks of its targets, and whether they offer it.
 #pragma once
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,8 +17,8 @@ struct Need {
   std::string what, place;  // "t:budget", "hover.lua:31"
 };
 
-// What a call of this name asks: budget, bus, can, latency, fault. Of a fault only the plan's run shows whether
-// it is on a wire, or the world's own.
+// What a call of this name asks: budget, bus, can, latency, fault. Of a fault only the plan's run shows where
+// it is to act.
 std::vector<Offer> needs_of_call(const std::string& call);
 // By its keys and by the calls in its function's text.
 std::vector<Need> needs_of(const Plan& plan);
@@ -25,6 +26,9 @@ std::vector<Need> needs_of(const Plan& plan);
 // Errors  bad_input, with the plan's line: its text names a signal that `elsewhere` has and `here` has not
 Result<Done> check_signals(const Plan& plan, const std::vector<Signal>& here,
                            const std::vector<Signal>& elsewhere);
+
+// Errors  bad_input, with the plan's line: its text names a kind of fault that does not act here
+Result<Done> check_faults(const Plan& plan, const std::function<bool(const std::string&)>& acts);
 
 // In one sentence, for who asks: "t:budget".
 std::string not_offered(const std::string& what, Offer offer);

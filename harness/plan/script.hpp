@@ -41,8 +41,9 @@ struct Stage {
   std::function<Result<Done>(const FaultSpec&)> inject;  // into the board
   std::int64_t now_ns = 0;
   std::string folder = {};  // of the run, where its parts leave files; empty: none
-  std::function<bool(const std::string&)> sees = {};    // Target::sees; empty: all
-  std::function<bool(const std::string&)> spoils = {};  // Target::spoils; empty: by offers
+  std::function<bool(const std::string&)> sees = {};  // Target::sees; empty: all
+  std::function<bool(const std::string& what, const std::string& kind)> spoils =
+      {};  // Target::spoils; empty: by offers
 };
 
 // Of a card, as it was when the plan looked.

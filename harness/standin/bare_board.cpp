@@ -4,6 +4,7 @@
 #include <set>
 
 #include "io_bridges/board_description/pod_host.hpp"
+#include "io_bridges/devices/core/receiver.hpp"
 #include "io_bridges/protocols/dronecan/pod_link.hpp"
 
 namespace whirl {
@@ -18,6 +19,15 @@ BoardDevice line_of(const BoardDevice& radio) {
   return line;
 }
 
+// A receiver's end of its UART, for whoever plays it through an inverter.
+BoardDevice line_of_receiver(const BoardDevice& receiver) {
+  BoardDevice line{
+      .name = receiver.name, .type = "serial", .bus = receiver.bus, .place = receiver.place};
+  line.set("baud", double{core::receiver::kSbusBaud});
+  line.set("params.frame", std::string("8E2"));
+  return line;
+}
+
 // What is left where a pod's host was.
 BoardDevice end_of_host(const BoardDevice& host) {
   if (const auto can = can_of_host(host)) {
@@ -26,7 +36,10 @@ BoardDevice end_of_host(const BoardDevice& host) {
             .bus = "can" + std::to_string(*can),
             .place = host.place};
   }
-  BoardDevice line{.name = host.name, .type = "serial", .bus = "usart1", .place = host.place};
+  BoardDevice line{.name = host.name,
+                   .type = "serial",
+                   .bus = "usart" + std::to_string(kPodHostUart),
+                   .place = host.place};
   line.set("baud", io::kPodBaud);
   return line;
 }
@@ -37,6 +50,7 @@ BoardDescription bare_board(BoardDescription board) {
   std::set<std::string> buses;
   for (BoardDevice& device : board.devices) {
     if (device.type == "mavlink_link") device = line_of(device);
+    if (device.type == "sbus") device = line_of_receiver(device);
     if (is_pod_host(device)) device = end_of_host(device);
     if (device.type.ends_with("_dronecan")) buses.insert(device.bus);
   }

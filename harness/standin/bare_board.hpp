@@ -3,7 +3,8 @@
 //   Pod's host    is left out; its line, or its bus, is there for whoever plays it
 //   Nodes on CAN  of the world are left out; in their place the bus has a can_port
 //   Radio         its UART ends at a serial line, bytes as they are
-//   The rest      (memories, receivers, what is on other buses) stays on the board
+//   Receiver      with SBUS likewise, 8E2
+//   The rest      (memories, a receiver's sum signal, what is on other buses) stays on the board
 #pragma once
 #include "io_bridges/board_description/board_description.hpp"
 

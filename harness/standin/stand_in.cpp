@@ -85,7 +85,7 @@ void StandIn::hand_out() {
   for (io::Reader r(lockstep_.happened().bytes()); r.next();) {
     const io::Header& head = r.header();
     if (head.kind == io::Kind::i2c_reply) answer(r);
-    if (head.kind == io::Kind::can_transfer && head.board == 0) hand_out_can(r);
+    if (head.kind == io::Kind::can_transfer && head.board == options_.can_board) hand_out_can(r);
     if (head.kind != io::Kind::uart_received) continue;
     for (StandInLine& line : options_.lines) {
       if (line.board == head.board && line.uart == head.port) line.end.write(r.payload());
@@ -107,8 +107,9 @@ Result<Done> StandIn::take_in_can(std::int64_t now_ns) {
     if (!got.value()) return Done{};
     if (got.value()->own || got.value()->trouble) continue;
     heard();
-    lockstep_.to_send().add(io::Kind::can_order, options_.can_bus, now_ns,
-                            io::to_message(got.value()->frame));
+    const io::CanMessage frame = io::to_message(got.value()->frame);
+    const io::Header head{now_ns, io::Kind::can_order, options_.can_board, options_.can_bus, 0};
+    lockstep_.to_send().add(head, {{reinterpret_cast<const std::uint8_t*>(&frame), sizeof frame}});
   }
 }
 

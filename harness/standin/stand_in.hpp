@@ -1,6 +1,6 @@
 // A virtual board, or several that wires join, that behave as metal: time does not wait for who is at their wires.
 //
-//   First   of several: CAN, I2C and the world around are the first one's
+//   First   of several: I2C and the world around are the first one's
 //
 //   CAN     frames of an interface of this host go onto the board's bus, and what the board sends comes out there, by
 //           the board's can_port
@@ -40,6 +40,7 @@ struct StandInOptions {
   std::vector<StandInLine> lines = {};  // at any other nobody is
   std::optional<io::PseudoTerminal> instruments;
   std::uint16_t can_bus = 1;
+  std::uint8_t can_board = 0;              // of several, its place in their list
   std::unique_ptr<io::CanPort> can = {};   // none: nobody is on its bus
   std::vector<std::string> told;           // signals of the world, in the order of a line, in SI
   std::int64_t told_every_ns = 2'000'000;  // of virtual time, whole milliseconds

@@ -53,8 +53,8 @@ class Target {
   virtual Offers offers() const = 0;  // the same at any time
   // Of its log of buses: "i2c3", "pin_NAME".
   virtual bool sees(const std::string& /*wires*/) const { return offers().has(Offer::bus_log); }
-  // Of the faults on wires and devices: "imu", "can2".
-  virtual bool spoils(const std::string& /*what*/) const {
+  // Of the faults on wires and devices: "imu", "can2"; kind: "sensor_offset".
+  virtual bool spoils(const std::string& /*what*/, const std::string& /*kind*/) const {
     return offers().has(Offer::wire_faults);
   }
   virtual std::string why_ended() const { return {}; }

@@ -23,15 +23,21 @@ namespace {
 const std::string kRoot = WHIRL_ROOT;
 constexpr double kPace = 0.5;  // of a clock that nobody is late by
 
+constexpr const char *kBoard = "px4fmu_v1_all_can", *kBoardWithSticks = "px4fmu_v1_all_can_sbus";
+
 // The real image, alone: nothing around it but its wires.
 struct Metal {
-  Metal(const ScratchFolder& folder, std::unique_ptr<io::CanPort> can, CommonClock& clock)
-      : radio(folder.file("radio")) {
-    const auto board = read_board(kRoot + "/test_plans/boards/px4fmu_v1_all_can.lua");
+  Metal(const ScratchFolder& folder, std::unique_ptr<io::CanPort> can, CommonClock& clock,
+        const std::string& name)
+      : radio(folder.file("radio")), sticks(folder.file("sticks")) {
+    const auto board = read_board(kRoot + "/test_plans/boards/" + name + ".lua");
     StandInOptions wires;
     wires.pace = kPace;
     wires.can_bus = 2;
     wires.lines.push_back({2, std::move(io::PseudoTerminal::open(radio).value())});
+    if (name == kBoardWithSticks) {
+      wires.lines.push_back({1, std::move(io::PseudoTerminal::open(sticks).value())});
+    }
     wires.can = std::move(can);
     VirtualBoardOptions options;
     options.board = {bare_board(board.value()),
@@ -41,26 +47,30 @@ struct Metal {
   }
   void stop() { stand_in->stop(); }
 
-  std::string radio;
+  std::string radio, sticks;
   NoWorld world;
   std::optional<RunningStandIn> stand_in;
 };
 
-std::string bench_file(const std::string& radio) {
-  return "return { bench = \"stand_in\", board = \"px4fmu_v1_all_can\", pace = " +
-         std::to_string(kPace) + R"(, late = "5 ms", late_share = "2 %",
-  links = { { name = "bus", bus = "can2", interface = "memory" },
+std::string bench_file(const Metal& metal, const std::string& board) {
+  const std::string sticks =
+      "{ name = \"sticks\", bus = \"usart1\", path = \"" + metal.sticks + "\" },";
+  return "return { bench = \"stand_in\", board = \"" + board +
+         "\", pace = " + std::to_string(kPace) + R"(, late = "5 ms", late_share = "2 %",
+  links = { { name = "bus", bus = "can2", interface = "memory" }, )" +
+         (board == kBoardWithSticks ? sticks : "") + R"(
             { name = "radio", bus = "usart2", path = ")" +
-         radio + R"(", baud = "57600 baud" } },
+         metal.radio + R"(", baud = "57600 baud" } },
   safety = { phrase = "clear", longest = "60 s", heartbeat = "1 s" } })";
 }
 
-ComposedRun fly_on_bench(const std::string& plan, const ScratchFolder& folder) {
+ComposedRun fly_on_bench(const std::string& plan, const ScratchFolder& folder,
+                         const std::string& board = kBoard) {
   CommonClock clock;
   io::MemoryCan bus([&] { return clock.now_ns(); });
-  Metal metal(folder, bus.join(), clock);
+  Metal metal(folder, bus.join(), clock, board);
   const std::string file = folder.file("bench.lua");
-  std::ofstream(file) << bench_file(metal.radio);
+  std::ofstream(file) << bench_file(metal, board);
   const auto composition = boards_and_worlds(
       kRoot, folder.file("bench"), nullptr,
       [&](const bench::CanBusLink&) -> Result<std::unique_ptr<io::CanPort>> { return bus.join(); },
@@ -127,6 +137,36 @@ TEST(BenchFlight, FaultsOfItsPartsDoWhatTheyDoInLockstep) {
   // Told 10 times a second.
   EXPECT_TRUE(near(flown.figures().at("motors off"), lockstep.figures().at("motors off"),
                    stated(0.1, "how often it is told")));
+}
+
+// By a receiver on a line of the bench, which then loses its transmitter.
+constexpr const char* kBySticks = R"(plan "by its sticks" {
+  image = "flight", board = "px4fmu_v1_all_can_sbus", vehicle = "hp_quad", timeout = "40 s",
+  run = function(t)
+    t:within("8 s", function(s) return s.heartbeat_age_s < 1.5 end, "the first heartbeat")
+    for _, name in ipairs { "SENS_BUS", "ESC_BUS" } do
+      t:command { parameter = { name = name, value = 1 } }
+      t:within("3 s", function(s) return s.parameter_pending == 0 end, name .. " is answered")
+    end
+    t:within("8 s", function(s) return s.told_ready == 1 end, "it says that it can be armed")
+    t:command { rc = { mode = 2 } }
+    t:wait "1 s"
+    t:command { rc = { arm = true } }
+    t:within("2 s", function(s) return s.told_armed == 1 end, "armed by the switch")
+    t:wait "1 s"
+    t:command { rc = { thrust = "100 %" } }
+    t:within("8 s", function(s) return s.height_m > 0.5 end, "up")
+    t:fault { kind = "rc_link_lost", device = "sbus" }
+    t:told("3 s", "radio control lost")
+  end,
+})";
+
+TEST(BenchFlight, FliesByTheSticksOfAReceiverOnALine) {
+  const ScratchFolder folder;
+  const std::string plan = folder.file("sticks.lua");
+  std::ofstream(plan) << kBySticks;
+  const ComposedRun flown = fly_on_bench(plan, folder, kBoardWithSticks);
+  EXPECT_EQ(flown.code, 0) << std::string(flown.file["reason"]);
 }
 
 }  // namespace

@@ -1,10 +1,14 @@
 // The device of a board that is the host of a pod, and how the two are joined.
 #pragma once
+#include <cstdint>
 #include <optional>
 
 #include "io_bridges/board_description/board_description.hpp"
 
 namespace whirl {
+
+inline constexpr std::uint16_t kPodHostUart =
+    1;  // of the pod, for its host; questions and answers are named so on CAN as well
 
 inline bool is_pod_host(const BoardDevice& device) {
   return device.type == "pod_parts";

@@ -22,14 +22,23 @@ std::optional<SbusFrame> sbus_frame(RadioLink::Output out, Failsafe failsafe) {
   return frame;
 }
 
+void SbusGlitches::spoil(SbusFrame& frame, Nanoseconds now) {
+  if (faults_ == nullptr) return;
+  const Fault* glitch = faults_->find(FaultKind::rc_glitch, bus_, device_, now);
+  if (glitch == nullptr || nonsense_.uniform() >= glitch->value) return;
+  faults_->applied(*glitch, now);
+  for (auto& channel : frame.channels) {
+    channel = static_cast<std::uint16_t>(nonsense_.bits() % 2048);
+  }
+}
+
 SbusReceiver::SbusReceiver(EventQueue& queue, const Params& params, FaultBook* faults)
     : queue_(queue),
       params_(params),
-      faults_(faults),
       link_(params.link, faults),
       transmitter_(queue, format_of(params),
                    [this](const UartByte& byte, const UartFormat& format) { send(byte, format); }),
-      nonsense_(params.seed, params.name + ".nonsense"),
+      glitches_(faults, params.link.bus, params.link.device, params.seed, params.name),
       frame_(queue, [this] { begin_frame(); }) {
   frame_.in(core::receiver::kSbusBoot_ns);
 }
@@ -39,15 +48,7 @@ void SbusReceiver::begin_frame() {
   frame_.at(now + params_.period_ns);
   auto frame = sbus_frame(link_.at(now), params_.link.failsafe);
   if (!frame) return;
-  const Fault* glitch = faults_ == nullptr ? nullptr
-                                           : faults_->find(FaultKind::rc_glitch, params_.link.bus,
-                                                           params_.link.device, now);
-  if (glitch != nullptr && nonsense_.uniform() < glitch->value) {
-    faults_->applied(*glitch, now);
-    for (auto& channel : frame->channels) {
-      channel = static_cast<std::uint16_t>(nonsense_.bits() % 2048);
-    }
-  }
+  glitches_.spoil(*frame, now);
   transmitter_.add(encode(*frame));
 }
 

@@ -26,6 +26,19 @@ namespace whirl::io {
 // What the receiver puts out: nothing, or a frame with its flags.
 std::optional<SbusFrame> sbus_frame(RadioLink::Output out, Failsafe failsafe);
 
+// The fault rc_glitch, of the frames of one receiver.
+class SbusGlitches {
+ public:
+  SbusGlitches(FaultBook* faults, int bus, int device, std::uint64_t seed, const std::string& name)
+      : faults_(faults), bus_(bus), device_(device), nonsense_(seed, name + ".nonsense") {}
+  void spoil(SbusFrame& frame, Nanoseconds now);
+
+ private:
+  FaultBook* faults_;
+  int bus_, device_;
+  RandomStream nonsense_;
+};
+
 class SbusReceiver : public UartPeer {
  public:
   struct Params {
@@ -46,10 +59,9 @@ class SbusReceiver : public UartPeer {
 
   EventQueue& queue_;
   Params params_;
-  FaultBook* faults_;
   RadioLink link_;
   UartTransmitter transmitter_;
-  RandomStream nonsense_;
+  SbusGlitches glitches_;
   Event frame_;
 };
 

@@ -13,22 +13,24 @@ constexpr double kBaud_tolerance = 0.03;
 
 }  // namespace
 
-SerialPort::SerialPort(EventQueue& queue, std::string name, double baud, FindingSink findings)
+SerialPort::SerialPort(EventQueue& queue, std::string name, const UartFormat& format,
+                       FindingSink findings)
     : queue_(queue),
       name_(std::move(name)),
-      baud_(baud),
+      format_(format),
       findings_(std::move(findings)),
       pause_(queue, [this] { hand_over(); }),
       byte_due_(queue, [this] { next_byte(); }) {}
 
 void SerialPort::receive(const UartByte& byte, const UartFormat& format, Nanoseconds now) {
-  const bool fits = std::abs(format.baud - baud_) <= kBaud_tolerance * baud_ &&
-                    format.data_bits == 8 && format.parity == 'N';
+  const bool fits = std::abs(format.baud - format_.baud) <= kBaud_tolerance * format_.baud &&
+                    format.data_bits == format_.data_bits && format.parity == format_.parity;
   if (!fits && !mismatch_told_ && findings_) {
     mismatch_told_ = true;
     findings_({now, name_,
                "sent to at " + std::to_string(std::lround(format.baud)) +
-                   " baud, but it listens at " + std::to_string(std::lround(baud_)) + " 8N1"});
+                   " baud, but it listens at " + std::to_string(std::lround(format_.baud)) +
+                   (format_.parity == 'N' ? " 8N1" : " 8E2")});
   }
   message_.push_back(byte.value);
   last_ns_ = now;
@@ -58,9 +60,7 @@ void SerialPort::next_byte() {
   if (!waiting_.empty()) {
     byte_due_.at(std::max(queue_.now(), waiting_.front().t_ns) + character_ns());
   }
-  UartFormat format;
-  format.baud = baud_;
-  send(byte, format);
+  send(byte, format_);
 }
 
 }  // namespace whirl::io

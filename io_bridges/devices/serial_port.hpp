@@ -2,7 +2,7 @@
 //
 //   From the MCU  characters gathered into messages: up to a line end, 64 bytes, or a pause of ten
 //                 characters; each handed over with the time of its last stop bit
-//   To the MCU    bytes one after another at the port's own baud rate, 8N1
+//   To the MCU    bytes one after another in the port's own format
 //   Findings      a baud rate more than 3 % off, or another format: the characters come as garbage
 //                 on copper, here they come whole and the mismatch is told once
 #pragma once
@@ -21,7 +21,7 @@ class SerialPort : public UartPeer {
  public:
   using Sink = std::function<void(std::span<const std::uint8_t> bytes, Nanoseconds t_ns)>;
 
-  SerialPort(EventQueue& queue, std::string name, double baud, FindingSink findings);
+  SerialPort(EventQueue& queue, std::string name, const UartFormat& format, FindingSink findings);
 
   void on_message(Sink sink) { sink_ = std::move(sink); }
   void send_bytes(std::span<const std::uint8_t> bytes, Nanoseconds t_ns);  // no earlier than t_ns
@@ -32,13 +32,16 @@ class SerialPort : public UartPeer {
     Nanoseconds t_ns;
     std::uint8_t byte;
   };
-  Nanoseconds character_ns() const { return static_cast<Nanoseconds>(10e9 / baud_); }
+  double bits() const {
+    return 1 + format_.data_bits + (format_.parity == 'N' ? 0 : 1) + format_.stop_bits;
+  }
+  Nanoseconds character_ns() const { return static_cast<Nanoseconds>(bits() * 1e9 / format_.baud); }
   void hand_over();
   void next_byte();
 
   EventQueue& queue_;
   std::string name_;
-  double baud_;
+  UartFormat format_;
   FindingSink findings_;
   Sink sink_;
   std::vector<std::uint8_t> message_;

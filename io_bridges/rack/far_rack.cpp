@@ -25,6 +25,9 @@ Result<Done> FarRack::add(const BoardDescription& board, int number, const Devic
   DeviceSlot slot(*this, board.name, device, *type, number);
   auto made = type->make(slot);
   if (slot.error()) return *slot.error();
+  for (const Intake& intake : made->intakes()) {
+    takers_[intake.kind].push_back({intake.port, made.get()});
+  }
   devices_.push_back(std::move(made));
   return Done{};
 }
@@ -32,11 +35,10 @@ Result<Done> FarRack::add(const BoardDescription& board, int number, const Devic
 void FarRack::on_message(const io::Reader& message) {
   const io::Header& head = message.header();
   if (head.kind == io::Kind::fault) return faults_.add(fault_of(message));
-  for (const auto& device : devices_) {
-    for (const Intake& intake : device->intakes()) {
-      const bool its = intake.kind == head.kind && intake.port.value_or(head.port) == head.port;
-      if (its) device->on_message(message);
-    }
+  const auto takers = takers_.find(head.kind);
+  if (takers == takers_.end()) return;
+  for (const Taker& taker : takers->second) {
+    if (taker.port.value_or(head.port) == head.port) taker.device->on_message(message);
   }
 }
 

@@ -6,6 +6,7 @@
 //   Faults    of its devices, by their numbers on the board; those of a wire are the class's that has it
 //   Errors    bad_input: a device needs more of the board than its wire
 #pragma once
+#include <map>
 #include <memory>
 #include <vector>
 
@@ -48,6 +49,11 @@ class FarRack : protected Rack {
   io::FaultBook faults_;
   io::Batch happened_;
   std::vector<std::unique_ptr<RackDevice>> devices_;
+  struct Taker {
+    std::optional<std::uint16_t> port;  // none: whatever it is
+    RackDevice* device;
+  };
+  std::map<io::Kind, std::vector<Taker>> takers_;
 };
 
 }  // namespace whirl::rack

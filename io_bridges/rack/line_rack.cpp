@@ -1,17 +1,11 @@
 #include "io_bridges/rack/line_rack.hpp"
 
-#include "io_bridges/board_description/pod_host.hpp"
-
 namespace whirl::rack {
 
 void LineRack::give(std::span<const std::uint8_t> bytes) {
   for (const std::uint8_t byte : bytes) {
     for (io::UartPeer* peer : peers_) peer->receive({.value = byte}, format_, events().now());
   }
-}
-
-bool LineRack::carries(const BoardDevice& device) const {
-  return is_pod_host(device) && !can_of_host(device);
 }
 
 bool LineRack::join_uart(int /*number*/, io::UartPeer& peer) {

@@ -1,5 +1,4 @@
-// The devices of a board that play its host, at the other end of one of its serial lines, without the board
-// (far_rack.hpp).
+// The devices of a board at the other end of one of its serial lines, without the board (far_rack.hpp).
 //
 //   Line   whichever it is: bytes of the microcontroller's go to all that have joined one. Ours are heard afar with their
 //          last stop bit, at the device's own rate; on copper they take their time again
@@ -16,17 +15,19 @@ namespace whirl::rack {
 class LineRack final : public FarRack {
  public:
   using ByteSink = std::function<void(std::uint8_t)>;
-  // heard: what the microcontroller hears.
-  LineRack(double baud, std::uint64_t seed, ByteSink heard)
-      : FarRack(seed), format_{.baud = baud}, heard_(std::move(heard)) {}
+  using Choice = std::function<bool(const BoardDevice&)>;
+  // format: of the microcontroller's bytes. heard: what it hears.
+  LineRack(io::UartFormat format, std::uint64_t seed, Choice carries, ByteSink heard)
+      : FarRack(seed), format_(format), carries_(std::move(carries)), heard_(std::move(heard)) {}
 
   void give(std::span<const std::uint8_t> bytes);  // the microcontroller's
 
  private:
-  bool carries(const BoardDevice& device) const override;
+  bool carries(const BoardDevice& device) const override { return carries_(device); }
   bool join_uart(int number, io::UartPeer& peer) override;
 
   io::UartFormat format_;
+  Choice carries_;
   ByteSink heard_;
   std::vector<io::UartPeer*> peers_;
 };

@@ -39,10 +39,10 @@ Error why_not_opened(const std::string& path, int error) {
 
 }  // namespace
 
-Result<Tty> Tty::open(const std::string& path, int baud) {
+Result<Tty> Tty::open(const std::string& path, int baud, TtyFrame frame) {
   const int file = ::open(path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
   if (file < 0) return why_not_opened(path, errno);
-  Tty tty(file, path);
+  Tty tty(file, path, frame);
   termios2 line{};
   if (ioctl(file, TCGETS2, &line) != 0) return refused(path, "is no serial line", "");
   // Root may open what is held: whoever holds it has to be asked for.
@@ -55,6 +55,7 @@ Result<Tty> Tty::open(const std::string& path, int baud) {
 Result<Done> Tty::set_baud(int baud) {
   termios2 line{};
   line.c_cflag = CS8 | CREAD | CLOCAL | BOTHER | (BOTHER << IBSHIFT);
+  if (frame_ == TtyFrame::e82) line.c_cflag |= PARENB | CSTOPB;
   line.c_ispeed = line.c_ospeed = static_cast<speed_t>(baud);
   line.c_cc[VMIN] = 1;  // so that an idle line is not ready, and one that hung up reads as ended
   if (ioctl(file_, TCSETS2, &line) != 0) {
@@ -72,11 +73,13 @@ Result<Done> Tty::set_baud(int baud) {
 Tty::Tty(Tty&& other) noexcept
     : file_(std::exchange(other.file_, -1)),
       path_(std::move(other.path_)),
+      frame_(other.frame_),
       to_write_(std::move(other.to_write_)) {}
 
 Tty& Tty::operator=(Tty&& other) noexcept {
   std::swap(file_, other.file_);
   std::swap(path_, other.path_);
+  std::swap(frame_, other.frame_);
   std::swap(to_write_, other.to_write_);
   return *this;
 }

@@ -1,6 +1,6 @@
 // A serial line of this host: /dev/ttyUSB0, /dev/ttyACM0, or the end of a pseudo-terminal.
 //
-//   Line    raw 8N1, no flow control; any rate that the driver can make, checked to 2 %
+//   Line    raw 8N1, or 8E2 as SBUS is, no flow control; any rate that the driver can make, checked to 2 %
 //   Sole    nobody else may open it while it is held (TIOCEXCL)
 //   Never   waits: what the kernel does not take now is kept and goes with the next write or flush
 //   Errors  bad_input: not there, no permission, no serial line, held by another, the rate cannot be made;
@@ -15,9 +15,11 @@
 
 namespace whirl::io {
 
+enum class TtyFrame : std::uint8_t { n81, e82 };  // parity and stop bits, of eight bits
+
 class Tty {
  public:
-  static Result<Tty> open(const std::string& path, int baud);
+  static Result<Tty> open(const std::string& path, int baud, TtyFrame frame = TtyFrame::n81);
   Tty(Tty&& other) noexcept;
   Tty& operator=(Tty&& other) noexcept;
   Tty(const Tty&) = delete;
@@ -34,10 +36,12 @@ class Tty {
   const std::string& path() const { return path_; }
 
  private:
-  Tty(int file, std::string path) : file_(file), path_(std::move(path)) {}
+  Tty(int file, std::string path, TtyFrame frame)
+      : file_(file), path_(std::move(path)), frame_(frame) {}
   Error unplugged() const;
   int file_ = -1;
   std::string path_;
+  TtyFrame frame_;
   std::vector<std::uint8_t> to_write_;
 };
 

@@ -13,9 +13,9 @@
 namespace fw::pod {
 namespace {
 
-const std::vector<std::uint8_t> kSample{0xA5, 0x01, 0x07, 0x0F, 0x00, 0x01, 0x00,
-                                        0xFE, 0xFF, 0x00, 0x08, 0xFD, 0xFF, 0x64,
-                                        0x00, 0x00, 0x80, 0xFF, 0x7F, 0x19, 0x3C};
+const std::vector<std::uint8_t> kSample{0xA5, 0x01, 0x07, 0x10, 0x34, 0x12, 0x01, 0x00,
+                                        0xFE, 0xFF, 0x00, 0x08, 0xFD, 0xFF, 0x64, 0x00,
+                                        0x00, 0x80, 0xFF, 0x7F, 0x5F, 0x94};
 
 std::vector<Frame> read(const std::vector<std::uint8_t>& bytes, std::uint32_t damaged) {
   FrameReader reader;
@@ -34,8 +34,9 @@ TEST(HostFrame, ASampleIsReadLowByteFirst) {
   ASSERT_EQ(all.size(), 1u);
   EXPECT_EQ(all[0].kind, FrameKind::sample);
   EXPECT_EQ(all[0].sequence, 7);
+  EXPECT_EQ(all[0].half(0), 0x1234);
   const std::int16_t want[] = {1, -2, 2048, -3, 100, -32768, 32767};
-  for (std::size_t i = 0; i < 7; ++i) EXPECT_EQ(all[0].word(1 + 2 * i), want[i]) << i;
+  for (std::size_t i = 0; i < 7; ++i) EXPECT_EQ(all[0].word(2 + 2 * i), want[i]) << i;
 }
 
 TEST(HostFrame, AFlippedBitCostsThatFrameOnlyAndIsCounted) {
@@ -64,6 +65,7 @@ TEST(HostFrame, WhatThePodWritesTheHostReads) {
   for (const std::uint32_t word : {100000u, 70000u, 70001u, 17u, 123456u}) out.word(word);
   out.half(2);
   out.half(3);
+  out.half(1100);
   int heard = 0;
   whirl::io::PodLinkReader host([&](const whirl::io::PodStatus& s) {
     ++heard;
@@ -71,6 +73,7 @@ TEST(HostFrame, WhatThePodWritesTheHostReads) {
     EXPECT_EQ(s.bursts, 70000u);
     EXPECT_EQ(s.now_us, 123456u);
     EXPECT_EQ(s.unsent, 3);
+    EXPECT_EQ(s.wait_us, 1100);
   });
   for (const std::uint8_t byte : out.finish()) host.add(byte);
   EXPECT_EQ(heard, 1);
@@ -89,17 +92,19 @@ TEST(CanSample, StepsOfTheWidestRangeAreCountsOfThePartsOwn) {
 TEST(CanSample, AStampNumbersItsSampleByMilliseconds) {
   StampCounter stamps;
   const std::uint8_t first = stamps.number(4000, 1u << 12);
+  const std::uint16_t begin_us = stamps.now_us();
   EXPECT_EQ(stamps.number(4004, 1u << 12), first);     // once more
   EXPECT_EQ(stamps.number(4, 1u << 12), first + 1);    // round, 0.96 ms later
   EXPECT_EQ(stamps.number(208, 1u << 12), first + 3);  // one is missing
+  EXPECT_EQ(static_cast<std::uint16_t>(stamps.now_us() - begin_us), 40 + 960 + 2040);
 }
 
 TEST(SampleWatch, ALostSampleIsFlaggedInItsPlace) {
   SampleWatch watch;
-  watch.came(254, 0);
-  watch.came(255, 1000);
-  watch.came(1, 3000);  // 0 never came
-  watch.came(2, 4000);
+  watch.came(254, 0, false);
+  watch.came(255, 1000, false);
+  watch.came(1, 3000, false);  // 0 never came
+  watch.came(2, 4000, false);
   EXPECT_EQ(watch.lost(), 1u);
   EXPECT_EQ(watch.late(), 0u);
   EXPECT_EQ(watch.flagged(), 0b100u);
@@ -107,11 +112,12 @@ TEST(SampleWatch, ALostSampleIsFlaggedInItsPlace) {
 
 TEST(SampleWatch, ALateOneIsFlaggedItself) {
   SampleWatch watch;
-  watch.came(1, 0);
-  EXPECT_FALSE(watch.overdue(1250));
-  EXPECT_TRUE(watch.overdue(1251));
-  watch.came(2, 1251);
-  watch.came(3, 2251);
+  watch.came(1, 3000, false);
+  EXPECT_FALSE(watch.overdue(0));
+  EXPECT_FALSE(watch.overdue(4250));
+  EXPECT_TRUE(watch.overdue(4251));
+  watch.came(2, 4000, true);
+  watch.came(3, 5000, false);
   EXPECT_EQ(watch.lost(), 0u);
   EXPECT_EQ(watch.late(), 1u);
   EXPECT_EQ(watch.flagged(), 0b10u);

@@ -15,6 +15,7 @@ namespace {
 struct RadioWorld final : World {
   std::vector<Signal> all{{"told_armed", Dimension::none, ""}, {"height", Dimension::length, ""}};
   std::vector<Bytes> radio;
+  std::vector<request::Sticks> sticks;
   const std::vector<Signal>& signals() const override { return all; }
   void read(std::span<double> values) const override {
     values[0] = 1.0;
@@ -24,6 +25,10 @@ struct RadioWorld final : World {
   Result<Done> command(const Command& command, std::int64_t) override {
     if (const auto* bytes = std::get_if<request::Radio>(&command)) {
       radio.push_back(bytes->bytes);
+      return Done{};
+    }
+    if (const auto* given = std::get_if<request::Sticks>(&command)) {
+      sticks.push_back(*given);
       return Done{};
     }
     return not_understood("a radio", word(command));
@@ -71,6 +76,26 @@ TEST_F(Bridge, WhatComesGoesIntoTheRadioAndIntoTheRecordingPieceByPiece) {
   EXPECT_TRUE(turn(50));
   EXPECT_EQ(world_.radio, (std::vector<Bytes>{heartbeat(), {1, 2, 3}}));
   EXPECT_EQ(flight_->recording().pieces(), 2u);
+}
+
+TEST_F(Bridge, SticksAreGivenAsTheyChange) {
+  request::Sticks held;
+  held.thrust = 0.25;
+  LiveOptions options;
+  options.sticks = [&held] { return held; };
+  open(options);
+  EXPECT_TRUE(turn(0));
+  EXPECT_TRUE(turn(20));
+  EXPECT_EQ(world_.sticks.size(), 1u);
+  held.thrust = 0.5;
+  EXPECT_TRUE(turn(30));  // looked at each 20 ms
+  EXPECT_EQ(world_.sticks.size(), 1u);
+  EXPECT_TRUE(turn(40));
+  ASSERT_EQ(world_.sticks.size(), 2u);
+  held.transmitter_on = false;
+  EXPECT_TRUE(turn(60));
+  ASSERT_EQ(world_.sticks.size(), 3u);
+  EXPECT_FALSE(world_.sticks[2].transmitter_on);
 }
 
 TEST_F(Bridge, FramesGoOutOneToADatagramAndTextOfATerminalDoesNot) {

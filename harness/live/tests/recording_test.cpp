@@ -62,6 +62,27 @@ TEST_F(RecordingTest, LeavesAPlanWithTheSeedAndTheSettingsThatWereFlown) {
   EXPECT_NE(text("commands.lua").find("within(\"1.2490 m\", \"1.2510 m\")"), std::string::npos);
 }
 
+TEST_F(RecordingTest, SticksAreACommandOfTheTransmitter) {
+  request::Sticks sticks;
+  sticks.roll = -0.326;
+  sticks.thrust = 1.0;
+  sticks.mode = 2;
+  sticks.arm = false;
+  recording_.add(20'000'000, sticks);
+  sticks = {};
+  sticks.transmitter_on = false;
+  recording_.add(40'000'000, sticks);
+  EXPECT_EQ(recording_.pieces(), 0u);  // of the radio
+  ASSERT_TRUE(recording_.write(scratch_.file("run"), flown_).ok());
+  EXPECT_TRUE(plan::PlanFile::load(scratch_.file("run/commands.lua")).ok());
+  const std::string written = text("commands_1.lua");
+  EXPECT_NE(written.find("t:at(\"0.020 s\", { rc = { roll = \"-32.6 %\", thrust = \"100.0 %\", "
+                         "mode = 2, arm = false, on = true } })"),
+            std::string::npos)
+      << written;
+  EXPECT_NE(written.find("t:at(\"0.040 s\", { rc = { on = false } })"), std::string::npos);
+}
+
 TEST_F(RecordingTest, ALongFlightIsCutIntoFilesThatAPlanMayTakeIn) {
   const std::vector<std::uint8_t> piece(65, 0x5A);
   for (std::int64_t i = 0; i < 12'000; ++i) recording_.add(i * 100'000'000, piece);

@@ -7,11 +7,11 @@
 //   Safe     an emergency_stop from the world, the bench's longest time, a lost heartbeat, the operator or the
 //            end of the run: the links send the zero set-point and nothing else from then on
 //   Offers   a log of the buses on which an analyser's clips are; no virtual time, no watches; faults of the parts that it
-//            plays, and of their bus
+//            plays, and of their bus; of those behind a pod what is a matter of their data
 #pragma once
 #include <functional>
+#include <map>
 #include <memory>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -26,7 +26,8 @@ struct BenchOptions {
   BenchDescription bench;
   std::function<bool()> operator_stops;  // asked each step; null: nobody is there
   bool real_time = true;                 // asks the host for SCHED_FIFO
-  std::set<std::string> played = {};     // parts and their buses: "imu", "can2"
+  // Parts and their buses, "imu", "can2", and the kinds of fault that act there.
+  std::map<std::string, std::function<bool(const std::string& kind)>> played = {};
 };
 
 class BenchTarget final : public Target {
@@ -42,7 +43,10 @@ class BenchTarget final : public Target {
   std::vector<std::pair<std::string, std::string>> versions() const override;
   Offers offers() const override;
   bool sees(const std::string& wires) const override;
-  bool spoils(const std::string& what) const override { return options_.played.count(what) != 0; }
+  bool spoils(const std::string& what, const std::string& kind) const override {
+    const auto part = options_.played.find(what);
+    return part != options_.played.end() && part->second(kind);
+  }
   std::string why_ended() const override { return why_; }
   const HeldPace* held_pace() const override { return &held_; }
 

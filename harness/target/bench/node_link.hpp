@@ -20,7 +20,7 @@ struct NodeOptions {
   rack::DeviceTypes types;
   std::uint64_t seed = 1;  // of the board: the same copies of the parts as on a virtual one
   std::string log = {};    // a file of candump's format; empty: none
-  bool pod = false;        // they are a pod's host
+  std::optional<PodPlaces> pod = {};  // they are a pod's host
 };
 
 class NodeLink final : public RackLink {

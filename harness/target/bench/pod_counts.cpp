@@ -3,12 +3,13 @@
 #include <array>
 #include <charconv>
 
+#include "io_bridges/board_description/pod_host.hpp"
+
 namespace whirl::bench {
 namespace {
 
 constexpr std::int64_t kSettled_ns = 1'000'000'000;
 constexpr long kWraps = 1 << 16;  // they are sixteen bits wide
-constexpr std::uint16_t kLine = 1;
 
 constexpr const char* kClock = "pod_now_us";  // 0: it never told its status
 
@@ -42,7 +43,7 @@ void PodCounts::ask() {
 
 void PodCounts::ask(const std::string& name) {
   io::Batch question;
-  question.add(io::Kind::uart_frame, kLine, rack_.events().now(), name.data(),
+  question.add(io::Kind::uart_frame, kPodHostUart, rack_.events().now(), name.data(),
                static_cast<std::uint32_t>(name.size()));
   io::Reader reader(question.bytes());
   if (reader.next()) rack_.on_message(reader);

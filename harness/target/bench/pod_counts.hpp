@@ -14,9 +14,9 @@ class PodCounts {
   // Its host is on that rack, which has to live as long.
   explicit PodCounts(rack::FarRack& rack) : rack_(rack) {}
 
-  // An order is for the pod's host: all are but lines of text and faults, which are the flight controller's.
+  // An order is for the pod's host: all are but lines of text, which are the flight controller's.
   static bool is_for_host(const io::Reader& order) {
-    return order.header().kind != io::Kind::uart_frame && order.header().kind != io::Kind::fault;
+    return order.header().kind != io::Kind::uart_frame;
   }
   // An answer of the host's; it is kept here.
   bool hears(const io::Reader& told);

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include "io_bridges/board_description/pod_host.hpp"
 #include "io_bridges/protocols/dronecan/pod_link.hpp"
 
 namespace whirl::bench {
@@ -10,12 +11,16 @@ namespace {
 
 constexpr int kMost_pieces = 8;  // of a turn: who floods a line must not hold the loop
 
+bool is_on_line(const BoardDevice& device) {
+  return is_pod_host(device) && !can_of_host(device);
+}
+
 }  // namespace
 
 PodLine::PodLine(PodLineOptions options)
-    : RackLink(rack_, true),
+    : RackLink(rack_, options.places),
       options_(std::move(options)),
-      rack_(io::kPodBaud, options_.seed, [this](std::uint8_t byte) {
+      rack_({.baud = io::kPodBaud}, options_.seed, is_on_line, [this](std::uint8_t byte) {
         if (!safe_) waiting_.push_back(byte);
       }) {}
 

@@ -18,6 +18,7 @@ struct PodLineOptions {
   BoardDescription board;  // the pod's; of it, the host on its line
   rack::DeviceTypes types;
   std::uint64_t seed = 1;  // of that board
+  PodPlaces places = {};
 };
 
 class PodLine final : public RackLink {

@@ -1,6 +1,7 @@
 #include "harness/target/bench/rack_link.hpp"
 
 #include <algorithm>
+#include <tuple>
 
 namespace whirl::bench {
 namespace {
@@ -9,8 +10,10 @@ constexpr std::int64_t kGrain_ns = 50'000;  // of the host: not a turn for each 
 
 }  // namespace
 
-RackLink::RackLink(rack::FarRack& rack, bool pod) : rack_(rack) {
-  if (pod) pod_.emplace(rack);
+RackLink::RackLink(rack::FarRack& rack, const std::optional<PodPlaces>& pod) : rack_(rack) {
+  if (!pod) return;
+  pod_.emplace(rack);
+  places_ = *pod;
 }
 
 Result<Done> RackLink::build(const BoardDescription& board, const rack::DeviceTypes& types,
@@ -21,8 +24,23 @@ Result<Done> RackLink::build(const BoardDescription& board, const rack::DeviceTy
 }
 
 bool RackLink::take(const io::Reader& order, std::int64_t /*due_host_ns*/) {
-  if (!pod_ || PodCounts::is_for_host(order)) rack_.on_message(order);
+  if (pod_ && order.header().kind == io::Kind::fault) {
+    give_fault(order);
+  } else if (!pod_ || PodCounts::is_for_host(order)) {
+    rack_.on_message(order);
+  }
   return false;
+}
+
+void RackLink::give_fault(const io::Reader& order) {
+  auto fault = order.as<io::FaultCommand>();
+  const auto part = places_.find({fault.bus, fault.address});
+  if (part == places_.end()) return;
+  std::tie(fault.bus, fault.address) = part->second;
+  io::Batch given;
+  given.add(io::Kind::fault, order.header().port, order.header().t_ns, fault);
+  io::Reader reader(given.bytes());
+  if (reader.next()) rack_.on_message(reader);
 }
 
 void RackLink::advance(std::int64_t host_ns) {

@@ -5,16 +5,22 @@
 //   Times    parts live in virtual time, as far as the host's clock has come, and never beyond the step at hand: a
 //            host that is late makes them late. What they send leaves within 50 us of the host of when it is due
 //   Safe     nothing turns here: the parts fall silent
-//   Pod      the parts are behind a pod: what it counts of samples lost and late is told when the run is over
+//   Pod      the parts are behind a pod: what it counts of samples lost and late is told when the run is over. Faults name
+//            a part as the flight controller's board has it, and are given to the one that plays it
 //   Errors   bad_input: the board has no part at that wire; host: the adapter is gone
 #pragma once
+#include <map>
 #include <optional>
+#include <utility>
 
 #include "harness/target/bench/link.hpp"
 #include "harness/target/bench/pod_counts.hpp"
 #include "io_bridges/rack/far_rack.hpp"
 
 namespace whirl::bench {
+
+// By bus and address of a part on the flight controller's board: those of the one behind the pod's host.
+using PodPlaces = std::map<std::pair<int, int>, std::pair<int, int>>;
 
 class RackLink : public Link {
  public:
@@ -27,7 +33,7 @@ class RackLink : public Link {
 
  protected:
   // The rack has to live as long, and may be made later.
-  RackLink(rack::FarRack& rack, bool pod);
+  RackLink(rack::FarRack& rack, const std::optional<PodPlaces>& pod);
 
   // wire: as messages name it.
   Result<Done> build(const BoardDescription& board, const rack::DeviceTypes& types,
@@ -40,8 +46,11 @@ class RackLink : public Link {
   virtual Result<Done> send_waiting(std::int64_t now_host_ns) = 0;
   void hand_over(Arrivals& arrivals);
 
+  void give_fault(const io::Reader& order);
+
   rack::FarRack& rack_;
   std::optional<PodCounts> pod_;
+  PodPlaces places_;
   BenchTime time_;
   std::int64_t served_host_ns_ = 0;
 };

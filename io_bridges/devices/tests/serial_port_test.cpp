@@ -12,7 +12,8 @@ struct Desk {
   EventQueue queue;
   std::vector<Finding> findings;
   std::vector<std::pair<Nanoseconds, std::string>> heard;
-  SerialPort port{queue, "console", 115200.0, [this](const Finding& f) { findings.push_back(f); }};
+  SerialPort port{
+      queue, "console", {.baud = 115200.0}, [this](const Finding& f) { findings.push_back(f); }};
 
   Desk() {
     port.on_message([this](std::span<const std::uint8_t> bytes, Nanoseconds t) {

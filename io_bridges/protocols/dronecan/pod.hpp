@@ -1,7 +1,7 @@
 // What a host and a pod tell each other over CAN: the frames of pod_link.hpp as messages of this house.
 //
-//   PodSample    sequence, accelerometer x y z, temperature, gyro x y z, in the counts that the part is to show:
-//                17 bytes with the CRC, three frames; at 1 kHz and 1 Mbit/s 37 to 46 % of the bus
+//   PodSample    sequence, the host's time of it in us, accelerometer x y z, temperature, gyro x y z, in the counts that
+//                the part is to show: 19 bytes with the CRC, three frames; at 1 kHz and 1 Mbit/s 38 to 48 % of the bus
 //   PodFrame     any other frame: kind, sequence, payload
 //   PodSetpoint  an ESC was told something: one frame
 //   Ids          20110 to 20112, of the range that the protocol leaves to vendors
@@ -14,14 +14,17 @@ namespace whirl::io::dronecan {
 struct PodSample {
   static constexpr DataType kType{
       Kind::message, 20110,
-      signature_of("whirl.PodSample\nsaturated uint8 sequence\nsaturated int16[7] counts"), 15,
-      "whirl.PodSample"};
+      signature_of("whirl.PodSample\nsaturated uint8 sequence\ntruncated uint16 time\n"
+                   "saturated int16[7] counts"),
+      17, "whirl.PodSample"};
   std::uint8_t sequence = 0;
+  std::uint16_t time_us = 0;  // wraps
   std::array<std::int16_t, 7> counts{};
 
   template <typename F>
   void layout(F& f) {
     f.u(sequence, 8);
+    f.u_cut(time_us, 16);
     for (std::int16_t& count : counts) f.i(count, 16);
   }
 };

@@ -12,7 +12,7 @@ constexpr std::uint8_t kStart = 0xA5, kSample = 0x01, kFaults = 0x02, kBarometer
                        kProm = 0x04, kMagnetometer = 0x05, kEsc = 0x06, kGps = 0x07,
                        kGpsBaud = 0x08, kSbus = 0x09, kCppm = 0x0A, kStatus = 0x81,
                        kSetpoint = 0x82, kGpsWritten = 0x83;
-constexpr std::size_t kHead = 4, kTail = 2, kStatusBytes = 52, kSetpointBytes = 4;
+constexpr std::size_t kHead = 4, kTail = 2, kStatusBytes = 54, kSetpointBytes = 4;
 constexpr std::uint8_t kSilent = 0x80;  // of SBUS's flags
 
 std::uint16_t checksum(std::span<const std::uint8_t> bytes) {
@@ -66,14 +66,16 @@ PodStatus pod_status(std::span<const std::uint8_t> payload) {
   }
   status.gps_dropped = walk.half();
   status.unsent = walk.half();
+  status.wait_us = walk.half();
   return status;
 }
 
 }  // namespace
 
-std::vector<std::uint8_t> pack_pod_sample(std::uint8_t sequence,
+std::vector<std::uint8_t> pack_pod_sample(std::uint8_t sequence, std::uint16_t time_us,
                                           const std::array<std::int16_t, 7>& counts) {
-  std::vector<std::uint8_t> frame{kStart, kSample, sequence, 0, 0};
+  std::vector<std::uint8_t> frame{kStart, kSample, sequence, 0};
+  add_half(frame, time_us);
   for (const std::int16_t count : counts) add_half(frame, static_cast<std::uint16_t>(count));
   return sealed(std::move(frame));
 }

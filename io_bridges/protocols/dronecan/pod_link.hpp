@@ -1,13 +1,13 @@
 // The frames between a host and the pod on its UART: 0xA5, kind, sequence, length, payload, CRC-16/MCRF4XX
 // over kind to payload, low byte first. Over CAN they are messages: dronecan/pod.hpp.
 //
-//   To the pod   0x01 sample: flags, accelerometer x y z, temperature, gyro x y z (int16, counts)
+//   To the pod   0x01 sample: the host's time of it (us, 16 bits), accelerometer x y z, temperature, gyro x y z (int16, counts)
 //                0x02 faults: flags (bit 0 frozen, bit 1 no supply), identity (0: its own)
 //                0x03 barometer: quantity (0 pressure, 1 temperature), counts; 0x04 its PROM
 //                0x05 magnetometer: x, y, z; 0x06 an ESC's status: number, mA, rpm, flags
 //                0x07 bytes of the GPS, from when on by the pod's clock (us; 0: at once); 0x08 its baud rate
 //                0x09 SBUS: channels as on the line and flags; 0x0A CPPM: lengths of its channels
-//   From it      0x81 status (52 bytes): settings, what was lost or late, and counters
+//   From it      0x81 status (54 bytes): settings, what was lost or late, and counters
 //                0x82 a set-point came: number of the ESC, 1: valid, value
 //                0x83 bytes that the flight controller told the GPS, and when the pod tells it
 //   Errors       a damaged or unknown frame is skipped and counted
@@ -24,7 +24,7 @@
 namespace whirl::io {
 
 inline constexpr double kPodBaud = 3e6;
-inline constexpr std::size_t kPodSampleBytes = 21;  // on the line
+inline constexpr std::size_t kPodSampleBytes = 22;  // on the line
 
 struct PodStatus {
   std::array<std::uint8_t, 8>
@@ -37,9 +37,10 @@ struct PodStatus {
   std::uint32_t transfers = 0, bursts = 0, samples = 0, longest_turn_us = 0;
   std::uint32_t now_us = 0;  // the pod's clock
   std::uint16_t gps_dropped = 0, unsent = 0;
+  std::uint16_t wait_us = 0;  // the longest of a sample for its time, of the last whole second
 };
 
-std::vector<std::uint8_t> pack_pod_sample(std::uint8_t sequence,
+std::vector<std::uint8_t> pack_pod_sample(std::uint8_t sequence, std::uint16_t time_us,
                                           const std::array<std::int16_t, 7>& counts);
 std::vector<std::uint8_t> pack_pod_faults(std::uint8_t sequence, bool frozen, bool no_supply,
                                           std::uint8_t identity);

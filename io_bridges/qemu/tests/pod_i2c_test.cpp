@@ -6,6 +6,7 @@
 #include <map>
 #include <utility>
 
+#include "base/near.hpp"
 #include "harness/target/virtual_board.hpp"
 #include "io_bridges/board_description/board_text.hpp"
 #include "io_bridges/protocols/dronecan/pod_link.hpp"
@@ -35,6 +36,7 @@ struct I2cRun {
   std::vector<Transaction> seen;        // on buses with targets of ours
   std::vector<std::int64_t> placed_ns;  // data of the magnetometer, device 2 of the flight board
   std::map<std::uint32_t, Bytes> replies;
+  std::map<std::uint32_t, std::int64_t> stopped_ns;  // of each
   std::vector<std::uint32_t> nacked;
   std::int64_t longest_stretch_ns = 0;
   std::vector<io::PodSetpoint> setpoints;
@@ -61,6 +63,7 @@ void keep(const io::Reader& message, I2cRun& run, io::PodLinkReader& link) {
     const auto reply = message.as<io::I2cReplyHead>();
     const auto tail = message.tail_after(sizeof(io::I2cReplyHead));
     run.replies[reply.number] = Bytes(tail.begin(), tail.end());
+    run.stopped_ns[reply.number] = head.t_ns;
     if (reply.acked == 0) run.nacked.push_back(reply.number);
     run.longest_stretch_ns = std::max(run.longest_stretch_ns, reply.stretched_ns);
   }
@@ -230,6 +233,17 @@ TEST(PodI2c, FourEscsTakeSetpointsAndTellTheirStatus) {
     EXPECT_EQ(run.setpoints[n].value, 100 + n);
   }
   EXPECT_FALSE(run.setpoints[4].valid);
+}
+
+// Whoever takes no byte before the next one has come holds SCL behind each of them.
+TEST(PodI2c, TakesEachByteThatIsWrittenWhileTheNextOneComes) {
+  const std::vector<Transaction> asked{{20 * kMs, 2, 0x29, false, Bytes(2)},
+                                       {30 * kMs, 2, 0x29, false, Bytes(14)}};
+  const I2cRun run = ask_pod(asked, {}, 40);
+  ASSERT_EQ(run.error, "");
+  ASSERT_EQ(run.stopped_ns.size(), 2u);
+  const std::int64_t longer_ns = run.stopped_ns.at(1) - 10 * kMs - run.stopped_ns.at(0);
+  EXPECT_TRUE(near(longer_ns, 12 * 9 * 2'500, stated(500, "ns: the pod's clock against SCL's")));
 }
 
 // What the flight image asks from reset on, 2 ms later; the host knows what its parts answered then.

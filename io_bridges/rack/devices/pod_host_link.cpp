@@ -1,5 +1,8 @@
 #include "io_bridges/rack/devices/pod_host_link.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "io_bridges/protocols/dronecan/imu_samples.hpp"
 #include "io_bridges/protocols/dronecan/pod.hpp"
 
@@ -11,14 +14,16 @@ constexpr std::uint8_t kUrgent = 6, kUsual = 16, kHostNode = 100;
 }  // namespace
 
 std::vector<DeviceKey> pod_link_keys() {
-  DeviceKey uart = quantity_key("params.uart", Dimension::none, "", {1.0, 6.0}, "the host's link");
   DeviceKey can = quantity_key("params.can", Dimension::none, "", {0.0, 2.0},
-                               "the host's link in its place; 0: none");
-  uart.kind = can.kind = KeyKind::whole;
-  return {uart.with(1.0), can.with(0.0),
+                               "the host's link in the place of its line; 0: none");
+  can.kind = KeyKind::whole;
+  return {can.with(0.0),
           word_key("params.sample", "counts or imu14 or imu16",
                    "how a sample is told; the last two over CAN only")
-              .with(std::string("counts"))};
+              .with(std::string("counts")),
+          quantity_key("params.jitter", Dimension::time, "s", {0.0, 0.005},
+                       "a sample leaves up to so much late, at random, in its turn")
+              .with(0.0)};
 }
 
 PodFigures figures_of(const io::PodStatus& status) {
@@ -31,6 +36,7 @@ PodFigures figures_of(const io::PodStatus& status) {
           {"pod_transfers", status.transfers},
           {"pod_samples", status.samples},
           {"pod_unsent", status.unsent},
+          {"pod_wait_us", status.wait_us},
           {"pod_gps_dropped", status.gps_dropped},
           {"pod_turn_us", status.longest_turn_us},
           {"pod_now_us", status.now_us}};
@@ -40,7 +46,9 @@ PodHostLink::PodHostLink(DeviceSlot& slot, io::PodLinkReader& reader)
     : queue_(slot.rack().events()),
       happened_(slot.rack().happened()),
       reader_(reader),
-      uart_(slot.whole("params.uart")),
+      jitter_ns_(std::llround(slot.quantity("params.jitter") * 1e9)),
+      chance_(slot.rack().seed(), slot.name() + ".jitter"),
+      leaves_(queue_, [this] { send_held(); }),
       line_(queue_, {.baud = io::kPodBaud},
             [this](const io::UartByte& byte, const io::UartFormat& format) {
               UartPeer::send(byte, format);
@@ -48,12 +56,12 @@ PodHostLink::PodHostLink(DeviceSlot& slot, io::PodLinkReader& reader)
   const std::uint16_t can = slot.whole("params.can");
   io::CanBus* bus = can == 0 ? nullptr : slot.rack().can(can);
   if (bus == nullptr) {
-    std::ignore = slot.rack().join_uart(uart_, *this);
+    std::ignore = slot.rack().join_uart(kPodHostUart, *this);
     return;
   }
   const std::string sample = slot.text("params.sample");
-  if (sample == "imu14") sample_ = Sample::imu14;
-  if (sample == "imu16") sample_ = Sample::imu16;
+  if (sample == "imu14") form_ = Form::imu14;
+  if (sample == "imu16") form_ = Form::imu16;
   node_.emplace(queue_, *bus,
                 io::DroneCanNode::Setup{.name = slot.name(),
                                         .info = "org.whirlstand.pod_host",
@@ -72,10 +80,26 @@ void PodHostLink::send(const std::vector<std::uint8_t>& frame) {
 }
 
 void PodHostLink::send_sample(std::uint8_t number, const std::array<std::int16_t, 7>& counts) {
-  if (!over_can()) return line_.add(io::pack_pod_sample(number, counts));
-  if (sample_ == Sample::imu14) return send_imu<io::dronecan::Imu14>(counts);
-  if (sample_ == Sample::imu16) return send_imu<io::dronecan::Imu16>(counts);
-  node_->send(io::dronecan::PodSample{number, counts}, kUrgent);
+  const Nanoseconds now = queue_.now();
+  if (jitter_ns_ == 0) return send_now({now, now, number, counts});
+  const Nanoseconds held_ns = std::llround(chance_.uniform() * static_cast<double>(jitter_ns_));
+  const Nanoseconds before_ns = held_.empty() ? 0 : held_.back().leaves_ns;
+  held_.push_back({now, std::max<Nanoseconds>(before_ns, now + held_ns), number, counts});
+  if (!leaves_.pending()) leaves_.at(held_.front().leaves_ns);
+}
+
+void PodHostLink::send_held() {
+  send_now(held_.front());
+  held_.pop_front();
+  if (!held_.empty()) leaves_.at(held_.front().leaves_ns);
+}
+
+void PodHostLink::send_now(const Sample& sample) {
+  const auto time_us = static_cast<std::uint16_t>(sample.at_ns / 1000);
+  if (!over_can()) return line_.add(io::pack_pod_sample(sample.number, time_us, sample.counts));
+  if (form_ == Form::imu14) return send_imu<io::dronecan::Imu14>(sample);
+  if (form_ == Form::imu16) return send_imu<io::dronecan::Imu16>(sample);
+  node_->send(io::dronecan::PodSample{sample.number, time_us, sample.counts}, kUrgent);
 }
 
 std::string PodHostLink::asked(const io::Reader& message) {
@@ -86,7 +110,7 @@ std::string PodHostLink::asked(const io::Reader& message) {
 
 void PodHostLink::tell(const std::string& name, std::int64_t value) {
   const std::string line = name + " " + std::to_string(value) + "\n";
-  happened_.add(io::Kind::uart_received, uart_, queue_.now(), line.data(),
+  happened_.add(io::Kind::uart_received, kPodHostUart, queue_.now(), line.data(),
                 static_cast<std::uint32_t>(line.size()));
 }
 
@@ -100,14 +124,14 @@ bool PodHostLink::tell(const std::string& name, const PodFigures& figures) {
 }
 
 template <typename Imu>
-void PodHostLink::send_imu(const std::array<std::int16_t, 7>& counts) {
+void PodHostLink::send_imu(const Sample& sample) {
   constexpr int kCoarser = std::is_same_v<Imu, io::dronecan::Imu14> ? 4 : 1;
   Imu imu;
   for (unsigned i = 0; i < 3; ++i) {
-    imu.rate[i] = static_cast<std::int16_t>(counts[4 + i] / kCoarser);
-    imu.acceleration[i] = static_cast<std::int16_t>(counts[i] / kCoarser);
+    imu.rate[i] = static_cast<std::int16_t>(sample.counts[4 + i] / kCoarser);
+    imu.acceleration[i] = static_cast<std::int16_t>(sample.counts[i] / kCoarser);
   }
-  imu.time = static_cast<std::uint16_t>(queue_.now() / Imu::kTime_step_ns);
+  imu.time = static_cast<std::uint16_t>(sample.at_ns / Imu::kTime_step_ns);
   node_->send(imu, kUrgent);
 }
 

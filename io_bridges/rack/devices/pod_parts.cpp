@@ -8,7 +8,8 @@
 //   Line    a sample goes at once; what is slow follows the next one, so that no sample waits for it
 //   Asked   figures by their names, as of pod_replay; `spi_*` are of how long answers on the pod's SPI had stood in
 //           DR when their first bit went out, by byte: the first of a transfer, and the others
-//   Faults  none of their own: those of a wire are the controller's side's
+//   Faults  of the parts, by their data (pod_faults.hpp); an IMU's other identity and its loss of supply the pod itself plays,
+//           told at most 10 ms later. Those of a wire are the controller's side's
 #include <optional>
 #include <utility>
 
@@ -16,6 +17,7 @@
 #include "io_bridges/devices/ms5611.hpp"
 #include "io_bridges/rack/devices/imu_keys.hpp"
 #include "io_bridges/rack/devices/pod_escs.hpp"
+#include "io_bridges/rack/devices/pod_faults.hpp"
 #include "io_bridges/rack/devices/pod_receivers.hpp"
 #include "io_bridges/rack/devices/table.hpp"
 #include "io_bridges/rack/models/inertial_sensor.hpp"
@@ -44,6 +46,8 @@ constexpr std::array<std::uint8_t, 5> kSettings = {mpu::PWR_MGMT_1, mpu::CONFIG,
 io::Mpu6000::Params imu_of(DeviceSlot& slot) {
   io::Mpu6000::Params params;
   params.name = slot.name() + ".imu";
+  params.bus = kPodBus;
+  params.device = kPodImu;
   return params;
 }
 
@@ -56,6 +60,8 @@ plant::BarometerParams air_of() {
 io::Ms5611::Params barometer_of(DeviceSlot& slot) {
   io::Ms5611::Params params;
   params.name = slot.name() + ".baro";
+  params.bus = kPodBus;
+  params.device = kPodBarometer;
   params.seed = slot.rack().seed();
   return params;
 }
@@ -63,6 +69,8 @@ io::Ms5611::Params barometer_of(DeviceSlot& slot) {
 io::Hmc5883l::Params magnetometer_of(DeviceSlot& slot) {
   io::Hmc5883l::Params params;
   params.name = slot.name() + ".mag";
+  params.bus = kPodBus;
+  params.device = kPodMagnetometer;
   params.seed = slot.rack().seed();
   return params;
 }
@@ -71,6 +79,7 @@ class PodPartsDevice final : public RackDevice {
  public:
   PodPartsDevice(DeviceSlot& slot, const plant::ImuParams& physics)
       : queue_(slot.rack().events()),
+        faults_(slot.rack().faults()),
         reader_([this](const io::PodStatus& status) { told(status); }),
         link_(slot, reader_),
         receivers_(slot, reader_,
@@ -82,13 +91,13 @@ class PodPartsDevice final : public RackDevice {
                 .per_ampere_T = usual_motor_fields_T()}),
         imu_(
             queue_, imu_of(slot), [this](Nanoseconds now) { return motion_.sample(now); }, &sample_,
-            nullptr, slot.rack().finding()),
+            &faults_, slot.rack().finding()),
         baro_(
             queue_, barometer_of(slot), [this](Nanoseconds now) { return air_.sense(now); },
-            nullptr, slot.rack().finding()),
+            &faults_, slot.rack().finding()),
         mag_(
             queue_, magnetometer_of(slot), [this](Nanoseconds) { return field_.along_part_T(); },
-            &placed_, nullptr, slot.rack().finding()),
+            &placed_, &faults_, slot.rack().finding()),
         escs_(slot.rack(),
               [this](std::vector<std::uint8_t> frame) { send_slow(std::move(frame)); }),
         start_(queue_, [this] { start(); }),
@@ -176,6 +185,18 @@ class PodPartsDevice final : public RackDevice {
     slow_.clear();
   }
 
+  // What the pod is to play by itself; told as it changes.
+  void tell_faults(Nanoseconds now) {
+    const auto at = [&](io::FaultKind kind) { return faults_.apply(kind, kPodBus, kPodImu, now); };
+    const io::Fault* other = at(io::FaultKind::sensor_wrong_identity);
+    const PlayedFaults faults{
+        at(io::FaultKind::sensor_brown_out) != nullptr,
+        other == nullptr ? std::uint8_t{0} : static_cast<std::uint8_t>(other->value)};
+    if (faults == played_) return;
+    played_ = faults;
+    send_slow(io::pack_pod_faults(fault_number_++, false, faults.no_supply, faults.identity));
+  }
+
   // ---- Barometer and magnetometer
 
   void tell_part(io::I2cTarget& part, std::initializer_list<std::uint8_t> bytes, Nanoseconds now) {
@@ -199,6 +220,7 @@ class PodPartsDevice final : public RackDevice {
   }
   void convert() {
     const Nanoseconds now = queue_.now();
+    tell_faults(now);
     if (converting_) {
       send_slow(io::pack_pod_barometer(air_number_++, temperature_ ? 1 : 0,
                                        ask_part(baro_, kResult, 3, now)));
@@ -252,6 +274,7 @@ class PodPartsDevice final : public RackDevice {
   }
 
   io::EventQueue& queue_;
+  io::FaultBook& faults_;
   io::PodLinkReader reader_;
   PodHostLink link_;
   PodReceivers receivers_;
@@ -269,9 +292,14 @@ class PodPartsDevice final : public RackDevice {
   std::array<std::uint8_t, kSettings.size()> settings_{};
   Nanoseconds sampled_ns_ = -kSampling_ns;
   std::vector<std::vector<std::uint8_t>> slow_;
+  struct PlayedFaults {
+    bool no_supply = false;
+    std::uint8_t identity = 0;  // 0: its own
+    bool operator==(const PlayedFaults&) const = default;
+  } played_;
   bool started_ = false, converting_ = false, temperature_ = false;
   std::uint64_t samples_ = 0, conversions_ = 0;
-  std::uint8_t number_ = 0, air_number_ = 0, prom_number_ = 0, field_number_ = 0;
+  std::uint8_t number_ = 0, air_number_ = 0, prom_number_ = 0, field_number_ = 0, fault_number_ = 0;
 };
 
 std::unique_ptr<RackDevice> make(DeviceSlot& slot) {

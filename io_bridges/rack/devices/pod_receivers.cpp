@@ -3,7 +3,7 @@
 #include <cmath>
 #include <utility>
 
-#include "io_bridges/devices/sbus.hpp"
+#include "io_bridges/rack/devices/pod_faults.hpp"
 #include "io_bridges/rack/devices/radio_receiver.hpp"
 
 namespace whirl::rack {
@@ -16,6 +16,15 @@ io::Ublox::Params gps_of(DeviceSlot& slot) {
   params.name = slot.name() + ".gps";
   params.first_fix_ns = std::llround(slot.quantity("params.first_fix") * 1e9);
   params.seed = slot.rack().seed();
+  params.bus = kPodBus;
+  params.device = kPodGps;
+  return params;
+}
+
+io::RadioLink::Params radio_params() {
+  io::RadioLink::Params params;
+  params.bus = kPodBus;
+  params.device = kPodReceiver;
   return params;
 }
 
@@ -34,14 +43,17 @@ PodReceivers::PodReceivers(DeviceSlot& slot, io::PodLinkReader& reader, Send sen
     : queue_(slot.rack().events()),
       send_(std::move(send)),
       place_(slot, {}),
-      radio_(radio_params_, nullptr),
+      radio_params_(radio_params()),
+      radio_(radio_params_, &slot.rack().faults()),
+      glitches_(&slot.rack().faults(), kPodBus, kPodReceiver, slot.rack().seed(),
+                slot.name() + ".receiver"),
       has_radio_(slot.flag("params.receiver")),
       gather_(queue_, [this] { said_->flush(); }),
       sticks_(queue_, [this] { tell_sticks(); }) {
   if (!slot.flag("params.gps")) return;
   gps_ = std::make_unique<io::Ublox>(
       queue_, gps_of(slot), [this](const io::Ublox::Query& query) { return place_.fix(query); },
-      nullptr, slot.rack().finding());
+      &slot.rack().faults(), slot.rack().finding());
   said_ = std::make_unique<PodGps>(queue_, *gps_, reader,
                                    PodGps::Ears{send_, [this](std::uint8_t, double) {
                                                   if (!gather_.pending()) gather_.in(kMs);
@@ -59,7 +71,8 @@ void PodReceivers::on_sticks(const io::Reader& message) {
 
 void PodReceivers::tell_sticks() {
   sticks_.in(core::receiver::kSbusPeriod_ns);
-  const auto frame = io::sbus_frame(radio_.at(queue_.now()), radio_params_.failsafe);
+  auto frame = io::sbus_frame(radio_.at(queue_.now()), radio_params_.failsafe);
+  if (frame) glitches_.spoil(*frame, queue_.now());
   send_(io::pack_pod_sbus(number_++, frame.value_or(io::SbusFrame{}), !frame));
 }
 

@@ -2,6 +2,7 @@
 //
 //   GPS     a u-blox of generation 6 at 9600 baud as it is saved, in the plant's motion with the usual errors; its bytes go
 //           a millisecond's worth at a time
+//   Faults  of the GPS all, of the receiver rc_link_lost and rc_glitch (pod_faults.hpp)
 //   Sticks  each period of an SBUS receiver what one would put out, its flags too; the pod keeps the line's time
 #pragma once
 #include <functional>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "io_bridges/devices/radio_link.hpp"
+#include "io_bridges/devices/sbus.hpp"
 #include "io_bridges/rack/devices/gnss_place.hpp"
 #include "io_bridges/rack/devices/pod_gps.hpp"
 
@@ -37,6 +39,7 @@ class PodReceivers {
   std::unique_ptr<PodGps> said_;
   io::RadioLink::Params radio_params_;
   io::RadioLink radio_;
+  io::SbusGlitches glitches_;
   bool has_radio_;
   std::uint8_t number_ = 0;
   io::Event gather_, sticks_;

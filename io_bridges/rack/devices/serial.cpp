@@ -5,11 +5,20 @@
 namespace whirl::rack {
 namespace {
 
+// 8E2 is a receiver's: through an inverter, so that both ends mean the same by it.
+io::UartFormat format_of(const DeviceSlot& slot) {
+  io::UartFormat format{.baud = slot.quantity("baud")};
+  if (slot.text("params.frame") != "8E2") return format;
+  format.parity = 'E';
+  format.stop_bits = 2.0;
+  return format;
+}
+
 class SerialDevice final : public RackDevice {
  public:
   explicit SerialDevice(DeviceSlot& slot)
       : uart_(slot.bus_number()),
-        port_(slot.rack().events(), slot.name(), slot.quantity("baud"), slot.rack().finding()) {
+        port_(slot.rack().events(), slot.name(), format_of(slot), slot.rack().finding()) {
     port_.on_message([&happened = slot.rack().happened(), uart = uart_](
                          std::span<const std::uint8_t> bytes, Nanoseconds t_ns) {
       happened.add(io::Kind::uart_received, uart, t_ns, bytes.data(),
@@ -34,7 +43,9 @@ DeviceType serial_type() {
   return {"serial",
           "terminal on a UART, what t:ask talks to",
           {bus_key("usart", "the UART").need().own(),
-           quantity_key("baud", Dimension::baud, "baud", {50.0, 12e6}, "of the UART").need()},
+           quantity_key("baud", Dimension::baud, "baud", {50.0, 12e6}, "of the UART").need(),
+           word_key("params.frame", "8N1 or 8E2", "bits, parity and stop bits of a character")
+               .with(std::string("8N1"))},
           make_device<SerialDevice>};
 }
 

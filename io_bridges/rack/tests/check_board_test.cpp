@@ -39,7 +39,8 @@ TEST(CheckBoard, WhatIsWrongWithADeviceIsSaidWithWhatThereIs) {
       "jumper)");
   BoardDevice device = serial("t", "usart1");
   device.keys["colour"] = "red";
-  EXPECT_EQ(of({device}), "colour: is no key of the type serial (it has name, type, bus, baud)");
+  EXPECT_EQ(of({device}),
+            "colour: is no key of the type serial (it has name, type, bus, baud, params.frame)");
   device = serial("t", "usart1");
   device.motor = 2;
   EXPECT_NE(of({device}).find("motor: is no key"), std::string::npos);

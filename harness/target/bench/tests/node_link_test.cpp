@@ -39,7 +39,7 @@ struct Rig {
       : link({.link = {"bus", "can0", bus},
               .board = std::move(board),
               .types = rack::device_types(),
-              .pod = pod},
+              .pod = pod ? std::optional(PodPlaces{}) : std::nullopt},
              [this](const CanBusLink&) -> Result<std::unique_ptr<io::CanPort>> {
                return wire.join();
              }) {

@@ -7,8 +7,10 @@
 #include <algorithm>
 #include <cstring>
 
+#include "base/near.hpp"
 #include "io_bridges/protocols/crc.hpp"
 #include "io_bridges/protocols/dronecan/pod_link.hpp"
+#include "io_bridges/rack/devices/pod_faults.hpp"
 #include "io_bridges/rack/devices/table.hpp"
 #include "io_bridges/serial/pseudo_terminal.hpp"
 
@@ -29,7 +31,8 @@ struct Rig {
   explicit Rig(BoardDescription board = pod_board())
       : link({.link = {.name = "pod", .board = "pod", .path = pod.path(), .can = {}},
               .board = std::move(board),
-              .types = rack::device_types()}) {
+              .types = rack::device_types(),
+              .places = {{{1, 0}, {rack::kPodBus, rack::kPodImu}}}}) {
     link.keep_time(
         {[](std::int64_t host_ns) { return host_ns; }, [](std::int64_t t_ns) { return t_ns; }});
   }
@@ -52,6 +55,37 @@ struct Rig {
     return count;
   }
 
+  // Of the part that the flight controller's board has as device 0 on its bus 1.
+  void spoil(io::FaultKind kind, double value, std::int64_t end_ns, int address = 0) {
+    io::FaultCommand fault;
+    fault.number = 1;
+    fault.kind = static_cast<std::uint32_t>(kind);
+    fault.start_ns = now_ns;
+    fault.end_ns = end_ns;
+    fault.bus = 1;
+    fault.address = address;
+    fault.value = value;
+    io::Batch batch;
+    batch.add(io::Kind::fault, 1, now_ns, fault);
+    io::Reader order(batch.bytes());
+    ASSERT_TRUE(order.next());
+    link.take(order, 0);
+  }
+  // Payloads of the frames of a kind, in order.
+  std::vector<std::vector<std::uint8_t>> payloads_of(std::uint8_t kind) const {
+    std::vector<std::vector<std::uint8_t>> all;
+    for (std::size_t i = 0; i + 4 <= heard.size(); i += 6u + heard[i + 3]) {
+      const auto begin = heard.begin() + static_cast<std::ptrdiff_t>(i + 4);
+      if (heard[i + 1] == kind) all.emplace_back(begin, begin + heard[i + 3]);
+    }
+    return all;
+  }
+  std::size_t applied() const {
+    return static_cast<std::size_t>(std::count_if(
+        arrivals.begin(), arrivals.end(),
+        [](const Arrival& arrival) { return arrival.kind == io::Kind::fault_applied; }));
+  }
+
   std::int64_t now_ns = 0;
   io::PseudoTerminal pod = std::move(io::PseudoTerminal::open().value());
   PodLine link;
@@ -61,8 +95,8 @@ struct Rig {
 
 // Lost and late, and the clock; the rest is zero.
 std::vector<std::uint8_t> status(std::uint16_t lost, std::uint16_t late, std::uint32_t now_us) {
-  std::vector<std::uint8_t> frame{0xA5, 0x81, 0x01, 0x34};
-  frame.resize(4 + 0x34);
+  std::vector<std::uint8_t> frame{0xA5, 0x81, 0x01, 0x36};
+  frame.resize(4 + 0x36);
   const std::uint8_t settings[] = {1, 1, 0, 0x18, 0x18, 1, 0x10, 0};  // awake, 1 kHz
   std::copy(std::begin(settings), std::end(settings), frame.begin() + 4);
   const auto half = [&](std::size_t at, std::uint32_t value) {
@@ -149,6 +183,59 @@ TEST(PodLine, OneThatIsMadeSafeFallsSilent) {
   rig.heard.clear();
   rig.serve_until(400 * kMs);
   EXPECT_TRUE(rig.heard.empty());
+}
+
+const auto kZero_g = stated(400, "counts: zero-g output, scale and noise");
+
+// Accelerometer x of a sample's payload, behind its time.
+int first_axis(const std::vector<std::uint8_t>& sample) {
+  return static_cast<std::int16_t>(sample.at(2) | sample.at(3) << 8);
+}
+
+TEST(PodLine, AFaultOfAPartThatThePodPlaysIsInItsData) {
+  Rig rig;
+  ASSERT_TRUE(rig.link.open().ok());
+  rig.serve_until(100 * kMs);
+  rig.tell(status(0, 0, 10));
+  rig.serve_until(200 * kMs);
+  rig.spoil(io::FaultKind::sensor_offset, 49.03325, 300 * kMs);  // 5 g of 16, in 2048 counts each
+  rig.heard.clear();
+  rig.serve_until(250 * kMs);
+  const auto spoilt = rig.payloads_of(0x01);
+  ASSERT_GT(spoilt.size(), 40u);
+  EXPECT_TRUE(near(first_axis(spoilt.back()), 5 * 2048, kZero_g));
+  EXPECT_EQ(rig.applied(), 1u);
+  rig.serve_until(310 * kMs);
+  rig.heard.clear();
+  rig.serve_until(350 * kMs);
+  EXPECT_TRUE(near(first_axis(rig.payloads_of(0x01).back()), 0, kZero_g));
+}
+
+TEST(PodLine, AFaultOfAnotherPlaceFindsNothingHere) {
+  Rig rig;
+  ASSERT_TRUE(rig.link.open().ok());
+  rig.serve_until(100 * kMs);
+  rig.tell(status(0, 0, 10));
+  rig.spoil(io::FaultKind::sensor_offset, 49.03325, 900 * kMs, 3);
+  rig.serve_until(250 * kMs);
+  EXPECT_EQ(rig.applied(), 0u);
+  EXPECT_TRUE(near(first_axis(rig.payloads_of(0x01).back()), 0, kZero_g));
+}
+
+// What only the pod can play is told to it, as it begins and ends.
+TEST(PodLine, AnotherIdentityAndALossOfSupplyAreThePods) {
+  Rig rig;
+  ASSERT_TRUE(rig.link.open().ok());
+  rig.serve_until(100 * kMs);
+  rig.tell(status(0, 0, 10));
+  rig.serve_until(200 * kMs);
+  EXPECT_TRUE(rig.payloads_of(0x02).empty());
+  rig.spoil(io::FaultKind::sensor_wrong_identity, 0x70, 300 * kMs);
+  rig.serve_until(400 * kMs);
+  rig.spoil(io::FaultKind::sensor_brown_out, 0.0, 500 * kMs);
+  rig.serve_until(600 * kMs);
+  const std::vector<std::vector<std::uint8_t>> want{{0, 0x70}, {0, 0}, {2, 0}, {0, 0}};
+  EXPECT_EQ(rig.payloads_of(0x02), want);
 }
 
 TEST(PodLine, AHostOnCanIsNoneOfALine) {
