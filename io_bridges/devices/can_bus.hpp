@@ -243,7 +243,7 @@ class CanBus {
   Event start_, end_, joining_, dominant_;
 
   bool busy_ = false, held_dominant_ = false;
-  Nanoseconds free_ns_ = 0;  // end of the last intermission
+  Nanoseconds free_ns_ = 0;                           // end of the last intermission
   Nanoseconds end_ns_ = -1, recessive_since_ns_ = 0;  // of the last frame
   CanStation* sender_ = nullptr;
   CanStation* twin_ = nullptr;             // sends the same identifier
