@@ -3,6 +3,7 @@
 //   Names    "esc1/fw::esc::control_task", "esc1/imu", "esc1/i2c2": what stands on that node's board. Where
 //            there is only one node its name may be left out.
 #pragma once
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -16,6 +17,8 @@ namespace whirl {
 struct Node {
   std::string name;  // empty: the only one
   BoardDescription board;
+  std::map<std::string, std::string> joined =
+      {};  // CAN buses that another board arbitrates: "can1", "flight/can2"
 
   // As reports name it: with the node's name where it has one.
   std::string qualified(const std::string& what) const {

@@ -11,10 +11,13 @@
 
 namespace whirl::cli {
 
-// Errors  bad_input: a device that is not there, or on neither I2C nor SPI nor a UART, or on another kind of bus than the other
-//         end; one that two boards take the place of; a board that two others lead, a bus with two masters, a UART
-//         with two wires, a board for two motors; leads that come back to where they began (each would wait for the other)
+// Errors  bad_input: a device that is not there, or on neither I2C nor SPI nor CAN nor a UART, or on another kind of bus than
+//         the other end; one that two boards take the place of; a board that two others lead, a bus with two masters, a UART
+//         with two wires, a board for two motors; two boards that share a CAN and more, a CAN with two arbiters; leads that come back to where they began (each would wait for the other)
 Result<Done> check_board_wires(const plan::Plan& plan, const std::vector<Node>& nodes);
+
+// What each node says of its CAN buses that another board arbitrates. Pre: checked.
+void note_joined(const plan::Plan& plan, std::vector<Node>& nodes);
 
 // Makes the wires and gives each setup its ends, and that of the leader what its far boards are. The links have to
 // outlive the targets' start. Pre: checked.

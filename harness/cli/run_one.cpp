@@ -189,6 +189,7 @@ Result<Prepared> prepare(const plan::Plan& plan, const PlanChoice& choice,
   }
   if (const auto joined = check_wires(plan, all.nodes); !joined) return joined.error();
   if (const auto led = check_board_wires(plan, all.nodes); !led) return led.error();
+  note_joined(plan, all.nodes);
   if (!options.copper.empty() && plan.nodes.size() > 1) {
     return Error{ErrorKind::bad_input, plan.place,
                  "--copper is of one board, and this plan has several", ""};

@@ -126,6 +126,17 @@ FaultPlace place_of_fault(lua_State* L, const lua::Table& asked, const std::stri
   return fault_at::Anywhere{};
 }
 
+// Faults of a CAN bus act where it is arbitrated.
+void refuse_on_joined(lua_State* L, const FaultSpec& fault, const Node& node) {
+  if (!fault.kind.starts_with("can_")) return;
+  std::string bus = target_of(fault);
+  if (std::holds_alternative<fault_at::Device>(fault.place)) bus = node.board.find(bus)->bus;
+  const auto joined = node.joined.find(bus);
+  if (joined == node.joined.end()) return;
+  raise(L, node.name + "/" + bus + " is part of " + joined->second,
+        "name that one, or the device of its board that " + node.name + " takes the place of");
+}
+
 // Which of the things that the device senses: its number there.
 int axis_number(const lua::Table& asked, const FaultPlace& place, const BoardDescription& board) {
   const auto* at = std::get_if<fault_at::Device>(&place);
@@ -156,6 +167,7 @@ int fault(lua_State* L) {
   const NodePlace at = node_of_fault(L, asked, nodes);
   fault.board = static_cast<std::uint8_t>(at.node);
   fault.place = place_of_fault(L, asked, at.rest, nodes[at.node].board);
+  refuse_on_joined(L, fault, nodes[at.node]);
   if (asked.has("axis")) {
     fault.axis = axis_number(asked, fault.place, nodes[at.node].board);
   }

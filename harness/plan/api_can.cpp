@@ -63,6 +63,10 @@ void read_place(lua_State* L, Script& self, const lua::Table& given, CanWindow& 
   if (!at.rest.starts_with("can") || !number) {
     raise(L, "'" + text + "' is no CAN bus", "write it as \"can1\"");
   }
+  if (const auto& joined = self.stage().nodes[at.node].joined; joined.count(at.rest) != 0) {
+    raise(L, "'" + text + "' is part of " + joined.at(at.rest),
+          "bus = \"" + joined.at(at.rest) + "\"");
+  }
   const auto on_it = [&at](const BoardDevice& device) { return device.bus == at.rest; };
   if (std::none_of(board.devices.begin(), board.devices.end(), on_it)) {
     raise(L, "no device of " + board.name + " is on " + at.rest);

@@ -8,7 +8,8 @@
 //            watch = { ... } }, ... }; the vehicle or stand surrounds the first. wires = { { from = "esc.usart1",
 //            to = "fc.usart2" }, ... } join their UARTs at the grain of the exchange; { from = "fc.esc1", to = "esc.i2c2" }:
 //            that board takes the place of the device esc1 on fc's bus; { from = "fc.imu", to = "pod.spi1", select = "PA15",
-//            ready = "PC4", latency = "100 us" } on SPI; { from = "fc.gps", to = "pod.usart6", fastest = "57600 baud" } on a UART
+//            ready = "PC4", latency = "100 us" } on SPI; { from = "fc.gps", to = "pod.usart6", fastest = "57600 baud" } on a UART;
+//            { from = "flight.esc1", to = "esc.can1" } on CAN, and { from = "a.can1", to = "b.can1" } joins two CANs
 //            A node's flash = { "esc_motor_1" } names ELF files that are flashed beside its image
 //   Stand    instead of vehicle: stand = { prop = "hk_10x4.5", battery = "4s_2200" }
 //   Around   of a vehicle: start, room, outdoors, fence, obstacles, field, air, load, read by who makes the world
@@ -46,9 +47,9 @@ struct PlanWire {  // from UART to UART, both ways
 
 struct PlanBoardWire {  // a board in the place of another one's device
   std::size_t leader = 0;
-  std::string device;  // of the leader's board
+  std::string device;  // of the leader's board; or its bus, "can1", where none has its place taken
   std::size_t follower = 0;
-  std::string bus;  // of the follower: "i2c2", "spi1", "usart6"
+  std::string bus;  // of the follower: "i2c2", "spi1", "can1", "usart6"
   // Of SPI: the follower's pins, `ready` may be empty, and its line's latency. Of a UART: its shortest character.
   std::string select = {}, ready = {};
   std::int64_t latency_ns = 0;

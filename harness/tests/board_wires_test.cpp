@@ -23,6 +23,8 @@ struct Rig {
           {.name = "baro", .type = "ms5611", .bus = "i2c1", .address = 0x76},
           {.name = "gps", .type = "ublox_6", .bus = "usart6"},
           {.name = "sbus", .type = "sbus", .bus = "uart4"},
+          {.name = "esc3", .type = "esc_dronecan", .bus = "can2", .motor = 3},
+          {.name = "esc4", .type = "esc_dronecan", .bus = "can2", .motor = 4},
           {.name = "rc", .type = "cppm", .bus = "PA10"}};
       nodes.push_back({std::string(1, static_cast<char>('a' + i)), board});
     }
@@ -76,7 +78,7 @@ TEST(BoardWires, BothEndsAreI2cOrBothSpiAndEachBusHasOneMaster) {
   EXPECT_EQ(Rig(2).wire(0, "esc1", 1).wire(0, "baro", 1).refused(),
             "wires: b.i2c2 has two masters");
   EXPECT_EQ(Rig(2).wire(0, "rc", 1).refused(),
-            "wires: a.rc is no target on an I2C or SPI bus, and on no UART");
+            "wires: a.rc is no target on an I2C, SPI or CAN bus, and on no UART");
   EXPECT_EQ(Rig(2).wire(0, "esc7", 1).refused(), "wires: board has no device 'esc7'");
 }
 
@@ -95,6 +97,59 @@ TEST(BoardWires, AUartIsJoinedToOneUart) {
     const std::string both = line.a.uart == 6 ? "a.usart6" : "b.usart2";
     EXPECT_EQ(rig.refused(), "wires: " + both + " has two wires");
   }
+}
+
+TEST(BoardWires, ManyBoardsShareACanThatOneArbitrates) {
+  EXPECT_EQ(Rig(3).wire(0, "esc3", 1, "can1").wire(0, "esc4", 2, "can1").refused(), "");
+  EXPECT_EQ(Rig(3).wire(0, "can1", 1, "can1").wire(0, "can1", 2, "can2").refused(), "");
+  EXPECT_EQ(Rig(3).wire(0, "esc3", 1, "can1").wire(0, "can2", 2, "can1").refused(), "");
+  EXPECT_EQ(Rig(3).wire(0, "esc3", 1, "can1").wire(0, "esc1", 2).refused(), "");
+}
+
+TEST(BoardWires, ACanHasOneArbiterAndAControllerOneBus) {
+  EXPECT_EQ(Rig(2).wire(0, "esc3", 1).refused(), "wires: a.esc3 is on can2, the other end on i2c2");
+  EXPECT_EQ(Rig(2).wire(0, "esc1", 1, "can1").refused(),
+            "wires: a.esc1 is on i2c3, the other end on can1");
+  EXPECT_EQ(Rig(2).wire(0, "can", 1, "can1").refused(), "wires: board has no device 'can'");
+  EXPECT_EQ(Rig(3).wire(0, "can1", 2, "can1").wire(1, "can1", 2, "can1").refused(),
+            "wires: c takes the place of devices of two boards");
+  EXPECT_EQ(Rig(2).wire(0, "can1", 1, "can1").wire(0, "can2", 1, "can1").refused(),
+            "wires: a and b share a CAN bus and more");
+  EXPECT_EQ(Rig(2).wire(0, "can1", 1, "can1").wire(0, "esc1", 1).refused(),
+            "wires: a and b share a CAN bus and more");
+  EXPECT_EQ(Rig(2).wire(0, "esc3", 1, "can1").wire(0, "esc4", 1, "can2").refused(),
+            "wires: a and b share a CAN bus and more");
+  EXPECT_EQ(Rig(3).wire(0, "can1", 1, "can1").wire(1, "can1", 2, "can1").refused(),
+            "wires: b.can1 is part of a's bus");
+  EXPECT_EQ(Rig(2).wire(0, "can1", 1, "can1").wire(1, "can2", 0, "can2").refused(),
+            "wires: boards lead each other in a circle: a -> b -> a");
+}
+
+TEST(BoardWires, ACanWithoutADevicesPlaceIsArbitratedWhereItBegins) {
+  Rig rig(3);
+  rig.wire(0, "can1", 1, "can2").wire(0, "esc3", 2, "can1");
+  std::vector<cli::Setup> setups;
+  for (std::size_t i = 0; i < 3; ++i) {
+    setups.push_back({rig.plan, i, rig.nodes[i].board, "", "", ""});
+  }
+  const auto links = join_boards(rig.plan, rig.nodes, setups);
+  ASSERT_TRUE(links) << links.error().message();
+  EXPECT_EQ(links.value().size(), 2u);
+  ASSERT_EQ(setups[0].wires.size(), 2u);
+  const WireEnd &there = setups[0].wires[0], &place = setups[0].wires[1];
+  EXPECT_EQ(there.device + "|" + there.bus + "|" + there.far, "|can1|b");
+  EXPECT_TRUE(there.arbitrates);
+  EXPECT_EQ(place.device, "esc3");
+  EXPECT_FALSE(place.arbitrates);
+  ASSERT_EQ(setups[1].wires.size(), 1u);
+  EXPECT_EQ(setups[1].wires[0].bus, "can2");
+  EXPECT_FALSE(setups[1].wires[0].arbitrates);
+  EXPECT_EQ(setups[1].motor, 0);
+  EXPECT_EQ(setups[2].motor, 3);
+  note_joined(rig.plan, rig.nodes);
+  EXPECT_EQ(rig.nodes[1].joined.at("can2"), "a/can1");
+  EXPECT_EQ(rig.nodes[2].joined.at("can1"), "a/can2");
+  EXPECT_TRUE(rig.nodes[0].joined.empty());
 }
 
 TEST(BoardWires, EachBoardGetsItsEndOfOneMemory) {

@@ -2,7 +2,7 @@
 //
 //   Moments  drawn from a seed, in host time since the board's process is there: while others are still being
 //            started, while the images boot, in flight
-//   Kills    3, or $WHIRL_KILLS: twenty take a minute
+//   Kills    3 of each, or $WHIRL_KILLS: twenty take a minute
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/prctl.h>
@@ -32,9 +32,16 @@ std::vector<pid_t> children_of(pid_t pid) {
   return {std::istream_iterator<pid_t>(list), {}};
 }
 
-pid_t start_chain(const std::string& output) {
+// What joins the five: the plan that flies so.
+struct Chain {
+  const char *file, *plan;
+};
+constexpr Chain kOn_i2c{"hover.lua", "chain hover"}, kOn_can{"hover_can.lua", "chain hover on CAN"};
+
+pid_t start_chain(const Chain& chain, const std::string& output) {
   const std::string line = std::string("exec ") + WHIRL_PROGRAM + " run " + WHIRL_ROOT +
-                           "/test_plans/chain/hover.lua --only 'chain hover' >" + output + " 2>&1";
+                           "/test_plans/chain/" + chain.file + " --only '" + chain.plan + "' >" +
+                           output + " 2>&1";
   const pid_t pid = fork();
   if (pid == 0) {
     execl("/bin/sh", "sh", "-c", line.c_str(), nullptr);
@@ -81,8 +88,9 @@ std::vector<pid_t> orphans() {
   return children_of(getpid());
 }
 
-void kill_and_judge(std::size_t board, int moment_ms, const std::string& output) {
-  const pid_t program = start_chain(output);
+void kill_and_judge(const Chain& chain, std::size_t board, int moment_ms,
+                    const std::string& output) {
+  const pid_t program = start_chain(chain, output);
   const pid_t victim = board_of(program, board);
   ASSERT_NE(victim, 0) << "did not start";
   usleep(static_cast<useconds_t>(moment_ms) * 1000);
@@ -98,7 +106,7 @@ void kill_and_judge(std::size_t board, int moment_ms, const std::string& output)
   EXPECT_TRUE(orphans().empty());
 }
 
-TEST(Chain, ABoardThatIsKilledAtAnyMomentEndsARunOfFiveByItsNameWithinFiveSeconds) {
+void kill_boards(const Chain& chain) {
   const ScratchFolder folder;
   setenv("WHIRL_RESULTS", folder.file("results").c_str(), 1);
   prctl(PR_SET_CHILD_SUBREAPER, 1);
@@ -110,10 +118,18 @@ TEST(Chain, ABoardThatIsKilledAtAnyMomentEndsARunOfFiveByItsNameWithinFiveSecond
     const auto board = static_cast<std::size_t>(3 * k % 5);
     const int moment_ms = static_cast<int>(random() % (kills > 3 ? 4000 : 1000));
     SCOPED_TRACE(std::string(kBoards[board]) + " after " + std::to_string(moment_ms) + " ms");
-    kill_and_judge(board, moment_ms, folder.file("told"));
+    kill_and_judge(chain, board, moment_ms, folder.file("told"));
     if (kills > 3) printf("%s after %d ms\n", kBoards[board], moment_ms);
     std::system(("rm -rf " + folder.file("results")).c_str());
   }
+}
+
+TEST(Chain, ABoardThatIsKilledAtAnyMomentEndsARunOfFiveByItsNameWithinFiveSeconds) {
+  kill_boards(kOn_i2c);
+}
+
+TEST(Chain, SoItDoesOnCan) {
+  kill_boards(kOn_can);
 }
 
 }  // namespace

@@ -161,6 +161,8 @@ WireEnd read_wire(const json& object, const std::string& place, Error& first) {
   keys.read("select", wire.select);
   keys.read("ready", wire.ready);
   keys.read("latency_ns", wire.latency_ns);
+  keys.read("arbitrates", wire.arbitrates);
+  keys.read("far", wire.far);
   keys.refuse_others();
   return wire;
 }
@@ -242,7 +244,9 @@ std::string board_text(const BoardStart& start) {
                             {"shared", wire.shared},
                             {"select", wire.select},
                             {"ready", wire.ready},
-                            {"latency_ns", wire.latency_ns}});
+                            {"latency_ns", wire.latency_ns},
+                            {"arbitrates", wire.arbitrates},
+                            {"far", wire.far}});
   }
   for (const BoardPin& pin : board.pins) {
     out["pins"].push_back({{"name", pin.name},

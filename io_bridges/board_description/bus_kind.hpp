@@ -1,14 +1,15 @@
-// What kind of bus a name is of: "i2c3", "spi1", "usart2" or "uart4".
+// What kind of bus a name is of: "i2c3", "spi1", "can2", "usart2" or "uart4".
 #pragma once
 #include <string_view>
 
 namespace whirl {
 
-enum class BusKind { none, i2c, spi, uart };
+enum class BusKind { none, i2c, spi, can, uart };
 
 inline BusKind bus_kind(std::string_view bus) {
   if (bus.starts_with("i2c")) return BusKind::i2c;
   if (bus.starts_with("spi")) return BusKind::spi;
+  if (bus.starts_with("can")) return BusKind::can;
   const bool uart = bus.starts_with("usart") || bus.starts_with("uart");
   return uart ? BusKind::uart : BusKind::none;
 }

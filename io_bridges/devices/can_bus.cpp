@@ -15,7 +15,8 @@ CanBus::CanBus(EventQueue& queue, std::string name, FindingSink finding)
     : queue_(queue),
       name_(std::move(name)),
       finding_(std::move(finding)),
-      start_(queue, [this] { start(); }),
+      start_(
+          queue, [this] { start(); }, Rank::arbiter),
       end_(queue, [this] { end(); }),
       joining_(queue, [this] { rejoin(); }),
       dominant_(queue, [this] { stay_dominant(); }) {}
@@ -25,6 +26,7 @@ CanStation& CanBus::join(CanNode& node, std::string name, int number) {
   station.node_ = &node;
   station.name_ = std::move(name);
   station.number_ = number;
+  station.place_ = stations() - 1;
   station.stub_ = std::make_unique<Event>(queue_, [this, &station] { retry_on_stub(station); });
   return station;
 }
@@ -33,11 +35,13 @@ void CanBus::configure(CanStation& station, double bit_ns, bool silent, bool alo
   station.bit_ns_ = bit_ns;
   station.silent_ = silent;
   station.alone_ = alone;
+  if (arbiter_ != nullptr) arbiter_->configured(station);
 }
 
 void CanBus::connect(CanStation& station, int idles) {
   station.idles_to_go_ = idles;
-  station.listens_since_ = queue_.now();
+  station.listens_since_ = queue_.now() == end_ns_ ? recessive_since_ns_ : queue_.now();
+  if (arbiter_ != nullptr) return arbiter_->connected(station, idles);
   plan_joining();
 }
 
@@ -45,10 +49,12 @@ void CanBus::disconnect(CanStation& station) {
   station.on_ = station.held_ = false;
   station.idles_to_go_ = 0;
   station.stub_->cancel();
+  if (arbiter_ != nullptr) arbiter_->disconnected(station);
 }
 
 void CanBus::request(CanStation& station) {
-  if (station.on_) plan_start(queue_.now());
+  if (!station.on_) return;
+  arbiter_ != nullptr ? arbiter_->requested(station) : plan_start(queue_.now());
 }
 
 Nanoseconds CanBus::bits_ns(double count) const {
@@ -138,21 +144,25 @@ void CanBus::note_hearers(Nanoseconds now) {
   }
 }
 
-bool CanBus::rate_fits(const CanStation& station) const {
-  return std::abs(station.bit_ns_ / bit_ns_ - 1.0) <= kOscillators;
+bool CanBus::rates_fit(double bit_ns, double others_bit_ns) {
+  return std::abs(bit_ns / others_bit_ns - 1.0) <= kOscillators;
 }
 
 void CanBus::end() {
   const Nanoseconds now = queue_.now();
   busy_ = false;
   free_ns_ = now + bits_ns(kCanIntermission);
+  end_ns_ =
+      now;  // its last eight bits were recessive, for one too that has left the bus by this very frame
+  recessive_since_ns_ = now - bits_ns(kCanErrorDelimiter);
+  const bool gone = std::none_of(stations_.begin(), stations_.end(), [this](const CanStation& s) {
+    return (&s == sender_ || &s == twin_) && s.on_;
+  });
+  if (gone && verdict_.error == CanError::none) verdict_.error = CanError::stuff;
   finish(verdict_.error, now);
-  // The last eight bits were recessive, for one too that has left the bus by this very frame.
-  const Nanoseconds recessive = now - bits_ns(kCanErrorDelimiter);
   for (CanStation& station : stations_) {
-    if (station.listens_since_ == now || station.listens_since_ < recessive) {
-      station.listens_since_ = recessive;
-    }
+    if (station.listens_since_ == now) station.listens_since_ = recessive_since_ns_;
+    station.listens_since_ = std::max(station.listens_since_, recessive_since_ns_);
   }
   plan_joining();
   plan_start(free_ns_);
@@ -192,7 +202,10 @@ void CanBus::hand_out(Nanoseconds now) {
       continue;
     }
     station.rec_ = station.rec_ > kPassive ? 120 : std::max(station.rec_ - 1, 0);
-    if (faults_ != nullptr && faults_->lost(station.number_, now)) continue;
+    if (faults_ != nullptr && faults_->lost(station.number_, now)) {
+      station.node_->counted(now);
+      continue;
+    }
     station.node_->receive(current_.frame, now);
   }
 }
@@ -218,13 +231,17 @@ void CanBus::count_idle(Nanoseconds until) {
   }
 }
 
+// If nothing is sent until then.
+Nanoseconds CanBus::joins_at(const CanStation& station) const {
+  return station.listens_since_ + std::llround(station.idles_to_go_ * kCanIdle * station.bit_ns_);
+}
+
 void CanBus::plan_joining() {
   joining_.cancel();
   if (busy_ || held_dominant_) return;
   for (const CanStation& station : stations_) {
     if (station.idles_to_go_ == 0) continue;
-    const Nanoseconds due =
-        station.listens_since_ + std::llround(station.idles_to_go_ * kCanIdle * station.bit_ns_);
+    const Nanoseconds due = joins_at(station);
     if (!joining_.pending() || due < joining_.due()) joining_.at(due);
   }
 }
@@ -233,9 +250,7 @@ void CanBus::rejoin() {
   const Nanoseconds now = queue_.now();
   for (CanStation& station : stations_) {
     if (station.idles_to_go_ == 0) continue;
-    const Nanoseconds due =
-        station.listens_since_ + std::llround(station.idles_to_go_ * kCanIdle * station.bit_ns_);
-    if (due > now) continue;
+    if (joins_at(station) > now) continue;
     station.idles_to_go_ = station.tec_ = station.rec_ = 0;
     station.bus_off_ = station.held_ = false;
     station.on_ = true;

@@ -99,7 +99,9 @@ int CanBus::flag_bits(const CanBits& bits) {
 void CanBus::fail(Nanoseconds now) {
   const bool unheard = verdict_.error == CanError::acknowledge && sender_->passive();
   for (CanStation* sender : {sender_, twin_}) {
-    if (sender != nullptr) count_error(*sender, true, verdict_.error, false, now);
+    if (sender != nullptr && sender->on_) {
+      count_error(*sender, true, verdict_.error, false, now);
+    }
   }
   if (unheard) return hand_out(now);  // its flag is recessive: the others see a good frame
   for (CanStation& station : stations_) {

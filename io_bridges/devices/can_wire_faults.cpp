@@ -33,6 +33,7 @@ void CanWireFaults::at(Nanoseconds t, std::function<void()> action) {
 void CanWireFaults::schedule(const Fault& fault) {
   if (fault.bus != kAnywhere && fault.bus != number_) return;
   if (fault.kind == FaultKind::can_stuck_dominant) {
+    bus_.foresee(fault.start_ns);
     at(fault.start_ns, [this, kind = fault.kind] {
       bus_.hold_dominant(queue_.now());
       book_.apply(kind, number_, kAnywhere, queue_.now());

@@ -18,8 +18,8 @@ inline constexpr Nanoseconds kNever = INT64_MAX;
 class Event;
 
 // Of events of one nanosecond: what comes over a wire from another board acts when the board's own
-// models have; a boundary ends what is done at its instant.
-enum class Rank : std::uint8_t { own, wire, boundary };
+// models have; a bus that several may want decides when all have asked; a boundary ends what is done at its instant.
+enum class Rank : std::uint8_t { own, wire, arbiter, boundary };
 
 class EventQueue {
  public:

@@ -16,7 +16,7 @@
 namespace whirl::io {
 namespace {
 
-constexpr std::uint64_t kWire_magic = 0x3330657269776877;  // "whwire03"
+constexpr std::uint64_t kWire_magic = 0x3430657269776877;  // "whwire04"
 constexpr std::uint32_t kRing = 256;                       // messages
 constexpr int kFew_turns = 4 * SpinPolicy::kLeast;
 // A sleeper looks again so often: close() may come between its look and its sleep.
@@ -108,17 +108,22 @@ bool BoardWire::await(std::atomic<std::uint32_t>& word, std::atomic<std::uint32_
   return ready(seen);
 }
 
-bool BoardWire::post(const WireMessage& message) {
+bool BoardWire::post(const WireMessage& message, bool more) {
   if (page_->closed.load(std::memory_order_acquire) != 0) return false;
   const std::uint32_t posted = page_->posted.load(std::memory_order_relaxed);
   const auto room = [posted](std::uint32_t taken) { return posted - taken < kRing; };
+  if (!room(page_->taken.load(std::memory_order_acquire))) wake_follower();  // perhaps for more
   if (!await(page_->taken, page_->leader_sleeps, room)) return false;
   page_->ring[posted % kRing] = message;
   page_->posted.store(posted + 1, std::memory_order_seq_cst);
+  if (!more) wake_follower();
+  return true;
+}
+
+void BoardWire::wake_follower() {
   if (page_->follower_sleeps.load(std::memory_order_seq_cst) != 0) {
     futex(page_->posted, FUTEX_WAKE, 1, nullptr);
   }
-  return true;
 }
 
 std::optional<WireAnswer> BoardWire::ask(const WireMessage& message) {
@@ -161,11 +166,12 @@ std::optional<WireEdge> BoardWire::next_edge() {
   return edge;
 }
 
-void BoardWire::tell(const WireEdge& edge) {
+void BoardWire::tell(const WireEdge& edge, bool more) {
   const std::uint32_t told = page_->told.load(std::memory_order_relaxed);
   WHIRL_CHECK(told - page_->heard.load(std::memory_order_acquire) < kMost_edges, edge.t_ns);
   page_->edges[told % kMost_edges] = edge;
   page_->told.store(told + 1, std::memory_order_seq_cst);
+  if (more) return;
   if (page_->leader_sleeps.load(std::memory_order_seq_cst) != 0) {
     futex(page_->told, FUTEX_WAKE, 1, nullptr);
   }

@@ -32,6 +32,30 @@ enum class WireAct : std::uint8_t {
   spi_end,      // its last bit has passed. byte: MOSI. Answer: MISO
   mark,         // no answer, but a mark in the ring up: all edges until then are in it
   character,    // of a UART: its last stop bit has passed. No answer
+  can_news,     // of CAN, from who arbitrates: a station is told something. No answer
+  can_stir,     // a station that takes no part sees a start of frame at t_ns. No answer
+  can_go,       // run on until t_ns: nothing comes before
+};
+
+// Of CAN, from a board that does not arbitrate. Each stands for its station but the last.
+enum class WireCanAct : std::uint8_t {
+  configure,
+  connect,
+  disconnect,
+  offer,     // it has this frame to send
+  withdraw,  // it has none
+  stopped,   // the board stands at t_ns, and has said all that it asked before. level: and at t_ns
+};
+
+struct WireCan {
+  double bit_ns = 0.0;
+  std::uint32_t id = 0;
+  std::uint8_t data[8] = {};
+  std::uint8_t length = 0;
+  bool extended = false, remote = false;
+  bool silent = false, sending = false, bus_off = false;
+  std::uint8_t station = 0, act = 0, error = 0;
+  std::int16_t tec = 0, rec = 0, idles = 0;
 };
 
 // What a UART sends, and how it had set up its end.
@@ -47,6 +71,7 @@ struct WireMessage {
   WireAct act = WireAct::start;
   std::uint8_t byte = 0, flag = 0, port = 0;
   WireCharacter character = {};
+  WireCan can = {};
 };
 
 // From the follower to the leader: a line's edge, or a character whose start bit is here.
@@ -55,6 +80,7 @@ struct WireEdge {
   std::uint8_t port = 0, level = 0, mark = 0;  // mark: no edge, see WireAct
   std::int64_t until_ns = 0;                   // of a character: its last stop bit has passed
   WireCharacter character = {};
+  WireCan can = {};
 };
 
 struct WireAnswer {
@@ -80,8 +106,9 @@ class BoardWire {
 
   int fd() const { return fd_; }  // inherited by both boards
 
-  // Leader. False, nothing: the wire is closed.
-  bool post(const WireMessage& message);  // waits for room, and never for long: the follower drains
+  // Leader. False, nothing: the wire is closed. more: others follow at once, so nobody is woken for this one.
+  bool post(const WireMessage& message,  // waits for room, and never for long: the follower drains
+            bool more = false);
   std::optional<WireAnswer> ask(const WireMessage& message);
   std::optional<WireEdge> next_edge();  // waits for one
 
@@ -91,7 +118,7 @@ class BoardWire {
   void answer(const WireAnswer& answer);
   // Pre: fewer than kMost_edges are there that the leader has not taken.
   static constexpr std::uint32_t kMost_edges = 1024;
-  void tell(const WireEdge& edge);
+  void tell(const WireEdge& edge, bool more = false);
 
   // The harness, when one of the two is gone or the run has ended otherwise.
   void close();
@@ -103,6 +130,7 @@ class BoardWire {
   BoardWire(int fd, void* memory);
   template <typename Ready>
   bool await(std::atomic<std::uint32_t>& word, std::atomic<std::uint32_t>& sleeps, Ready ready);
+  void wake_follower();
 
   int fd_ = -1;
   Page* page_ = nullptr;

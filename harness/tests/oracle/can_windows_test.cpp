@@ -100,6 +100,18 @@ TEST(CanWindows, AWrongWordIsSaid) {
   }
 }
 
+TEST(CanWindows, ABusThatAnotherBoardArbitratesIsNamedThere) {
+  for (const auto& [lua, words] : std::vector<std::pair<std::string, std::string>>{
+           {"t:can { bus = 'can2', during = '20 ms' }", "'can2' is part of fc/can1"},
+           {"t:fault { kind = 'can_no_ack', bus = 'can2' }", "can2 is part of fc/can1"},
+           {"t:fault { kind = 'can_cut', device = 'esc_a' }", "can2 is part of fc/can1"}}) {
+    Scenario s = on_can(lua);
+    s.joined = {{"can2", "fc/can1"}};
+    const results::Report report = report_of(s);
+    EXPECT_NE(report.reason.find(words), std::string::npos) << lua << ": " << report.reason;
+  }
+}
+
 TEST(CanWindows, LatencyEndsWithTheFrameOfTheSetPoints) {
   Scenario s = on_can(
       "t:latency { from = 'imu', through = { 'fw::task' }, to = 'esc_a', at_most = '2 ms', during "

@@ -220,7 +220,7 @@ results::Report run_scenario(const Scenario& scenario, const std::string& file,
     report.reason = loaded.error().message();
     return report;
   }
-  const std::vector<Node> nodes{{"", board_of(scenario)}};
+  const std::vector<Node> nodes{{"", board_of(scenario), scenario.joined}};
   PlayedWorld world(scenario);
   PlayedTarget target(scenario);
   const RunParts parts{*loaded.value(), loaded.value()->plans().front(), nodes, world, target, 1};

@@ -127,6 +127,14 @@ TEST(PlanFile, ABoardInTheDevicesPlaceAndWhatIsFlashedBesideItsImageAreTaken) {
   EXPECT_NE(refused("b.esc1", "b.i2c2").find("a wire joins two boards"), std::string::npos);
 }
 
+TEST(PlanFile, TwoBoardsMayBeJoinedByTheirCans) {
+  const Loaded loaded = load(nodes("wires = { { from = 'a.can1', to = 'b.can2' } },"));
+  ASSERT_EQ(loaded.plans.size(), 1u) << loaded.error;
+  const PlanBoardWire& taken = loaded.plans[0].board_wires.at(0);
+  EXPECT_EQ(taken.device, "can1");
+  EXPECT_EQ(taken.bus, "can2");
+}
+
 TEST(PlanFile, ABoardInTheDevicesPlaceOnSpiHasItsPinsAndTheLatencyOfItsLine) {
   const auto wire = [](const std::string& more) {
     return load(nodes("wires = { { from = 'a.imu', to = 'b.spi1'" + more + " } },"));

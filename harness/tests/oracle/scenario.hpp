@@ -139,8 +139,9 @@ struct Scenario {
   std::map<int, std::int64_t> wires_ns;  // by the ms of a command: when its last bit had passed
   std::map<std::string, Line> answers;   // by the line that is asked
   std::vector<std::string> functions{"fw::none"}, i2c_devices{"esc0"}, spi_devices{"imu"};
-  std::vector<OtherDevice> other_devices;    // behind those
-  std::map<std::string, bool> world_faults;  // by kind: is it applied?
+  std::vector<OtherDevice> other_devices;     // behind those
+  std::map<std::string, std::string> joined;  // Node::joined
+  std::map<std::string, bool> world_faults;   // by kind: is it applied?
   std::vector<std::pair<std::string, bool>> board_faults;
   std::function<void(const io::FaultCommand&)> on_fault;  // told of what reaches the board
   std::function<void(io::Batch&)> last_words;  // what the target tells when it is stopped

@@ -17,7 +17,9 @@ BoardStart everything() {
   BoardStart start;
   start.run = {.image = "a.elf",
                .flashed = {"cells.elf"},
-               .wires = {{.device = "esc1", .fd = 7}, {.bus = "i2c2", .fd = 8}},
+               .wires = {{.device = "esc1", .fd = 7},
+                         {.bus = "i2c2", .fd = 8},
+                         {.bus = "can1", .fd = 9, .arbitrates = true, .far = "esc2"}},
                .seed = 18446744073709551615u,
                .gdb_port = 1234,
                .folder = "runs/1",

@@ -75,8 +75,7 @@ class DeviceRack::Wiring final : public rack::Rack {
   std::map<const io::Wire*, std::string> names_;  // of devices by their chip select
   std::vector<BoardPin> named_pins_;              // with neither resistor nor bus
   std::vector<std::string> analog_;               // pins that a device puts a voltage on
-  io::I2cBus* ear_ =
-      nullptr;  // of the device that is being made, where another board takes its place
+  Ear ear_;  // of the device that is being made, where another board takes its place
   std::set<int> i2c_soldered_;  // to the pins that the board names
   std::map<int, std::unique_ptr<io::I2cWireFaults>> i2c_buses_;
   std::map<int, std::unique_ptr<io::CanWireFaults>> can_buses_;
@@ -157,13 +156,14 @@ Result<Done> DeviceRack::Wiring::add(const BoardDescription& board, int number) 
   const WireEnd* far = far_end(device);
   // A part that senses has nothing to tell where another board stands in its place; nor has one on a UART.
   const bool mute = !type->senses.empty() || is_uart(device.bus);
-  if (far != nullptr && mute) return far_.lead(device, number, *far, nullptr);
+  if (far != nullptr && mute) return far_.lead(device, number, *far, {});
   rack::DeviceSlot slot(*this, board.name, device, *type, number);
-  std::unique_ptr<io::I2cBus> ear;
-  if (far != nullptr) ear = std::make_unique<io::I2cBus>(device.name);
-  ear_ = ear.get();
+  if (far != nullptr) {
+    ear_ = {std::make_unique<io::I2cBus>(device.name),
+            std::make_unique<CanEar>(site_.events, device.name)};
+  }
   auto made = type->make(slot);
-  ear_ = nullptr;
+  Ear ear = std::exchange(ear_, {});
   if (slot.error()) return *slot.error();
   WHIRL_CHECK(made != nullptr, device.type);
   if (far != nullptr) {
@@ -222,7 +222,7 @@ void DeviceRack::Wiring::run_ends(io::Nanoseconds now) {
 }
 
 io::I2cBus* DeviceRack::Wiring::i2c(int number) {
-  if (ear_ != nullptr) return ear_;
+  if (ear_.i2c != nullptr) return ear_.i2c.get();
   io::I2cBus* bus = site_.chip.i2c(number);
   if (bus == nullptr || i2c_buses_.count(number) != 0) return bus;
   if (i2c_soldered_.count(number) == 0) site_.chip.solder_i2c(number, "", "");
@@ -245,6 +245,7 @@ io::I2cBus* DeviceRack::Wiring::i2c(int number) {
 }
 
 io::CanBus* DeviceRack::Wiring::can(int number) {
+  if (ear_.can != nullptr) return &ear_.can->bus();
   stm32::BxCan* block = site_.chip.can(number);
   if (block == nullptr) return nullptr;
   io::CanBus& bus = block->bus();

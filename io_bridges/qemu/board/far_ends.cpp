@@ -9,17 +9,21 @@
 
 namespace whirl::board {
 
-Result<Done> FarEnds::lead(const BoardDevice& device, int number, const WireEnd& end,
-                           std::unique_ptr<io::I2cBus> ear) {
+Result<Done> FarEnds::lead(const BoardDevice& device, int number, const WireEnd& end, Ear ear) {
   WHIRL_CHECK(wires_ != nullptr, device.name);
+  const int bus_of_device = bus_number(device.bus).value_or(0);
+  if (bus_kind(device.bus) == BusKind::can) {
+    if (io::CanBus* bus = rack_.can(bus_of_device)) {
+      return wires_->arbitrate(end.fd, *bus, device.name, number, std::move(ear.can));
+    }
+  }
   const auto wire = wires_->lead(end.fd);
   if (!wire) return wire.error();
   const auto port = static_cast<std::uint8_t>(end.port);
-  const int bus_of_device = bus_number(device.bus).value_or(0);
   if (device.bus.starts_with("i2c") && device.address >= 0) {
     if (io::I2cBus* bus = rack_.i2c(bus_of_device)) {
       auto& led = wire.value()->port<LeaderI2c>(port, *bus);
-      led.add(static_cast<std::uint8_t>(device.address), std::move(ear));
+      led.add(static_cast<std::uint8_t>(device.address), std::move(ear.i2c));
       return Done{};
     }
   } else if (device.bus.starts_with("spi")) {
@@ -30,7 +34,8 @@ Result<Done> FarEnds::lead(const BoardDevice& device, int number, const WireEnd&
     }
   }
   return Error{ErrorKind::bad_input, device.place + ": " + device.name,
-               "is no device on I2C, SPI or a UART of this part: no board can take its place", ""};
+               "is no device on I2C, SPI, CAN or a UART of this part: no board can take its place",
+               ""};
 }
 
 bool FarEnds::lead_spi(LeaderWire& wire, const BoardDevice& device, int number,
@@ -59,6 +64,7 @@ void FarEnds::tell_ready(io::Wire& ready, int number) {
 
 Result<Done> FarEnds::follow(const WireEnd& end) {
   WHIRL_CHECK(wires_ != nullptr, end.bus);
+  if (bus_kind(end.bus) == BusKind::can) return follow_can(end);
   const auto wire = wires_->follow(end.fd, end.shared);
   if (!wire) return wire.error();
   const auto port = static_cast<std::uint8_t>(end.port);
@@ -77,6 +83,16 @@ Result<Done> FarEnds::follow(const WireEnd& end) {
   return Error{ErrorKind::bad_input, end.bus,
                "the part has no such bus for the wire to another board, or a device is on its UART",
                ""};
+}
+
+Result<Done> FarEnds::follow_can(const WireEnd& end) {
+  io::CanBus* bus = rack_.can(bus_number(end.bus).value_or(0));
+  if (bus == nullptr) {
+    return Error{ErrorKind::bad_input, end.bus,
+                 "the part has no such bus for the wire to another board", ""};
+  }
+  if (!end.arbitrates) return wires_->share(end.fd, *bus);
+  return wires_->arbitrate(end.fd, *bus, end.far, kFar_board + boards_++, nullptr);
 }
 
 Result<Done> FarEnds::follow_spi(FollowerWire& wire, const WireEnd& end, io::SpiSlave& slave) {

@@ -174,17 +174,41 @@ Result<FollowerWire*> WireEnds::follow(int fd, bool shared) {
   return place.get();
 }
 
+Result<Done> WireEnds::arbitrate(int fd, io::CanBus& bus, const std::string& name, int number,
+                                 std::unique_ptr<CanEar> ear) {
+  auto wire = io::BoardWire::attach(fd);
+  if (!wire) return wire.error();
+  const auto known = std::find_if(arbiters_.begin(), arbiters_.end(),
+                                  [&](const auto& arbiter) { return &arbiter->bus() == &bus; });
+  auto& arbiter = known != arbiters_.end()
+                      ? *known
+                      : arbiters_.emplace_back(std::make_unique<CanLeader>(site_, bus));
+  arbiter->add(std::move(wire.value()), name, number, std::move(ear));
+  return Done{};
+}
+
+Result<Done> WireEnds::share(int fd, io::CanBus& bus) {
+  auto wire = io::BoardWire::attach(fd);
+  if (!wire) return wire.error();
+  shares_.push_back(std::make_unique<CanFollower>(site_, std::move(wire.value()), bus));
+  return Done{};
+}
+
 void WireEnds::at_boundary(Nanoseconds now) {
+  for (const auto& arbiter : arbiters_) arbiter->at_boundary(now);
   for (const auto& [key, leader] : leaders_) leader->at_boundary(now);
   for (const auto& [key, follower] : followers_) follower->at_boundary(now);
 }
 
 void WireEnds::after_boundary(Nanoseconds now, Nanoseconds next) {
+  for (const auto& arbiter : arbiters_) arbiter->after_boundary(now, next);
+  for (const auto& share : shares_) share->after_boundary(now, next);
   for (const auto& [key, leader] : leaders_) leader->after_boundary(now);
   for (const auto& [key, follower] : followers_) follower->after_boundary(now, next);
 }
 
 void WireEnds::run_ends(Nanoseconds now) {
+  for (const auto& share : shares_) share->run_ends(now);
   for (const auto& [key, leader] : leaders_) leader->run_ends(now);
   for (const auto& [key, follower] : followers_) follower->run_ends(now);
 }

@@ -1,6 +1,7 @@
 // The ends of a board's wires to other boards. The bus master's board leads: for each byte it asks the slave's
 // board. The slave's board follows: it acts as the master on its own buses at the times that it is told, and
-// blocks where it does not know what comes next. What a bus carries: i2c_wire.hpp, spi_wire.hpp, uart_wire.hpp.
+// blocks where it does not know what comes next. What a bus carries: i2c_wire.hpp, spi_wire.hpp, uart_wire.hpp. A CAN
+// bus has no master, and wires of its own: can_wire.hpp.
 //
 //   Waiting   a leader waits for answers and marks only, a follower for messages only, and posts its answer at the
 //             act, when the clock is free, kHeld_ns after, or at its boundary: so none waits for ever
@@ -22,19 +23,10 @@
 #include <string>
 #include <vector>
 
-#include "io_bridges/devices/bus.hpp"
-#include "io_bridges/devices/event_queue.hpp"
-#include "io_bridges/link/wire.hpp"
+#include "io_bridges/qemu/board/can_wire.hpp"
+#include "io_bridges/qemu/board/wire_site.hpp"
 
 namespace whirl::board {
-
-using io::Nanoseconds;
-
-struct WireSite {
-  io::EventQueue& events;
-  io::FindingSink finding;
-  std::function<void()> closed;  // the run ends: does not return, in a board
-};
 
 inline constexpr std::size_t kMost_ports = 16;
 
@@ -142,6 +134,10 @@ class WireEnds {
   // The wire of that descriptor, which is attached to when it is first asked for. Not null.
   Result<LeaderWire*> lead(int fd);
   Result<FollowerWire*> follow(int fd, bool shared);
+  // Of CAN: another board on a bus that this one's arbitrates (see CanLeader::add), and a bus that another one's does.
+  Result<Done> arbitrate(int fd, io::CanBus& bus, const std::string& name, int number,
+                         std::unique_ptr<CanEar> ear);
+  Result<Done> share(int fd, io::CanBus& bus);
 
   // Before what happened is posted, and after orders until `next` have come.
   void at_boundary(Nanoseconds now);
@@ -152,6 +148,8 @@ class WireEnds {
   WireSite site_;
   std::map<int, std::unique_ptr<LeaderWire>> leaders_;  // by descriptor
   std::map<int, std::unique_ptr<FollowerWire>> followers_;
+  std::vector<std::unique_ptr<CanLeader>> arbiters_;  // of each bus
+  std::vector<std::unique_ptr<CanFollower>> shares_;
 };
 
 }  // namespace whirl::board

@@ -34,7 +34,8 @@ void BxCan::begun(Nanoseconds /*now*/) {
 
 void BxCan::sent(Nanoseconds /*now*/) {
   lec_ = 0;
-  finish(std::exchange(in_flight_, -1), TXOK);
+  const int mailbox = std::exchange(in_flight_, -1);
+  if (mailbox >= 0) finish(mailbox, TXOK);
   abort_in_flight_ = false;
   note_levels();
   enter_or_leave();

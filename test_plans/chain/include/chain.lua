@@ -1,18 +1,18 @@
 -- The vehicle as it was: the flight controller and its four motor controllers, each with its own image on its own
--- part, joined on the flight controller's I2C3. The four ESCs have one image; what makes one the second is its page of
--- settings. `watch` is of the flight controller, `of_escs` of each ESC.
-function chain_nodes(watch, of_escs)
-  local nodes = { { name = "flight", image = "flight", board = "px4fmu_v1", watch = watch } }
+-- part, joined on the flight controller's I2C3; with `can`, on its CAN2. The four ESCs have one image; what makes one the
+-- second is its page of settings, on CAN the number of its node too. `watch` is of the flight controller, `of_escs` of each ESC.
+function chain_nodes(watch, of_escs, can)
+  local nodes = { { name = "flight", image = "flight", board = can and "px4fmu_v1_can" or "px4fmu_v1", watch = watch } }
   for n = 1, 4 do
-    nodes[n + 1] = { name = "esc" .. n, image = "esc", board = "esc32v2", flash = { "esc_motor_" .. n },
+    nodes[n + 1] = { name = "esc" .. n, image = "esc", board = can and "esc32v2_can" or "esc32v2", flash = { "esc_motor_" .. n },
                      watch = of_escs }
   end
   return nodes
 end
 
-function chain_wires()
-  local wires = {}
-  for n = 1, 4 do wires[n] = { from = "flight.esc" .. n, to = "esc" .. n .. ".i2c2" } end
+function chain_wires(can)
+  local wires, bus = {}, can and ".can1" or ".i2c2"
+  for n = 1, 4 do wires[n] = { from = "flight.esc" .. n, to = "esc" .. n .. bus } end
   return wires
 end
 

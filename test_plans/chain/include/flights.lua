@@ -2,11 +2,11 @@
 escs = { "esc1", "esc2", "esc3", "esc4" }
 
 -- Every flight of the chain ends by what the five have kept of the energy. (Before, the charging of their capacitors is all.)
--- `parity`: the same is also flown by the flight controller alone, with the control core of the ESCs on the host, as all
+-- `can`: the five are joined on CAN. `parity`: the same is also flown by the flight controller alone, with the control core of the ESCs on the host, as all
 -- other flights are; `whirl parity` lays the two side by side. `run` is told whether the controllers are boards.
 function chain_plan(name, more, run)
   plan(name) {
-    nodes = chain_nodes(more.watch, more.of_escs), wires = chain_wires(), vehicle = "hp_quad",
+    nodes = chain_nodes(more.watch, more.of_escs, more.can), wires = chain_wires(more.can), vehicle = "hp_quad",
     tags = more.tags or { "chain", "nightly" }, timeout = more.timeout or "60 s",
     run = function(t)
       run(t, true)
@@ -15,7 +15,7 @@ function chain_plan(name, more, run)
   }
   if not more.parity then return end
   plan(name .. ", native controllers") {
-    nodes = { chain_nodes(more.watch)[1] }, vehicle = "hp_quad",
+    nodes = { chain_nodes(more.watch, nil, more.can)[1] }, vehicle = "hp_quad",
     tags = { "parity" }, timeout = more.timeout or "60 s", run = function(t) run(t, false) end,
   }
 end
@@ -23,6 +23,15 @@ end
 function heartbeat(t)
   t:within("8 s", function(s) return s.heartbeat_age_s < 1.5 end, "the first heartbeat")
   t:wait "3 s" -- gyro bias on the ground, capture poses, ESC arming zeros
+end
+
+-- Of five that a CAN joins: the flight image is told so.
+function heartbeat_on_can(t)
+  t:within("8 s", function(s) return s.heartbeat_age_s < 1.5 end, "the first heartbeat")
+  t:command { parameter = { name = "ESC_BUS", value = 1 } }
+  t:within("3 s", function(s) return s.parameter_pending == 0 end, "ESC_BUS is answered")
+  t:expect(t:value "parameter_result", "ESC_BUS is taken over"):equal(0)
+  t:wait "3 s"
 end
 
 -- From reset to a steady hover at 1.1 m.
