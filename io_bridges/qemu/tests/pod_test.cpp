@@ -162,7 +162,8 @@ TEST(Pod, AnswersTheFlightImagesTrafficByteForByte) {
   }
   // At the recorded 656 kHz an answer has 762 ns; half of that is to be left for a copper board.
   EXPECT_GT(got["read_least_wait_ns"], 381);
-  EXPECT_LT(got["link_most_ns"], 200'000);  // a sample is 70 us on the line
+  // 70 us on the line, 100 of the clock's, and by how much the way and the clock wander.
+  EXPECT_LT(got["link_most_ns"], 215'000);
   EXPECT_LT(run.watched[0].worst_latency_ns, 200);
 }
 
