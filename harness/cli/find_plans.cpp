@@ -16,8 +16,9 @@ namespace {
 namespace fs = std::filesystem;
 
 bool is_data_folder(const fs::path& path) {
-  static const std::set<std::string> kNames = {"batteries", "benches", "boards",     "calibrations",
-                                               "include",   "motors",  "propellers", "vehicles"};
+  static const std::set<std::string> kNames = {"batteries",    "benches", "boards",
+                                               "calibrations", "include", "motors",
+                                               "propellers",   "sticks",  "vehicles"};
   return kNames.count(path.filename().string()) != 0;
 }
 
