@@ -6,10 +6,13 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <mutex>
+#include <thread>
 
 #include "base/argv.hpp"
 #include "base/result.hpp"
@@ -125,6 +128,30 @@ Result<Done> make_folders(const Parser& p) {
   return Done{};
 }
 
+// As many at a time as there are cores; a row when one has ended.
+int run_all(const std::vector<Parser>& parsers, const ParserFuzzOptions& options) {
+  std::atomic<std::size_t> next = 0;
+  std::mutex printing;
+  int code = 0;
+  const auto work = [&] {
+    for (std::size_t i = next++; i < parsers.size(); i = next++) {
+      const Parser& p = parsers[i];
+      const Outcome o = outcome_of(p, run(p, options));
+      const std::lock_guard lock(printing);
+      if (!o.finding.empty()) code = 1;
+      std::printf("%-20s %12s %10s %8s  %s\n", p.name.c_str(), o.runs.c_str(), o.per_second.c_str(),
+                  o.inputs_kept.c_str(), o.finding.empty() ? "none" : o.finding.c_str());
+      std::fflush(stdout);
+    }
+  };
+  std::vector<std::jthread> workers;
+  for (unsigned n = std::max(1u, std::thread::hardware_concurrency()); n > 0; --n) {
+    workers.emplace_back(work);
+  }
+  workers.clear();  // each has ended
+  return code;
+}
+
 }  // namespace
 
 int run_parser_fuzzers(const ParserFuzzOptions& options) {
@@ -135,16 +162,10 @@ int run_parser_fuzzers(const ParserFuzzOptions& options) {
   fs::current_path(options.root, status);
   if (status) return complain({ErrorKind::host, options.root, status.message(), ""});
   std::printf("%-20s %12s %10s %8s  %s\n", "parser", "inputs", "per second", "new", "finding");
-  int code = 0;
   for (const Parser& p : parsers.value()) {
     if (const auto made = make_folders(p); !made) return complain(made.error());
-    const Outcome o = outcome_of(p, run(p, options));
-    if (!o.finding.empty()) code = 1;
-    std::printf("%-20s %12s %10s %8s  %s\n", p.name.c_str(), o.runs.c_str(), o.per_second.c_str(),
-                o.inputs_kept.c_str(), o.finding.empty() ? "none" : o.finding.c_str());
-    std::fflush(stdout);
   }
-  return code;
+  return run_all(parsers.value(), options);
 }
 
 }  // namespace whirl::cli

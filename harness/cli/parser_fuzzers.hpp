@@ -15,8 +15,8 @@ struct ParserFuzzOptions {
   std::vector<std::string> only = {};  // names of parsers; empty: all
 };
 
-// Prints a row per parser. 0: nothing found; 1: a finding, with the path of the input that shows it;
-// 2: not built, or no such parser.
+// Runs as many at a time as there are cores and prints a row as each ends. 0: nothing found; 1: a finding, with the
+// path of the input that shows it; 2: not built, or no such parser.
 int run_parser_fuzzers(const ParserFuzzOptions& options);
 
 }  // namespace whirl::cli
