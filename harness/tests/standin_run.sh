@@ -13,8 +13,7 @@ whirl=$1 kind=$2 pace=$3 lockstep=${4:-}
 folder=$(mktemp -d)
 export WHIRL_RESULTS=$folder/results
 metal= busy=
-# A guest's own clock leaps while a file is awaited, of which both sides have some, to the run's last page: so that it
-# never does, something is always to be done.
+# A guest's own clock leaps while a file is awaited. As long as programs and plans are read, something is to be done.
 keep_busy() { if [[ ${WHIRL_OWN_CLOCK:-} ]]; then chrt --idle 0 bash -c 'while :; do :; done' & busy=$!; fi; }
 rest() { if [[ $busy ]]; then kill "$busy"; fi; busy=; }
 trap 'rest; [[ $metal ]] && kill "$metal" 2>/dev/null; wait; rm -rf "$folder"' EXIT
@@ -34,7 +33,11 @@ until grep -q 'stands in' "$folder/standin"; do
 done
 begin=$SECONDS status=0
 "$whirl" run "$plan" --target "bench/$folder/metal/bench.lua" --arm "nothing turns" >"$folder/run" 2>&1 &
-wait $! || status=$?
+run=$!
+sleep 6  # its first steps have read what there is to read
+rest
+wait $run || status=$?
+keep_busy
 echo "figure: $kind: the run took $((SECONDS - begin)) s at pace $pace"
 kill $metal || true
 wait $metal || true
