@@ -25,21 +25,13 @@ Result<Done> FarRack::add(const BoardDescription& board, int number, const Devic
   DeviceSlot slot(*this, board.name, device, *type, number);
   auto made = type->make(slot);
   if (slot.error()) return *slot.error();
-  for (const Intake& intake : made->intakes()) {
-    takers_[intake.kind].push_back({intake.port, made.get()});
-  }
   devices_.push_back(std::move(made));
-  return Done{};
+  return takers_.add(*devices_.back(), slot.place());
 }
 
 void FarRack::on_message(const io::Reader& message) {
-  const io::Header& head = message.header();
-  if (head.kind == io::Kind::fault) return faults_.add(fault_of(message));
-  const auto takers = takers_.find(head.kind);
-  if (takers == takers_.end()) return;
-  for (const Taker& taker : takers->second) {
-    if (taker.port.value_or(head.port) == head.port) taker.device->on_message(message);
-  }
+  if (message.header().kind == io::Kind::fault) return faults_.add(fault_of(message));
+  takers_.give(message);
 }
 
 io::FindingSink FarRack::finding() {

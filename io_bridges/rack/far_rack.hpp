@@ -4,13 +4,13 @@
 //   Time      of the caller: events().run_until(); messages, and what comes from afar, act at its now
 //   Happened  what devices tell, as on a virtual board
 //   Faults    of its devices, by their numbers on the board; those of a wire are the class's that has it
-//   Errors    bad_input: a device needs more of the board than its wire
+//   Errors    bad_input: a device needs more of the board than its wire, or takes what another one takes
 #pragma once
-#include <map>
 #include <memory>
 #include <vector>
 
 #include "io_bridges/rack/device_type.hpp"
+#include "io_bridges/rack/takers.hpp"
 
 namespace whirl::rack {
 
@@ -49,11 +49,7 @@ class FarRack : protected Rack {
   io::FaultBook faults_;
   io::Batch happened_;
   std::vector<std::unique_ptr<RackDevice>> devices_;
-  struct Taker {
-    std::optional<std::uint16_t> port;  // none: whatever it is
-    RackDevice* device;
-  };
-  std::map<io::Kind, std::vector<Taker>> takers_;
+  Takers takers_;
 };
 
 }  // namespace whirl::rack

@@ -14,6 +14,7 @@
 #include "io_bridges/rack/can_log.hpp"
 #include "io_bridges/rack/check_board.hpp"
 #include "io_bridges/rack/fault_order.hpp"
+#include "io_bridges/rack/takers.hpp"
 
 namespace whirl::board {
 
@@ -64,7 +65,6 @@ class DeviceRack::Wiring final : public rack::Rack {
   Result<Done> add(const BoardDescription& board, int number);
   bool join_uart(int number, io::UartPeer& peer, io::UartWireFaults::Spoils spoils);
   const WireEnd* far_end(const BoardDevice& device) const;
-  Result<Done> subscribe(rack::RackDevice& device, const std::string& place);
   io::SpiBus* spi(int number);
   void report_fights(io::Wire& wire, const std::string& name);
   void report_once(io::Nanoseconds now, const std::string& where, const std::string& what);
@@ -87,8 +87,7 @@ class DeviceRack::Wiring final : public rack::Rack {
   FarEnds far_{*this, site_.wires, [this](int number, io::UartPeer& peer) {
                  return join_uart(number, peer, io::UartWireFaults::Spoils::both_ways);
                }};
-  std::map<Kind, std::vector<rack::RackDevice*>> takers_;  // whatever the port
-  std::map<std::pair<Kind, std::uint16_t>, rack::RackDevice*> taker_of_port_;
+  rack::Takers takers_;
 };
 
 Result<Done> DeviceRack::Wiring::build(const BoardDescription& board) {
@@ -170,7 +169,7 @@ Result<Done> DeviceRack::Wiring::add(const BoardDescription& board, int number) 
     if (const auto led = far_.lead(device, number, *far, std::move(ear)); !led) return led.error();
   }
   devices_.push_back(std::move(made));
-  return subscribe(*devices_.back(), slot.place());
+  return takers_.add(*devices_.back(), slot.place());
 }
 
 const WireEnd* DeviceRack::Wiring::far_end(const BoardDevice& device) const {
@@ -178,18 +177,6 @@ const WireEnd* DeviceRack::Wiring::far_end(const BoardDevice& device) const {
     if (end.device == device.name) return &end;
   }
   return nullptr;
-}
-
-Result<Done> DeviceRack::Wiring::subscribe(rack::RackDevice& device, const std::string& place) {
-  for (const rack::Intake& intake : device.intakes()) {
-    if (!intake.port) {
-      takers_[intake.kind].push_back(&device);
-    } else if (!taker_of_port_.emplace(std::pair(intake.kind, *intake.port), &device).second) {
-      return Error{ErrorKind::bad_input, place, "another device takes the messages that it takes",
-                   "give it a number of its own"};
-    }
-  }
-  return Done{};
 }
 
 void DeviceRack::Wiring::report_once(io::Nanoseconds now, const std::string& where,
@@ -301,20 +288,11 @@ bool DeviceRack::Wiring::on_message(const io::Reader& message) {
     faults_.add(rack::fault_of(message));
     return true;
   }
-  bool taken = false;
-  if (const auto all = takers_.find(head.kind); all != takers_.end()) {
-    for (rack::RackDevice* device : all->second) device->on_message(message);
-    taken = true;
+  if (takers_.give(message)) return true;
+  if (head.kind == Kind::rc_channels) {
+    report_once(head.t_ns, "transmitter", "sticks are sent, but no receiver is on the board");
   }
-  const auto one = taker_of_port_.find({head.kind, head.port});
-  if (one == taker_of_port_.end()) {
-    if (!taken && head.kind == Kind::rc_channels) {
-      report_once(head.t_ns, "transmitter", "sticks are sent, but no receiver is on the board");
-    }
-    return taken;
-  }
-  one->second->on_message(message);
-  return true;
+  return false;
 }
 
 DeviceRack::DeviceRack(Site site) : wiring_(std::make_unique<Wiring>(std::move(site))) {}
