@@ -59,6 +59,10 @@ struct UartFormat {
   char parity = 'N';
   double stop_bits = 1.0;
   bool inverted = false;  // idle low, a one is low
+
+  double bits() const {  // of a character, from its start bit to its last stop bit
+    return 1 + data_bits + (parity != 'N' ? 1 : 0) + stop_bits;
+  }
 };
 
 // The far end of a UART. The near end (the MCU) gives every byte to receive() when its stop bit has

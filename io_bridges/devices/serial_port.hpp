@@ -32,10 +32,9 @@ class SerialPort : public UartPeer {
     Nanoseconds t_ns;
     std::uint8_t byte;
   };
-  double bits() const {
-    return 1 + format_.data_bits + (format_.parity == 'N' ? 0 : 1) + format_.stop_bits;
+  Nanoseconds character_ns() const {
+    return static_cast<Nanoseconds>(format_.bits() * 1e9 / format_.baud);
   }
-  Nanoseconds character_ns() const { return static_cast<Nanoseconds>(bits() * 1e9 / format_.baud); }
   void hand_over();
   void next_byte();
 

@@ -8,8 +8,7 @@ UartTransmitter::UartTransmitter(EventQueue& queue, const UartFormat& format, Ua
     : format_(format), sink_(std::move(sink)), passed_(queue, [this] { sent(); }) {}
 
 Nanoseconds UartTransmitter::character_ns() const {
-  const double bits = 1 + format_.data_bits + (format_.parity != 'N' ? 1 : 0) + format_.stop_bits;
-  return std::llround(bits * 1e9 / format_.baud);
+  return std::llround(format_.bits() * 1e9 / format_.baud);
 }
 
 void UartTransmitter::add(std::span<const std::uint8_t> bytes) {
