@@ -146,8 +146,10 @@ struct CanMessage {
 struct CanRecord {
   std::int64_t start_ns = 0;  // start of frame
   CanMessage frame;
-  std::int32_t sender =
-      -1;  // its number on the board; -1: the microcontroller, -2: a fault's babbling node
+  // Its number on the board. -1: the microcontroller, -2: a fault's babbling node, from kFirst_board on: another board
+  // that takes no device's place.
+  static constexpr std::int32_t kFirst_board = 1000;
+  std::int32_t sender = -1;
   std::uint32_t busy_ns = 0;  // of the bus, intermission included
   std::uint32_t tec = 0;      // the sender's error counter after it
   std::uint16_t bit = 0;      // where the error was found, in bits of the wire from start of frame

@@ -37,12 +37,11 @@ class BusCsv : public Sink {
 
 std::string frame_row(const io::Reader& message) {
   const auto r = message.as<io::CanRecord>();
-  constexpr int kFirst_board =
-      1000;  // that has no device's place (io_bridges/qemu/board/can_wire.hpp)
-  const std::string sender = r.sender < 0 ? "mcu"
-                             : r.sender >= kFirst_board
-                                 ? "board " + std::to_string(r.sender - kFirst_board + 1)
-                                 : "device " + std::to_string(r.sender);
+  const std::string sender =
+      r.sender < 0 ? "mcu"
+      : r.sender >= io::CanRecord::kFirst_board
+          ? "board " + std::to_string(r.sender - io::CanRecord::kFirst_board + 1)
+          : "device " + std::to_string(r.sender);
   char text[128];
   std::snprintf(text, sizeof text, "%.9f,%.9f,can%d,0x%0*X,%s,%d,%u,",
                 static_cast<double>(r.start_ns) * 1e-9,

@@ -44,9 +44,6 @@ class CanEar final : io::CanArbiter {
   io::CanBus bus_;
 };
 
-// A board without a device's place has this number and its own as one.
-inline constexpr int kFar_board = 1000;
-
 class CanLeader {
  public:
   static constexpr Nanoseconds kWake_ns = 40'000;

@@ -3,6 +3,7 @@
 #include "base/check.hpp"
 #include "io_bridges/board_description/bus_kind.hpp"
 #include "io_bridges/board_description/bus_name.hpp"
+#include "io_bridges/messages/messages.hpp"
 #include "io_bridges/qemu/board/i2c_wire.hpp"
 #include "io_bridges/qemu/board/spi_wire.hpp"
 #include "io_bridges/qemu/board/uart_wire.hpp"
@@ -92,7 +93,7 @@ Result<Done> FarEnds::follow_can(const WireEnd& end) {
                  "the part has no such bus for the wire to another board", ""};
   }
   if (!end.arbitrates) return wires_->share(end.fd, *bus);
-  return wires_->arbitrate(end.fd, *bus, end.far, kFar_board + boards_++, nullptr);
+  return wires_->arbitrate(end.fd, *bus, end.far, io::CanRecord::kFirst_board + boards_++, nullptr);
 }
 
 Result<Done> FarEnds::follow_spi(FollowerWire& wire, const WireEnd& end, io::SpiSlave& slave) {
