@@ -1,7 +1,6 @@
 #include "harness/target/bench/pod_line.hpp"
 
 #include <array>
-#include <cmath>
 
 #include "io_bridges/board_description/pod_host.hpp"
 #include "io_bridges/protocols/dronecan/pod_link.hpp"
@@ -18,19 +17,14 @@ bool is_on_line(const BoardDevice& device) {
 }  // namespace
 
 PodLine::PodLine(PodLineOptions options)
-    : RackLink(rack_, options.places),
-      options_(std::move(options)),
-      rack_({.baud = io::kPodBaud}, options_.seed, is_on_line, [this](std::uint8_t byte) {
-        if (!safe_) waiting_.push_back(byte);
-      }) {}
+    : SerialRackLink({options.link.name, options.link.path, "a pod's host"}, {.baud = io::kPodBaud},
+                     options.seed, is_on_line, options.places),
+      options_(std::move(options)) {}
 
 Result<Done> PodLine::open() {
   const auto built = build(options_.board, options_.types, "its host's line");
   if (!built) return built;
-  auto tty = io::Tty::open(options_.link.path, static_cast<int>(std::lround(io::kPodBaud)));
-  if (!tty) return tty.error();
-  tty_ = std::move(tty.value());
-  return Done{};
+  return open_line(io::TtyFrame::n81);
 }
 
 Result<Done> PodLine::take_in(std::int64_t now_host_ns) {
@@ -49,15 +43,6 @@ Result<Done> PodLine::send_waiting(std::int64_t /*now_host_ns*/) {
   if (const auto written = tty_->write(waiting_); !written) return written;
   waiting_.clear();
   return tty_->flush();
-}
-
-void PodLine::make_safe() {
-  safe_ = true;
-  waiting_.clear();
-}
-
-std::vector<std::pair<std::string, std::string>> PodLine::versions() const {
-  return {{"link " + options_.link.name, options_.link.path + ", a pod's host"}};
 }
 
 std::vector<std::string> PodLine::findings() const {

@@ -1,4 +1,4 @@
-// The bench as the host of a pod on a serial line of this host (rack_link.hpp): the parts that the pod plays to a flight
+// The bench as the host of a pod on a serial line of this host (serial_rack_link.hpp): the parts that the pod plays to a flight
 // controller live here, in the plant's motion.
 //
 //   Line     3 Mbaud (io_bridges/protocols/dronecan/pod_link.hpp). What a USB adapter gathers to packets of a millisecond
@@ -7,9 +7,7 @@
 #include <vector>
 
 #include "harness/target/bench/bench_description.hpp"
-#include "harness/target/bench/rack_link.hpp"
-#include "io_bridges/rack/line_rack.hpp"
-#include "io_bridges/serial/tty.hpp"
+#include "harness/target/bench/serial_rack_link.hpp"
 
 namespace whirl::bench {
 
@@ -21,16 +19,11 @@ struct PodLineOptions {
   PodPlaces places = {};
 };
 
-class PodLine final : public RackLink {
+class PodLine final : public SerialRackLink {
  public:
   explicit PodLine(PodLineOptions options);
 
-  std::string name() const override { return options_.link.name; }
   Result<Done> open() override;
-  int file() const override { return tty_ ? tty_->file() : -1; }
-  void make_safe() override;
-  void close() override { tty_.reset(); }
-  std::vector<std::pair<std::string, std::string>> versions() const override;
   std::vector<std::string> findings() const override;
 
  private:
@@ -38,10 +31,6 @@ class PodLine final : public RackLink {
   Result<Done> send_waiting(std::int64_t now_host_ns) override;
 
   PodLineOptions options_;
-  rack::LineRack rack_;
-  std::optional<io::Tty> tty_;
-  std::vector<std::uint8_t> waiting_;
-  bool safe_ = false;
 };
 
 }  // namespace whirl::bench

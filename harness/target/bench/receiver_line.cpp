@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "io_bridges/board_description/bus_kind.hpp"
 #include "io_bridges/board_description/bus_name.hpp"
@@ -25,27 +24,20 @@ const BoardDevice* receiver_at(const BoardDescription& board, const SerialLink& 
 }
 
 ReceiverLine::ReceiverLine(ReceiverLineOptions options)
-    : RackLink(rack_, std::nullopt),
-      options_(std::move(options)),
-      rack_(
-          {core::receiver::kSbusBaud, 8, 'E', 2.0}, options_.seed,
-          [uart = options_.link.uart](const BoardDevice& device) {
+    : SerialRackLink(
+          {options.link.name, options.link.path, "a receiver with SBUS"},
+          {core::receiver::kSbusBaud, 8, 'E', 2.0}, options.seed,
+          [uart = options.link.uart](const BoardDevice& device) {
             return is_receiver(device, uart);
           },
-          [this](std::uint8_t byte) {
-            if (!safe_) waiting_.push_back(byte);
-          }) {}
+          std::nullopt),
+      options_(std::move(options)) {}
 
 Result<Done> ReceiverLine::open() {
   const auto built =
       build(options_.board, options_.types, "usart" + std::to_string(options_.link.uart));
   if (!built) return built;
-  auto tty =
-      io::Tty::open(options_.link.path, static_cast<int>(std::lround(core::receiver::kSbusBaud)),
-                    io::TtyFrame::e82);
-  if (!tty) return tty.error();
-  tty_ = std::move(tty.value());
-  return Done{};
+  return open_line(io::TtyFrame::e82);
 }
 
 // The line is one way. What comes is dropped, and a line that was unplugged is found.
@@ -62,15 +54,6 @@ Result<Done> ReceiverLine::send_waiting(std::int64_t /*now_host_ns*/) {
   if (const auto sent = tty_->write(std::span(waiting_).first(whole)); !sent) return sent;
   waiting_.erase(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(whole));
   return tty_->flush();
-}
-
-void ReceiverLine::make_safe() {
-  safe_ = true;
-  waiting_.clear();
-}
-
-std::vector<std::pair<std::string, std::string>> ReceiverLine::versions() const {
-  return {{"link " + options_.link.name, options_.link.path + ", a receiver with SBUS"}};
 }
 
 }  // namespace whirl::bench

@@ -1,0 +1,33 @@
+#include "harness/target/bench/serial_rack_link.hpp"
+
+#include <cmath>
+
+namespace whirl::bench {
+
+SerialRackLink::SerialRackLink(LinePlace place, const io::UartFormat& format, std::uint64_t seed,
+                               rack::LineRack::Choice carries, const std::optional<PodPlaces>& pod)
+    : RackLink(rack_, pod),
+      rack_(format, seed, std::move(carries),
+            [this](std::uint8_t byte) {
+              if (!safe_) waiting_.push_back(byte);
+            }),
+      place_(std::move(place)),
+      baud_(format.baud) {}
+
+Result<Done> SerialRackLink::open_line(io::TtyFrame frame) {
+  auto tty = io::Tty::open(place_.path, static_cast<int>(std::lround(baud_)), frame);
+  if (!tty) return tty.error();
+  tty_ = std::move(tty.value());
+  return Done{};
+}
+
+void SerialRackLink::make_safe() {
+  safe_ = true;
+  waiting_.clear();
+}
+
+std::vector<std::pair<std::string, std::string>> SerialRackLink::versions() const {
+  return {{"link " + place_.name, place_.path + ", " + place_.end}};
+}
+
+}  // namespace whirl::bench

@@ -1,0 +1,43 @@
+// Parts of a board's that the bench plays at the other end of a serial line of this host (rack_link.hpp): what they send
+// waits here until it is written.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "harness/target/bench/rack_link.hpp"
+#include "io_bridges/rack/line_rack.hpp"
+#include "io_bridges/serial/tty.hpp"
+
+namespace whirl::bench {
+
+struct LinePlace {
+  std::string name, path;  // of the link
+  std::string end;         // who is at the other end here: "a pod's host"
+};
+
+class SerialRackLink : public RackLink {
+ public:
+  std::string name() const override { return place_.name; }
+  int file() const override { return tty_ ? tty_->file() : -1; }
+  void make_safe() override;
+  void close() override { tty_.reset(); }
+  std::vector<std::pair<std::string, std::string>> versions() const override;
+
+ protected:
+  // format: of the microcontroller's bytes; carries: which devices of a board are at that line.
+  SerialRackLink(LinePlace place, const io::UartFormat& format, std::uint64_t seed,
+                 rack::LineRack::Choice carries, const std::optional<PodPlaces>& pod);
+
+  Result<Done> open_line(io::TtyFrame frame);  // at the format's baud rate
+
+  rack::LineRack rack_;
+  std::optional<io::Tty> tty_;
+  std::vector<std::uint8_t> waiting_;
+
+ private:
+  LinePlace place_;
+  double baud_;
+  bool safe_ = false;
+};
+
+}  // namespace whirl::bench
