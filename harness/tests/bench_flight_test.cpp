@@ -14,6 +14,7 @@
 #include "harness/standin/no_world.hpp"
 #include "harness/tests/common_clock.hpp"
 #include "harness/tests/composed_run.hpp"
+#include "harness/tests/flight_steps.hpp"
 #include "harness/tests/running_stand_in.hpp"
 #include "io_bridges/socketcan/tests/memory_can.hpp"
 
@@ -108,12 +109,7 @@ TEST(BenchFlight, TheRealImageHoversOverItsWiresAsItDoesInLockstep) {
 constexpr const char* kCut = R"(plan "cut" {
   image = "flight", board = "px4fmu_v1_all_can", vehicle = "hp_quad", timeout = "30 s",
   run = function(t)
-    t:within("8 s", function(s) return s.heartbeat_age_s < 1.5 end, "the first heartbeat")
-    for _, name in ipairs { "SENS_BUS", "ESC_BUS" } do
-      t:command { parameter = { name = name, value = 1 } }
-      t:within("3 s", function(s) return s.parameter_pending == 0 end, name .. " is answered")
-    end
-    t:within("8 s", function(s) return s.told_ready == 1 end, "it says that it can be armed")
+    ready_on_can(t)
     t:command { arm = true }
     t:within("4 s", function(s) return s.told_armed == 1 end, "armed")
     t:command { takeoff = "0.6 m" }
@@ -129,7 +125,7 @@ constexpr const char* kCut = R"(plan "cut" {
 TEST(BenchFlight, FaultsOfItsPartsDoWhatTheyDoInLockstep) {
   const ScratchFolder folder;
   const std::string plan = folder.file("cut.lua");
-  std::ofstream(plan) << kCut;
+  std::ofstream(plan) << kFlightSteps << kCut;
   const ComposedRun flown = fly_on_bench(plan, folder);
   ASSERT_EQ(flown.code, 0) << std::string(flown.file["reason"]);
   const ComposedRun lockstep = fly_in_lockstep(plan, folder);
@@ -143,19 +139,8 @@ TEST(BenchFlight, FaultsOfItsPartsDoWhatTheyDoInLockstep) {
 constexpr const char* kBySticks = R"(plan "by its sticks" {
   image = "flight", board = "px4fmu_v1_all_can_sbus", vehicle = "hp_quad", timeout = "40 s",
   run = function(t)
-    t:within("8 s", function(s) return s.heartbeat_age_s < 1.5 end, "the first heartbeat")
-    for _, name in ipairs { "SENS_BUS", "ESC_BUS" } do
-      t:command { parameter = { name = name, value = 1 } }
-      t:within("3 s", function(s) return s.parameter_pending == 0 end, name .. " is answered")
-    end
-    t:within("8 s", function(s) return s.told_ready == 1 end, "it says that it can be armed")
-    t:command { rc = { mode = 2 } }
-    t:wait "1 s"
-    t:command { rc = { arm = true } }
-    t:within("2 s", function(s) return s.told_armed == 1 end, "armed by the switch")
-    t:wait "1 s"
-    t:command { rc = { thrust = "100 %" } }
-    t:within("8 s", function(s) return s.height_m > 0.5 end, "up")
+    ready_on_can(t)
+    up_by_the_sticks(t)
     t:fault { kind = "rc_link_lost", device = "sbus" }
     t:told("3 s", "radio control lost")
   end,
@@ -164,7 +149,7 @@ constexpr const char* kBySticks = R"(plan "by its sticks" {
 TEST(BenchFlight, FliesByTheSticksOfAReceiverOnALine) {
   const ScratchFolder folder;
   const std::string plan = folder.file("sticks.lua");
-  std::ofstream(plan) << kBySticks;
+  std::ofstream(plan) << kFlightSteps << kBySticks;
   const ComposedRun flown = fly_on_bench(plan, folder, kBoardWithSticks);
   EXPECT_EQ(flown.code, 0) << std::string(flown.file["reason"]);
 }

@@ -14,6 +14,7 @@
 #include "harness/standin/pod_beside.hpp"
 #include "harness/tests/common_clock.hpp"
 #include "harness/tests/composed_run.hpp"
+#include "harness/tests/flight_steps.hpp"
 #include "harness/tests/pin_periods.hpp"
 #include "harness/tests/running_stand_in.hpp"
 #include "io_bridges/socketcan/tests/memory_can.hpp"
@@ -85,13 +86,7 @@ constexpr const char* kUp = R"(plan "up" {
   image = "flight", board = "px4fmu_v1_sbus", vehicle = "hp_quad", timeout = "20 s",
   run = function(t)
     t:within("8 s", function(s) return s.told_ready == 1 end, "it says that it can be armed")
-    t:command { rc = { mode = 2 } }
-    t:wait "1 s"
-    t:command { rc = { arm = true } }
-    t:within("2 s", function(s) return s.told_armed == 1 end, "armed by the switch")
-    t:wait "1 s"
-    t:command { rc = { thrust = "100 %" } }
-    t:within("8 s", function(s) return s.height_m > 0.5 end, "up")
+    up_by_the_sticks(t)
     local up = t:record({ "tilt", "attitude_error" }, "0.5 s")
     t:expect(up:max "tilt", "tilt"):at_most "5 deg"
     t:expect(up:max "attitude_error", "and its own word of it"):at_most "3 deg"
@@ -118,7 +113,7 @@ ComposedRun fly(const ScratchFolder& folder, CommonClock& clock, Metal& metal,
                 const bench::CanMaker& can, const char* text = kUp) {
   const std::string file = folder.file("bench.lua"), up = folder.file("up.lua");
   std::ofstream(file) << bench_file(metal);
-  std::ofstream(up) << text;
+  std::ofstream(up) << kFlightSteps << text;
   const auto composition = boards_and_worlds(kRoot, folder.file("out"), nullptr, can, &clock);
   const char* plan = std::getenv("WHIRL_BENCH_POD_PLAN");
   ComposedRun run = run_composed(
