@@ -13,7 +13,8 @@ namespace whirl::cli {
 
 // Errors  bad_input: a device that is not there, or on neither I2C nor SPI nor CAN nor a UART, or on another kind of bus than
 //         the other end; one that two boards take the place of; a board that two others lead, a bus with two masters, a UART
-//         with two wires, a board for two motors; two boards that share a CAN and more, a CAN with two arbiters; leads that come back to where they began (each would wait for the other)
+//         with two wires, a board for two motors; two boards that share a CAN and more, a CAN with two arbiters; leads
+//         that come back to where they began (each would wait for the other)
 Result<Done> check_board_wires(const plan::Plan& plan, const std::vector<Node>& nodes);
 
 // What each node says of its CAN buses that another board arbitrates. Pre: checked.
