@@ -29,6 +29,9 @@ endif()
 
 if(WHIRL_FUZZ)
   target_compile_options(whirl_options INTERFACE -fsanitize=fuzzer-no-link)
+elseif(WHIRL_SANITIZE)
+  # Counters of edges, the cheapest that libFuzzer is steered by: its smoke needs no build of its own.
+  target_compile_options(whirl_options INTERFACE -fsanitize-coverage=inline-8bit-counters,pc-table)
 endif()
 # Where only the tests count, what is not marked HEAVY is built without optimization, which halves its build.
 set(WHIRL_LIGHT "")

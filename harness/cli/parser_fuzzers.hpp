@@ -1,4 +1,5 @@
-// whirl fuzz: the parsers under libFuzzer. Their programs are built by the preset `fuzz` (harness/fuzz).
+// whirl fuzz: the parsers under libFuzzer. Their programs are built by the preset `fuzz` (harness/fuzz), those of the smoke by
+// the preset `sanitize`.
 #pragma once
 #include <cstdint>
 #include <string>
