@@ -3,6 +3,7 @@
 #include "harness/catalogue/esc_mode.hpp"
 #include "harness/catalogue/feed.hpp"
 #include "harness/catalogue/motor.hpp"
+#include "harness/catalogue/place_air.hpp"
 #include "harness/catalogue/propeller_file.hpp"
 #include "harness/catalogue/shunt.hpp"
 #include "harness/catalogue/tolerance_key.hpp"
@@ -48,6 +49,12 @@ void read_stage_shunt(const lua::Table& t, stand::StageParams& stage) {
   pass("wander", "shunt.wander", s.wander_A);
 }
 
+// The motor is cooled by the same air.
+void read_air(const lua::Table& t, stand::StandParams& p) {
+  p.air = read_place_air(t).at_ground();
+  p.stage["ambient"] = p.air->temperature_K;
+}
+
 std::string read_throttle(const lua::Table& t) {
   return t.has("throttle") ? t.choice("throttle", {"i2c", "pwm", "can", "can_rpm"}) : "i2c";
 }
@@ -74,6 +81,7 @@ Result<stand::StandParams> read_stand(const lua::Table& t, const std::string& pr
   stand::StandParams p;
   const std::string prop = t.text("prop");
   p.battery = read_feed(t);
+  if (t.has("air")) read_air(t.table("air"), p);
   if (t.has("motor")) read_stage_motor(t.table("motor"), p.stage);
   if (t.has("shunt")) read_stage_shunt(t.table("shunt"), p.stage);
   p.tolerance = read_tolerance(t, plant::esc_stand_groups(), plant::ToleranceClass::typical);

@@ -5,6 +5,8 @@
 //   and optionally motor = { ... }, shunt = { ... }: where the board's own differ (motor.hpp, shunt.hpp;
 //   motor = { swap_wires = true }: two of its wires)
 //   Feed     battery or supply: feed.hpp
+//   Air      air = { temperature = "35 degC", above_sea = "500 m" } (place_air.hpp): it cools the motor as well. Where it is
+//            not said: 1.225 kg/m3, and a motor cooled as the board's power stage says
 //   Throttle throttle = "i2c" (set-points at 50 Hz), or "pwm" (pulse_rate = "50 Hz" to "400 Hz"; the
 //            status is read over I2C all the same)
 //   Mode     what the ESC is set to: it scales the set-points on I2C (esc_codec.hpp)

@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <numbers>
 
-#include "plant/air/atmosphere.hpp"
+#include "harness/catalogue/place_air.hpp"
 #include "plant/airframe/contact_world.hpp"
 #include "plant/sensors/magnetometer.hpp"
 
@@ -103,16 +103,13 @@ void read_air(const Table& t, plant::AirParams& air) {
   air.steady_wind_W_mps = {wind_mps("wind_north"), wind_mps("wind_east"), 0.0};
   air.dryden.wind_at_6m_mps =
       t.quantity_or("turbulence", Dimension::speed, 0.0, between(0.0, 50.0));
-  air.ground_height_m = t.quantity_or("above_sea", Dimension::length, 0.0, between(-500.0, 9000.0));
+  const PlaceAir place = read_place_air(t);
+  air.ground_height_m = place.above_sea_m;
+  air.ground_temperature_offset_K = place.warmer_K;
   if (t.has("temperature_gradient")) {
     air.temperature_gradient_Kpm =
         t.quantity("temperature_gradient", Dimension::temperature_gradient, between(-0.2, 0.2));
   }
-  if (!t.has("temperature")) return;
-  const double standard_K = plant::standard_atmosphere(air.ground_height_m).temperature_K;
-  const double wanted_K =
-      t.quantity("temperature", Dimension::temperature, between(218.15, 333.15));
-  air.ground_temperature_offset_K = wanted_K - standard_K;
 }
 
 // ---- What hangs below

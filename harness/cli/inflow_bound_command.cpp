@@ -29,7 +29,8 @@ Result<inflow_bound::Report> inflow_bound_of(const std::string& file, const std:
   if (!stand) return stand.error();
   const inflow_bound::Copy copy{stand.value().blade, stand::motor_of(stand.value().stage),
                                 stand::shunt_of(stand.value().stage),
-                                calibration.value().setup.density_kgpm3};
+                                stand.value().air ? stand.value().air->density_kgpm3
+                                                  : calibration.value().setup.density_kgpm3};
   return inflow_bound::report(copy, {0.8, 1.6, 2.4, 3.2, 4.0}, voltages(stand.value().battery));
 }
 

@@ -2,8 +2,6 @@
 
 #include <optional>
 
-#include "plant/rotor/rotor.hpp"
-
 namespace whirl::stand {
 namespace {
 
@@ -11,19 +9,19 @@ constexpr double kShort_step_s = 1e-4;
 constexpr double kPatience_s = 2.0;
 constexpr double kFastest_radps = 3000.0;
 
-plant::RotorConditions turning(double speed_radps, double wind_mps) {
-  plant::RotorConditions conditions;
+plant::RotorConditions turning(double speed_radps, const RiseAsked& asked) {
+  plant::RotorConditions conditions = asked.still;
   conditions.omega_radps = speed_radps;
-  conditions.v_AP_P_mps = {0.0, 0.0, -wind_mps};
+  conditions.v_AP_P_mps = {0.0, 0.0, -asked.wind_mps};
   return conditions;
 }
 
 // Where the rotor steadily gives that thrust.
-double speed_of(const plant::Rotor& rotor, double thrust_N, double wind_mps) {
+double speed_of(const plant::Rotor& rotor, double thrust_N, const RiseAsked& asked) {
   double low = 20.0, high = kFastest_radps;
   for (int i = 0; i < 18; ++i) {
     const double middle = 0.5 * (low + high);
-    const bool less = rotor.steady(turning(middle, wind_mps)).thrust_N < thrust_N;
+    const bool less = rotor.steady(turning(middle, asked)).thrust_N < thrust_N;
     (less ? low : high) = middle;
   }
   return 0.5 * (low + high);
@@ -41,9 +39,8 @@ Result<double> shortest_rise_s(const plant::MotorParams& motor,
     return refused("is no rise", "from a thrust above 0 N to a higher one");
   }
   plant::Rotor rotor(blade, +1);
-  double w = speed_of(rotor, asked.from_N, asked.wind_mps);
-  for (int i = 0; i < 1000; ++i)
-    rotor.step(turning(w, asked.wind_mps), 1e-3);  // its inflow is there
+  double w = speed_of(rotor, asked.from_N, asked);
+  for (int i = 0; i < 1000; ++i) rotor.step(turning(w, asked), 1e-3);  // its inflow is there
   const double torque_Nm = motor.torque_constant_NmpA * (asked.current_A - motor.no_load_current_A);
   const auto level_N = [&](double share) {
     return asked.from_N + share * (asked.to_N - asked.from_N);
@@ -51,7 +48,7 @@ Result<double> shortest_rise_s(const plant::MotorParams& motor,
   std::optional<double> tenth_s;
   double before_N = asked.from_N;
   for (double t_s = 0.0; t_s < kPatience_s && w < kFastest_radps && w > 0.0; t_s += kShort_step_s) {
-    const plant::RotorLoads loads = rotor.step(turning(w, asked.wind_mps), kShort_step_s);
+    const plant::RotorLoads loads = rotor.step(turning(w, asked), kShort_step_s);
     const auto reached_s = [&](double wanted_N) {  // between the last two steps
       return t_s - kShort_step_s * (loads.thrust_N - wanted_N) / (loads.thrust_N - before_N);
     };

@@ -13,11 +13,13 @@
 #include "base/result.hpp"
 #include "plant/motor/motor_params.hpp"
 #include "plant/rotor/blade.hpp"
+#include "plant/rotor/rotor.hpp"
 
 namespace whirl::stand {
 
 struct RiseAsked {
   double from_N = 0.0, to_N = 0.0, current_A = 0.0, wind_mps = 0.0;
+  plant::RotorConditions still = {};  // the air's density and viscosity
 };
 
 // Errors  bad_input: no rise, or one that this current does not bring about

@@ -74,7 +74,7 @@ void StandWorld::move(std::int64_t t_ns) {
   }
   wind_mps_ = flow_.at(t_ns);
   // The hub stands still in air that comes down along the shaft: against the air it climbs.
-  plant::RotorConditions conditions;
+  plant::RotorConditions conditions = params_.still();
   conditions.omega_radps = std::max(kSlow_radps, shaft_.speed_radps);
   conditions.v_AP_P_mps = {0.0, 0.0, -wind_mps_};
   loads_ = rotor_.step(conditions, kStep_s);
@@ -142,7 +142,7 @@ Result<bool> StandWorld::take_fault(const FaultSpec& fault) {
 
 Result<double> StandWorld::shortest_rise_s(double from_N, double to_N, double current_A) const {
   return stand::shortest_rise_s(motor_of(params_.stage), params_.blade,
-                                {from_N, to_N, current_A, wind_mps_});
+                                {from_N, to_N, current_A, wind_mps_, params_.still()});
 }
 
 double StandWorld::sensed_V() const {

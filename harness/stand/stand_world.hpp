@@ -4,7 +4,7 @@
 //   Step     takes speed and charge of the last millisecond, moves the rotor's inflow and the
 //            supply by it, tells the torque coefficient, the supply and what goes over the bus
 //   Command  those of esc_master.hpp, and Brake
-//   Air      Wind down the shaft, the flow generator's; without a duration for ever
+//   Air      of the plan's density; Wind down the shaft, the flow generator's; without a duration for ever
 //   Faults   supply_dip (value: volts below)
 //   Meters   load cell, ammeter, voltmeter and anemometer as bought ones read; without a tolerance the truth
 //   Left out the flow's own turbulence

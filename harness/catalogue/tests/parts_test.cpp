@@ -146,9 +146,10 @@ TEST(StandTable, OldWordsAreRefusedWithTheList) {
   const auto read = read_stand(
       table("{ prop = 'hk_10x4.5', supply = '16 V', supply_resistance = '10 mohm' }"), "nowhere");
   ASSERT_FALSE(read.ok());
-  EXPECT_EQ(read.error().message(),
-            "part.lua:1: unknown key 'supply_resistance' (known here: address, battery, i2c, mode, "
-            "motor, prop, serial, shunt, supply, throttle, tolerance)");
+  EXPECT_EQ(
+      read.error().message(),
+      "part.lua:1: unknown key 'supply_resistance' (known here: address, air, battery, i2c, mode, "
+      "motor, prop, serial, shunt, supply, throttle, tolerance)");
 }
 
 TEST(StandTable, WhatTheBoardsPowerStageCannotTakeIsRefused) {
