@@ -22,6 +22,10 @@ std::string format(const char* form, T... values) {
 // and so must its limit be, in the same amperes.
 constexpr double kWinding_over_apparent = 1.1;
 
+double shared(const Calibration& c) {
+  return c.still.updraft_share * (1.0 - c.air_within);
+}
+
 struct Setting {
   std::string name;
   double value;
@@ -60,7 +64,7 @@ std::vector<Setting> settings(const Calibration& c) {
   for (const auto& map : {c.still.a, c.still.q}) {
     for (const Coefficient& x : map) all.push_back({x.name, x.value});
   }
-  if (c.still.updraft_share > 0.0) all.push_back({"shared", c.still.updraft_share});
+  if (c.still.updraft_share > 0.0) all.push_back({"shared", shared(c)});
   return all;
 }
 
@@ -133,8 +137,9 @@ std::string table(const Calibration& c) {
           block(c.rotor.line, {c.rotor.c1, c.rotor.c2}) +
           format("  %-14s %13.5g  computed\n", "c4", c.rotor.c4);
   if (c.still.updraft_share > 0.0) {
-    text += format("  %-14s %13.5g  of still air's power in an updraft\n", "shared",
-                   c.still.updraft_share);
+    text += format(
+        "  %-14s %13.5g  of still air's power: %.5g in an updraft, %.3g %% less in other air\n",
+        "shared", shared(c), c.still.updraft_share, 100.0 * c.air_within);
   }
   text += "thrust found back from power:\n    wind    rpm   thrust   kappa   error\n";
   const std::vector<double> errors = found_back(c.rotor);

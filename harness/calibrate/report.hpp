@@ -18,6 +18,8 @@ struct Calibration {
   // Also kt, no_load, resistance, overlap. They are apparent, of bus current over duty, which is up to a tenth
   // less than the winding's: max_current is told with them, as much less.
   bool tell_motor = false;
+  // As of Setup. Thinner air takes less power, and so does a downdraft: `shared` is told as much lower.
+  double air_within = 0.0;
 };
 
 Result<Calibration> identify(StandData data);

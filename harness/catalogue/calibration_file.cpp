@@ -47,6 +47,8 @@ Result<CalibrationFile> read_calibration(const std::string& path) {
                                : kWinds_mps;
   s.updraft_mps =
       t.quantity_or("updraft", Dimension::speed, s.updraft_mps, lua::between(0.0, 10.0));
+  s.air_within =
+      t.quantity_or("air_within", Dimension::ratio, s.air_within, lua::between(0.0, 0.3));
   s.warm_up_ms = t.duration_ns_or("warm_up", 0) / kMs_ns;
   s.settle_ms = t.duration_ns_or("settle", s.settle_ms * kMs_ns) / kMs_ns;
   s.measure_ms = t.duration_ns_or("measure", s.measure_ms * kMs_ns) / kMs_ns;

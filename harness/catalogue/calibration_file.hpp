@@ -8,6 +8,7 @@
 //        transient = { "47 %", "54 %" }  between which duty steps and swings
 //        winds = { "1.5 m/s", ... } speeds of the flow generator
 //        updraft = "3 m/s"          from below, the strongest that is to be told from a downdraft
+//        air_within = "3 %"         how far the air's density may be off that of the calibration when the ESC flies
 //        tell_motor = true          the apparent motor constants too: see calibrate::Calibration
 //        settle, measure, warm_up  times; density, seed
 #pragma once

@@ -52,7 +52,10 @@ Result<Done> compose(const catalogue::CalibrationFile& file, const Composition& 
 
 Result<Calibration> concluded(calibrate::StandData data, const calibrate::Setup& setup) {
   auto result = calibrate::identify(std::move(data));
-  if (result) result.value().tell_motor = setup.tell_motor;
+  if (result) {
+    result.value().tell_motor = setup.tell_motor;
+    result.value().air_within = setup.air_within;
+  }
   return result;
 }
 

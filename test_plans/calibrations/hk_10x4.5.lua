@@ -6,5 +6,6 @@ return {
   stand = { prop = "hk_10x4.5", supply = "16.4 V", tolerance = "none" },
   diameter = "10 in",
   updraft = "3.5 m/s", -- as that of the gust crossing
+  air_within = "0 %", -- its plans are of the same day
   warm_up = "100 s",   -- the current sense's offset settles
 }

@@ -7,5 +7,6 @@ return {
   diameter = "10 in",
   updraft = "3.5 m/s",
   tell_motor = true,
+  air_within = "0 %", -- its plans are of the same day
   warm_up = "100 s",
 }

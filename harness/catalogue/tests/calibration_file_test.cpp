@@ -33,6 +33,10 @@ TEST(CalibrationFile, TakesWhatIsWrittenAndFillsInTheRest) {
   EXPECT_EQ(s.board, "esc32v2");
   EXPECT_GE(s.still.size(), 4u);
   EXPECT_FALSE(s.tell_motor);
+  EXPECT_EQ(s.air_within, 0.03);
+  const auto same_day = read("  diameter = \"9 in\", air_within = \"0.5 %\",\n");
+  ASSERT_TRUE(same_day.ok()) << same_day.error().message();
+  EXPECT_TRUE(near(same_day.value().setup.air_within, 0.005, round_off(1, 1)));
 }
 
 TEST(CalibrationFile, RefusesWithPlaceAndReason) {
@@ -44,6 +48,7 @@ TEST(CalibrationFile, RefusesWithPlaceAndReason) {
       {"  diameter = \"10 V\",\n", "diameter"},
       {"  diameter = \"10 in\", blown = { \"40 %\", \"30 %\", \"50 %\" },\n", "rising"},
       {"  diameter = \"10 in\", blown = { \"40 %\" },\n", "3 duties"},
+      {"  diameter = \"10 in\", air_within = \"-3 %\",\n", "air_within"},
       {"  diameter = \"10 in\", wind = { \"1 m/s\" },\n", "wind"},
   };
   for (const auto& c : cases) {
