@@ -30,6 +30,7 @@ namespace whirl {
 namespace {
 
 constexpr std::int64_t kTurn_ns = 2'000'000;
+constexpr std::int64_t kUsb_frame_ns = 1'000'000;  // of full speed
 
 class CarrierOfStandIn final : public io::I2cCarrier {
  public:
@@ -64,7 +65,7 @@ class PlayedBridge {
       : carrier_(stand_in), chip_(queue_, carrier_, serial) {}
 
   Result<Done> plug_in() {
-    auto made = io::UhidDevice::create(queue_, chip_);
+    auto made = io::UhidDevice::create(queue_, chip_, kUsb_frame_ns);
     if (!made) return made.error();
     device_ = std::move(made.value());
     return Done{};

@@ -47,13 +47,14 @@ uhid_event creation(const HidIdentity& identity) {
 
 }  // namespace
 
-Result<std::unique_ptr<UhidDevice>> UhidDevice::create(EventQueue& queue, EmulatedHid& device) {
+Result<std::unique_ptr<UhidDevice>> UhidDevice::create(EventQueue& queue, EmulatedHid& device,
+                                                       Nanoseconds frame_ns) {
   const int fd = ::open("/dev/uhid", O_RDWR | O_CLOEXEC);
   if (fd < 0) {
     return Error{ErrorKind::bad_input, "/dev/uhid", std::strerror(errno),
                  errno == ENOENT ? "as root: modprobe uhid" : "as root"};
   }
-  std::unique_ptr<UhidDevice> made(new UhidDevice(queue, device, fd));
+  std::unique_ptr<UhidDevice> made(new UhidDevice(queue, device, frame_ns, fd));
   if (!give(fd, creation(device.identity()))) {
     return Error{ErrorKind::bad_input, "/dev/uhid", std::strerror(errno),
                  "does the kernel know uhid's CREATE2?"};
@@ -61,8 +62,12 @@ Result<std::unique_ptr<UhidDevice>> UhidDevice::create(EventQueue& queue, Emulat
   return made;
 }
 
-UhidDevice::UhidDevice(EventQueue& queue, EmulatedHid& device, int fd)
-    : queue_(queue), device_(device), fd_(fd), zero_ns_(monotonic_ns() - queue.now()) {}
+UhidDevice::UhidDevice(EventQueue& queue, EmulatedHid& device, Nanoseconds frame_ns, int fd)
+    : queue_(queue),
+      device_(device),
+      frame_ns_(frame_ns),
+      fd_(fd),
+      zero_ns_(monotonic_ns() - queue.now()) {}
 
 UhidDevice::~UhidDevice() {
   close(fd_);
@@ -74,18 +79,22 @@ void UhidDevice::keep_time() {
 
 void UhidDevice::serve(std::int64_t timeout_ns) {
   keep_time();
-  give_input();
-  const std::int64_t wait_ns =
-      std::clamp<std::int64_t>(queue_.next_deadline() - queue_.now(), 0, timeout_ns);
+  carry();
+  const std::int64_t wait_ns = std::clamp<std::int64_t>(next_ns() - queue_.now(), 0, timeout_ns);
   const timespec wait{wait_ns / 1'000'000'000, wait_ns % 1'000'000'000};
   pollfd poll{fd_, POLLIN, 0};
-  if (ppoll(&poll, 1, &wait, nullptr) > 0) {
-    keep_time();
-    take_event();
-  } else {
-    keep_time();
-  }
-  give_input();
+  const bool came = ppoll(&poll, 1, &wait, nullptr) > 0;
+  keep_time();
+  if (came) take_event();
+  carry();
+}
+
+// When something is due, of the device itself or on its cable.
+Nanoseconds UhidDevice::next_ns() const {
+  Nanoseconds next = queue_.next_deadline();
+  if (!to_device_.empty()) next = std::min(next, to_device_.front().arrives_ns);
+  if (!to_host_.empty()) next = std::min(next, to_host_.front().arrives_ns);
+  return next;
 }
 
 void UhidDevice::take_event() {
@@ -96,7 +105,7 @@ void UhidDevice::take_event() {
     // Kernel drivers leave out the 0 of a device without numbers; hidraw hands it on.
     const bool bare = !device_.identity().numbered && (report.size() != 65 || report[0] != 0);
     if (bare) report.insert(report.begin(), 0);
-    device_.output(report);
+    to_device_.push_back({queue_.now() + frame_ns_, std::move(report)});
   } else if (event.type == UHID_GET_REPORT) {
     const auto report = device_.feature(event.u.get_report.rnum);
     reply.type = UHID_GET_REPORT_REPLY;
@@ -116,9 +125,14 @@ void UhidDevice::take_event() {
   }
 }
 
-void UhidDevice::give_input() {
-  while (device_.has_input()) {
-    const HidReport report = device_.take_input();
+void UhidDevice::carry() {
+  for (; !to_device_.empty() && to_device_.front().arrives_ns <= queue_.now();
+       to_device_.pop_front()) {
+    device_.output(to_device_.front().report);
+  }
+  while (device_.has_input()) to_host_.push_back({queue_.now() + frame_ns_, device_.take_input()});
+  for (; !to_host_.empty() && to_host_.front().arrives_ns <= queue_.now(); to_host_.pop_front()) {
+    const HidReport& report = to_host_.front().report;
     uhid_event event{};
     event.type = UHID_INPUT2;
     event.u.input2.size = static_cast<std::uint16_t>(report.size());
