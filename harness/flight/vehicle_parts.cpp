@@ -91,7 +91,10 @@ void set_parts(BoardDescription& board, const FlightParams& params) {
     for (std::size_t k = 0; k < 3; ++k) all.at(k) += more[static_cast<Eigen::Index>(k)];
     WHIRL_CHECK(device.set(key, all), key);
   };
+  using fw::esc::Mode;
+  const bool by_speed = params.esc.calibration.mode == Mode::speed;
   for (BoardDevice& device : board.devices) {
+    if (device.type == "esc_dronecan" && by_speed) device.set("params.speeds", true);
     // On SPI, as a node of a CAN bus, or played by a pod.
     if (!device.type.starts_with("mpu6000") && !is_pod_host(device)) continue;
     for (const auto& [key, value] : params.imu) {
