@@ -13,6 +13,7 @@
 #include "harness/target/bench/analyser_link.hpp"
 #include "harness/target/bench/bench_target.hpp"
 #include "harness/target/bench/bridge_link.hpp"
+#include "harness/target/bench/gps_line.hpp"
 #include "harness/target/bench/node_link.hpp"
 #include "harness/target/bench/pod_line.hpp"
 #include "harness/target/bench/receiver_line.hpp"
@@ -101,10 +102,14 @@ Result<Done> add_pods(const cli::Setup& setup, const bench::CanMaker& can, Links
 
 // Of a vehicle: its nodes, for the flight controller.
 Result<Done> add_nodes(const cli::Setup& setup, const bench::CanMaker& can, Links& links) {
+  const auto params = vehicle_of(setup);
+  if (!params) return params.error();
+  BoardDescription board = setup.board;
+  flight::set_esc_mode(board, params.value());
   for (const bench::CanBusLink& link : setup.bench->cans) {
     links.push_back(
         std::make_unique<bench::NodeLink>(bench::NodeOptions{.link = link,
-                                                             .board = setup.board,
+                                                             .board = board,
                                                              .types = rack::device_types(),
                                                              .seed = seed_of(setup, setup.node),
                                                              .log = log_of(setup, link)},
@@ -113,13 +118,18 @@ Result<Done> add_nodes(const cli::Setup& setup, const bench::CanMaker& can, Link
   return add_pods(setup, can, links);
 }
 
-// Of a vehicle, a line may be the receiver's.
+// Of a vehicle, a line may be the receiver's, or the GPS's.
 std::unique_ptr<bench::Link> serial_link(const cli::Setup& setup, const bench::SerialLink& link) {
-  if (setup.plan.stand || bench::receiver_at(setup.board, link) == nullptr) {
-    return std::make_unique<bench::BoardSerial>(link);
+  const std::uint64_t seed = seed_of(setup, setup.node);
+  if (!setup.plan.stand && bench::receiver_at(setup.board, link) != nullptr) {
+    return std::make_unique<bench::ReceiverLine>(
+        bench::ReceiverLineOptions{link, setup.board, rack::device_types(), seed});
   }
-  return std::make_unique<bench::ReceiverLine>(bench::ReceiverLineOptions{
-      link, setup.board, rack::device_types(), seed_of(setup, setup.node)});
+  if (!setup.plan.stand && bench::gps_at(setup.board, link) != nullptr) {
+    return std::make_unique<bench::GpsLine>(
+        bench::GpsLineOptions{link, setup.board, rack::device_types(), seed});
+  }
+  return std::make_unique<bench::BoardSerial>(link);
 }
 
 using Kinds = std::function<bool(const std::string& kind)>;
@@ -139,7 +149,7 @@ std::map<std::string, Kinds> played_parts(const cli::Setup& setup) {
   const auto data_of = [](const std::string& type) -> Kinds {
     return [type](const std::string& word) {
       const auto kind = io::fault_kind(word);
-      return kind && rack::acts_behind_pod(type, *kind);
+      return kind && rack::acts_in_data(type, *kind);
     };
   };
   for (const bench::PodLink& link : setup.bench->pods) {
@@ -149,8 +159,10 @@ std::map<std::string, Kinds> played_parts(const cli::Setup& setup) {
     }
   }
   for (const bench::SerialLink& link : setup.bench->serials) {
-    const BoardDevice* receiver = bench::receiver_at(setup.board, link);
-    if (receiver != nullptr) all[receiver->name] = data_of(receiver->type);
+    for (const BoardDevice* part :
+         {bench::receiver_at(setup.board, link), bench::gps_at(setup.board, link)}) {
+      if (part != nullptr) all[part->name] = data_of(part->type);
+    }
   }
   return all;
 }

@@ -79,6 +79,13 @@ void draw_parts(FlightParams& params, std::uint64_t seed) {
   params.imu_place_m -= centre_B_m;
 }
 
+void set_esc_mode(BoardDescription& board, const FlightParams& params) {
+  if (params.esc.calibration.mode != fw::esc::Mode::speed) return;
+  for (BoardDevice& device : board.devices) {
+    if (device.type == "esc_dronecan") device.set("params.speeds", true);
+  }
+}
+
 void set_parts(BoardDescription& board, const FlightParams& params) {
   board.hse_error += params.hse_error;
   const auto add = [](BoardDevice& device, const char* key, const Eigen::Vector3d& more) {
@@ -91,6 +98,7 @@ void set_parts(BoardDescription& board, const FlightParams& params) {
     for (std::size_t k = 0; k < 3; ++k) all.at(k) += more[static_cast<Eigen::Index>(k)];
     WHIRL_CHECK(device.set(key, all), key);
   };
+  set_esc_mode(board, params);
   for (BoardDevice& device : board.devices) {
     // On SPI, as a node of a CAN bus, or played by a pod.
     if (!device.type.starts_with("mpu6000") && !is_pod_host(device)) continue;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 
+#include "io_bridges/board_description/bus_kind.hpp"
 #include "io_bridges/board_description/pod_host.hpp"
 #include "io_bridges/devices/core/receiver.hpp"
 #include "io_bridges/protocols/dronecan/pod_link.hpp"
@@ -25,6 +26,14 @@ BoardDevice line_of_receiver(const BoardDevice& receiver) {
       .name = receiver.name, .type = "serial", .bus = receiver.bus, .place = receiver.place};
   line.set("baud", double{core::receiver::kSbusBaud});
   line.set("params.frame", std::string("8E2"));
+  return line;
+}
+
+// Nobody tells here to what rate its player is set.
+BoardDevice line_of_gps(const BoardDevice& gps) {
+  BoardDevice line{.name = gps.name, .type = "serial", .bus = gps.bus, .place = gps.place};
+  line.set("baud", gps.value("baud").value_or(9600.0));
+  line.set("params.follows", true);
   return line;
 }
 
@@ -51,6 +60,7 @@ BoardDescription bare_board(BoardDescription board) {
   for (BoardDevice& device : board.devices) {
     if (device.type == "mavlink_link") device = line_of(device);
     if (device.type == "sbus") device = line_of_receiver(device);
+    if (device.type.starts_with("ublox_") && is_uart(device.bus)) device = line_of_gps(device);
     if (is_pod_host(device)) device = end_of_host(device);
     if (device.type.ends_with("_dronecan")) buses.insert(device.bus);
   }

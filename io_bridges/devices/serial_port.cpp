@@ -23,6 +23,7 @@ SerialPort::SerialPort(EventQueue& queue, std::string name, const UartFormat& fo
       byte_due_(queue, [this] { next_byte(); }) {}
 
 void SerialPort::receive(const UartByte& byte, const UartFormat& format, Nanoseconds now) {
+  if (follows_) format_.baud = format.baud;
   const bool fits = std::abs(format.baud - format_.baud) <= kBaud_tolerance * format_.baud &&
                     format.data_bits == format_.data_bits && format.parity == format_.parity;
   if (!fits && !mismatch_told_ && findings_) {

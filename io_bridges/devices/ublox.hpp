@@ -63,13 +63,14 @@
 #include "base/random.hpp"
 #include "io_bridges/devices/faults.hpp"
 #include "io_bridges/devices/gnss_epoch.hpp"
+#include "io_bridges/devices/rated_uart_peer.hpp"
 #include "io_bridges/devices/uart_transmitter.hpp"
 #include "io_bridges/devices/ublox_config.hpp"
 #include "io_bridges/protocols/nmea.hpp"
 
 namespace whirl::io {
 
-class Ublox : public UartPeer {
+class Ublox : public RatedUartPeer {
  public:
   struct Params {
     std::string name = "gps";
@@ -97,7 +98,7 @@ class Ublox : public UartPeer {
 
   void receive(const UartByte& byte, const UartFormat& format, Nanoseconds now) override;
 
-  double baud() const { return transmitter_.format().baud; }
+  double baud() const override { return transmitter_.format().baud; }
   const UbxParser::Counts& parser_counts() const { return ubx_.counts(); }
 
  private:

@@ -9,7 +9,10 @@ void LineRack::give(std::span<const std::uint8_t> bytes) {
 }
 
 bool LineRack::join_uart(int /*number*/, io::UartPeer& peer) {
-  peer.join([this](const io::UartByte& byte, const io::UartFormat&) { heard_(byte.value); });
+  peer.join([this](const io::UartByte& byte, const io::UartFormat& format) {
+    heard_(byte.value, format.baud);
+  });
+  if (const auto* rated = dynamic_cast<const io::RatedUartPeer*>(&peer)) rated_ = rated;
   peers_.push_back(&peer);
   return true;
 }

@@ -1,6 +1,7 @@
 // A serial line that this program plays: whoever opens path() is at its other end.
 //
-//   Line   raw, as a wire is; any rate is as good as another
+//   Line   raw, as a wire is; any rate is as good as another, and bytes come whole: what copper would make of two that
+//          differ is left to the player, who may ask for baud()
 //   Open   nobody at the other end: what is written is lost, as on a wire, and nothing is read
 //   Link   a name of the user's own may point at it; an old one that dangles is replaced
 #pragma once
@@ -27,6 +28,7 @@ class PseudoTerminal {
   void write(std::span<const std::uint8_t> bytes);   // what does not go is lost, and counted
   std::uint64_t lost_B() const { return lost_B_; }
   bool someone_there() const;
+  double baud() const;                               // to which its other end is set
   const std::string& path() const { return path_; }  // "/dev/pts/7"
   int file() const { return file_; }
 

@@ -110,6 +110,12 @@ Result<Done> Tty::write(std::span<const std::uint8_t> bytes) {
   return flush();
 }
 
+std::size_t Tty::unsent_B() const {
+  int held = 0;
+  ioctl(file_, TIOCOUTQ, &held);
+  return to_write_.size() + static_cast<std::size_t>(held);
+}
+
 Result<Done> Tty::flush() {
   if (to_write_.empty()) return Done{};
   const ssize_t gone = ::write(file_, to_write_.data(), to_write_.size());

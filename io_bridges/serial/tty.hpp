@@ -31,6 +31,8 @@ class Tty {
   Result<Done> write(std::span<const std::uint8_t> bytes);
   Result<Done> flush();  // what was kept
   std::size_t kept_B() const { return to_write_.size(); }
+  std::size_t unsent_B()
+      const;  // kept here, or by the kernel; what an adapter holds it does not say
   Result<Done> set_baud(int baud);
   int file() const { return file_; }  // to poll
   const std::string& path() const { return path_; }

@@ -24,7 +24,7 @@ PodLine::PodLine(PodLineOptions options)
 Result<Done> PodLine::open() {
   const auto built = build(options_.board, options_.types, "its host's line");
   if (!built) return built;
-  return open_line(io::TtyFrame::n81);
+  return open_line(io::TtyFrame::n81, io::kPodBaud);
 }
 
 Result<Done> PodLine::take_in(std::int64_t now_host_ns) {

@@ -37,7 +37,7 @@ Result<Done> ReceiverLine::open() {
   const auto built =
       build(options_.board, options_.types, "usart" + std::to_string(options_.link.uart));
   if (!built) return built;
-  return open_line(io::TtyFrame::e82);
+  return open_line(io::TtyFrame::e82, core::receiver::kSbusBaud);
 }
 
 // The line is one way. What comes is dropped, and a line that was unplugged is found.

@@ -8,14 +8,13 @@ SerialRackLink::SerialRackLink(LinePlace place, const io::UartFormat& format, st
                                rack::LineRack::Choice carries, const std::optional<PodPlaces>& pod)
     : RackLink(rack_, pod),
       rack_(format, seed, std::move(carries),
-            [this](std::uint8_t byte) {
-              if (!safe_) waiting_.push_back(byte);
+            [this](std::uint8_t byte, double baud) {
+              if (!safe_) hear(byte, baud);
             }),
-      place_(std::move(place)),
-      baud_(format.baud) {}
+      place_(std::move(place)) {}
 
-Result<Done> SerialRackLink::open_line(io::TtyFrame frame) {
-  auto tty = io::Tty::open(place_.path, static_cast<int>(std::lround(baud_)), frame);
+Result<Done> SerialRackLink::open_line(io::TtyFrame frame, double baud) {
+  auto tty = io::Tty::open(place_.path, static_cast<int>(std::lround(baud)), frame);
   if (!tty) return tty.error();
   tty_ = std::move(tty.value());
   return Done{};

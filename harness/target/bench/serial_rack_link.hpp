@@ -28,7 +28,9 @@ class SerialRackLink : public RackLink {
   SerialRackLink(LinePlace place, const io::UartFormat& format, std::uint64_t seed,
                  rack::LineRack::Choice carries, const std::optional<PodPlaces>& pod);
 
-  Result<Done> open_line(io::TtyFrame frame);  // at the format's baud rate
+  Result<Done> open_line(io::TtyFrame frame, double baud);
+  // What a device sends, with its last stop bit. None comes once the link is safe.
+  virtual void hear(std::uint8_t byte, double /*baud*/) { waiting_.push_back(byte); }
 
   rack::LineRack rack_;
   std::optional<io::Tty> tty_;
@@ -36,7 +38,6 @@ class SerialRackLink : public RackLink {
 
  private:
   LinePlace place_;
-  double baud_;
   bool safe_ = false;
 };
 

@@ -3,12 +3,16 @@
 //   Set-point  esc.RawCommand at its index (motor - 1): four steps of it are one of the I2C protocol's
 //              2047, so 0 stops and 8191 is the top of the range of the ESC's mode. Negative: refused.
 //              An array too short to reach it says 0
+//   Speed      esc.RPMCommand likewise, where the ESC is in the mode whose set-points are speeds: to the nearest step of
+//              its range; beyond the range, or in another mode: refused
 //   Status     20 Hz: esc.Status (rated power and temperature are not known: 0 % and NaN), then
 //              StatusExtended with the flags of the I2C protocol's status byte
 #include <cmath>
+#include <optional>
 
 #include "io_bridges/protocols/dronecan/esc.hpp"
 #include "io_bridges/protocols/dronecan/esc_extended.hpp"
+#include "io_bridges/protocols/esc_codec.hpp"
 #include "io_bridges/rack/devices/can_node_keys.hpp"
 #include "io_bridges/rack/devices/table.hpp"
 
@@ -21,6 +25,14 @@ constexpr std::uint8_t kPriority = 16;
 constexpr int kRawSteps = 4;
 constexpr int kFirstNode = 40;  // 0x28 + motor, as its address on I2C
 
+// Nothing: no speed of the mode's range.
+std::optional<int> setpoint_of_speed(int speed_rpm) {
+  const io::EscRange range = io::range_of(io::EscMode::rpm);
+  if (speed_rpm == 0) return 0;
+  if (speed_rpm < range.min || speed_rpm > range.max) return std::nullopt;
+  return io::setpoint_of_value(io::EscMode::rpm, speed_rpm);
+}
+
 class CanEscDevice final : public RackDevice {
  public:
   explicit CanEscDevice(DeviceSlot& slot)
@@ -31,8 +43,15 @@ class CanEscDevice final : public RackDevice {
         due_(slot.rack().events(), [this] { publish(); }) {
     node_.on<io::dronecan::RawCommand>(
         [this](const auto& command, Nanoseconds begun, Nanoseconds now) {
-          on_command(command, begun, now);
+          const int raw = own_of(command.commands);
+          follow(raw < 0 ? std::nullopt : std::optional(raw / kRawSteps), begun, now);
         });
+    node_.on<io::dronecan::RpmCommand>([this, by_speed = slot.flag("params.speeds")](
+                                           const auto& command, Nanoseconds begun,
+                                           Nanoseconds now) {
+      const int speed_rpm = own_of(command.speeds_rpm);
+      follow(by_speed || speed_rpm == 0 ? setpoint_of_speed(speed_rpm) : std::nullopt, begun, now);
+    });
     due_.in(std::llround(kPhase_ns * motor_));
   }
 
@@ -48,14 +67,18 @@ class CanEscDevice final : public RackDevice {
   }
 
  private:
-  void on_command(const io::dronecan::RawCommand& command, Nanoseconds begun, Nanoseconds now) {
+  template <typename List>
+  int own_of(const List& all) const {
     const std::size_t index = motor_ - 1u;
-    const int raw = index < command.commands.size ? command.commands.items[index] : 0;
+    return index < all.size ? all.items[index] : 0;
+  }
+
+  void follow(std::optional<int> value, Nanoseconds begun, Nanoseconds now) {
     io::EscSetpoint setpoint;
-    setpoint.valid = raw >= 0 ? 1 : 0;
-    setpoint.value = static_cast<std::uint16_t>(raw >= 0 ? raw / kRawSteps : 0);
+    setpoint.valid = value ? 1 : 0;
+    setpoint.value = static_cast<std::uint16_t>(value.value_or(0));
     setpoint.start_ns = begun;
-    rejected_ = rejected_ || raw < 0;
+    rejected_ = rejected_ || !value;
     happened_.add(io::Kind::esc_setpoint, motor_, now, setpoint);
   }
 
@@ -91,6 +114,8 @@ class CanEscDevice final : public RackDevice {
 DeviceType esc_dronecan_type() {
   std::vector<DeviceKey> keys = can_node_keys("40 + motor");
   keys.insert(keys.begin() + 1, motor_key().need());
+  keys.push_back(
+      flag_key("params.speeds", "its set-points are speeds: it takes RPMCommand, too").with(false));
   return {"esc_dronecan", "speed controller on CAN, by DroneCAN", std::move(keys),
           make_device<CanEscDevice>};
 }

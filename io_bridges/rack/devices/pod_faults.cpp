@@ -52,8 +52,8 @@ std::optional<int> pod_address(const std::string& type) {
   return seat == nullptr ? std::nullopt : std::optional(seat->address);
 }
 
-bool acts_behind_pod(const std::string& type, io::FaultKind kind) {
-  const Seat* seat = seat_of(type);
+bool acts_in_data(const std::string& type, io::FaultKind kind) {
+  const Seat* seat = seat_of(type == "ublox_m8" ? "ublox_6" : type);  // it has the same ones
   return seat != nullptr &&
          std::find(seat->kinds.begin(), seat->kinds.end(), kind) != seat->kinds.end();
 }

@@ -15,6 +15,7 @@ enum PodAddress : int { kPodImu = 1, kPodBarometer, kPodMagnetometer, kPodGps, k
 
 // Of a device type that a pod can play: "mpu6000". Nothing: faults of it find nothing there.
 std::optional<int> pod_address(const std::string& type);
-bool acts_behind_pod(const std::string& type, io::FaultKind kind);
+// Of a part that a pod plays, or a bench on the part's own serial line.
+bool acts_in_data(const std::string& type, io::FaultKind kind);
 
 }  // namespace whirl::rack

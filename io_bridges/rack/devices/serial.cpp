@@ -24,6 +24,7 @@ class SerialDevice final : public RackDevice {
       happened.add(io::Kind::uart_received, uart, t_ns, bytes.data(),
                    static_cast<std::uint32_t>(bytes.size()));
     });
+    if (slot.flag("params.follows")) port_.follow();
     slot.join_uart(port_);
   }
 
@@ -45,7 +46,8 @@ DeviceType serial_type() {
           {bus_key("usart", "the UART").need().own(),
            quantity_key("baud", Dimension::baud, "baud", {50.0, 12e6}, "of the UART").need(),
            word_key("params.frame", "8N1 or 8E2", "bits, parity and stop bits of a character")
-               .with(std::string("8N1"))},
+               .with(std::string("8N1")),
+           flag_key("params.follows", "its rate is the UART's, whatever that is").with(false)},
           make_device<SerialDevice>};
 }
 

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 
 #include "io_bridges/devices/dronecan_node.hpp"
 #include "io_bridges/protocols/dronecan/esc.hpp"
@@ -19,17 +20,27 @@ struct Bench {
   std::vector<EscStatus> told;
   std::vector<EscStatusExtended> flags;
 
-  Bench() {
+  explicit Bench(bool by_speed = false) {
     BoardDevice esc{.name = "esc3", .type = "esc_dronecan", .bus = "can1", .motor = 3};
+    if (by_speed) esc.set("params.speeds", true);
     EXPECT_NE(rack.add(esc), nullptr) << rack.error;
     flight.on<EscStatus>([this](const EscStatus& s, auto, auto) { told.push_back(s); });
     flight.on<EscStatusExtended>([this](const auto& s, auto, auto) { flags.push_back(s); });
     rack.run_ms(1);
   }
   std::vector<io::EscSetpoint> command(std::initializer_list<int> raw) {
-    rack.posted.clear();
     RawCommand message;
     for (const int one : raw) message.commands.add(static_cast<std::int16_t>(one));
+    return setpoints_of(message);
+  }
+  std::vector<io::EscSetpoint> command_rpm(std::initializer_list<int> speeds_rpm) {
+    RpmCommand message;
+    for (const int one : speeds_rpm) message.speeds_rpm.add(one);
+    return setpoints_of(message);
+  }
+  template <typename Message>
+  std::vector<io::EscSetpoint> setpoints_of(const Message& message) {
+    rack.posted.clear();
     flight.send(message, 5);
     rack.run_ms(1);
     std::vector<io::EscSetpoint> setpoints;
@@ -63,6 +74,76 @@ TEST(EscOnCan, AnArrayTooShortForItSaysZeroAndANegativeOneIsRefused) {
   ASSERT_GE(b.flags.size(), 2u);
   EXPECT_EQ(b.flags.front().flags, 0x80u);  // once
   EXPECT_EQ(b.flags.back().flags, 0u);
+}
+
+// 5000, 6000, -7000 and 8000 rpm of node 10, as pydronecan made them (facts of DroneCAN, golden vectors).
+struct Quad {
+  explicit Quad(bool by_speed) {
+    EXPECT_NE(rack.add({.name = "port", .type = "can_port", .bus = "can1"}), nullptr);
+    for (int motor = 1; motor <= 4; ++motor) {
+      BoardDevice esc{.name = "esc" + std::to_string(motor),
+                      .type = "esc_dronecan",
+                      .bus = "can1",
+                      .motor = motor};
+      if (by_speed) esc.set("params.speeds", true);
+      EXPECT_NE(rack.add(esc), nullptr) << rack.error;
+    }
+    rack.run_ms(1);
+  }
+  // By motor: the value, -1 where it was refused.
+  std::map<int, int> told(std::initializer_list<std::initializer_list<std::uint8_t>> frames) {
+    rack.posted.clear();
+    for (const auto& bytes : frames) {
+      io::CanMessage order;
+      order.id = 0x0804070A;
+      order.flags = 1;
+      order.length = static_cast<std::uint8_t>(bytes.size());
+      std::copy(bytes.begin(), bytes.end(), order.data);
+      rack.send(io::Kind::can_order, order);
+    }
+    rack.run_ms(1);
+    std::map<int, int> all;
+    for (io::Reader reader(rack.posted.bytes()); reader.next();) {
+      if (reader.header().kind != io::Kind::esc_setpoint) continue;
+      const auto setpoint = reader.as<io::EscSetpoint>();
+      all[reader.header().port] = setpoint.valid != 0 ? setpoint.value : -1;
+    }
+    return all;
+  }
+  BenchRack rack;
+};
+
+constexpr std::initializer_list<std::initializer_list<std::uint8_t>> kFour_speeds = {
+    {0xa8, 0x26, 0x88, 0x13, 0x1c, 0x05, 0xca, 0x82}, {0x8e, 0x4d, 0x00, 0x7c, 0x62}};
+
+// 2046 steps span 1000 to 6000 rpm: 5000 rpm is step 1636.8 above the first.
+TEST(EscOnCan, TakesASpeedOfItsRangeAndRefusesWhatIsBeyond) {
+  Quad quad(true);
+  EXPECT_EQ(quad.told(kFour_speeds), (std::map<int, int>{{1, 1638}, {2, 2047}, {3, -1}, {4, -1}}));
+}
+
+TEST(EscOnCan, InAModeWithoutSpeedsRefusesAllOfThem) {
+  Quad quad(false);
+  EXPECT_EQ(quad.told(kFour_speeds), (std::map<int, int>{{1, -1}, {2, -1}, {3, -1}, {4, -1}}));
+}
+
+TEST(EscOnCan, SpeedZeroStopsInAnyModeAndTheRangeIsWhole) {
+  for (const bool by_speed : {false, true}) {
+    Bench b(by_speed);
+    const auto value = [&](int speed_rpm) {
+      const auto all = b.command_rpm({0, 0, speed_rpm});
+      EXPECT_EQ(all.size(), 1u);
+      return all.at(0).valid != 0 ? all[0].value : -1;
+    };
+    EXPECT_EQ(value(0), 0);
+    EXPECT_EQ(value(999), -1);
+    EXPECT_EQ(value(1000), by_speed ? 1 : -1);
+    EXPECT_EQ(value(6000), by_speed ? 2047 : -1);
+    EXPECT_EQ(value(6001), -1);
+    b.rack.run_ms(60);
+    EXPECT_EQ(b.flags.back().flags, 0x80u);                 // told as refused
+    EXPECT_EQ(b.command_rpm({3000, 3000}).at(0).value, 0);  // an array too short for it
+  }
 }
 
 TEST(EscOnCan, TellsItsStateTwentyTimesASecond) {

@@ -40,7 +40,8 @@ TEST(CheckBoard, WhatIsWrongWithADeviceIsSaidWithWhatThereIs) {
   BoardDevice device = serial("t", "usart1");
   device.keys["colour"] = "red";
   EXPECT_EQ(of({device}),
-            "colour: is no key of the type serial (it has name, type, bus, baud, params.frame)");
+            "colour: is no key of the type serial (it has name, type, bus, baud, params.frame, "
+            "params.follows)");
   device = serial("t", "usart1");
   device.motor = 2;
   EXPECT_NE(of({device}).find("motor: is no key"), std::string::npos);
