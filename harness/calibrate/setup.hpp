@@ -15,7 +15,8 @@ struct Setup {
   double low_duty = 0.47, high_duty = 0.54;  // of the transients
   std::vector<double> winds_mps;
   double updraft_mps = 3.0;  // 0: none
-  double air_within = 0.03;  // of the density here, as a share: that of the days on which the ESC flies
+  // Of the density here, as a share: how far off it is when the ESC flies.
+  double air_within = 0.03;
   std::int64_t warm_up_ms = 0, settle_ms = 700, measure_ms = 800;
   bool tell_motor = false;
   std::uint64_t seed = 1;
