@@ -9,7 +9,9 @@
 -- (1 sigma) with its own position loop. By power (mode 5) it departs less. The power of this rotor falls in
 -- an upward flow as it does in a downward one, so that 3.5 m/s from below look like some 3 m/s from above.
 -- Calibrated in an updraft of that strength, the ESC concludes nothing there, and departs as under RPM
--- control.
+-- control: on the copy whose calibration it has. The vehicle's four have the drawing's constants; where theirs read a few percent less
+-- power, some take the updraft for a downdraft, and the vehicle departs by 0.18 m at worst (seed 20 of 1 to 20; 0.07 m
+-- under RPM control). The limit is that and 30 %: it says what such a calibration costs.
 -- Downwards nothing of the thesis says how far. This rotor's inflow hardly changes in 3.5 m/s from below
 -- (the vortex ring state), in 3.5 m/s from above by some 2 m/s, and with it the thrust by a third; earlier
 -- this vehicle lost 31 cm in such a stream. 35 cm is the limit, 30 cm that it may rise above its height behind.
@@ -19,11 +21,12 @@ local signals = { "height", "east", "north", "tilt", "wind_down" }
 
 local limits = {
   up = { highest = { "1.11 m", "1.2 m" }, lowest = { "1.0 m", "1.1 m" } },
+  up_by_power = { highest = { "1.11 m", "1.33 m" }, lowest = { "0.92 m", "1.1 m" } },
   down = { highest = { "1.1 m", "1.4 m" }, lowest = { "0.75 m", "1.09 m" } },
 }
 
 -- Flies to `north` at `east` through the jet, and judges the way.
-local function cross(t, jet, name, north, east)
+local function cross(t, jet, allowed, name, north, east)
   t:step(name)
   t:command { position = { east = east .. " m" }, speed = "0.3 m/s" }
   t:wait "4 s"
@@ -35,14 +38,14 @@ local function cross(t, jet, name, north, east)
   else
     t:expect(way:max "wind_down", name .. ": downward flow met"):at_least "3.2 m/s"
   end
-  t:expect(way:max "height", name .. ": highest"):within(limits[jet].highest[1], limits[jet].highest[2])
-  t:expect(way:min "height", name .. ": lowest"):within(limits[jet].lowest[1], limits[jet].lowest[2])
+  t:expect(way:max "height", name .. ": highest"):within(allowed.highest[1], allowed.highest[2])
+  t:expect(way:min "height", name .. ": lowest"):within(allowed.lowest[1], allowed.lowest[2])
   t:expect(way:max_error("east", east .. " m"), name .. ": sideways"):at_most "30 cm"
   t:expect(way:max "tilt", name .. ": tilt"):at_most "15 deg"
   t:expect(way:final "north", name .. ": is through"):within(north - 0.1 .. " m", north + 0.1 .. " m")
 end
 
-local function gust_crossing(name, jet, image, vehicle)
+local function gust_crossing(name, jet, allowed, image, vehicle)
   plan(name) {
     image = image, board = "px4fmu_v1", vehicle = vehicle,
     tags = { "flight", "gust" }, timeout = "60 s",
@@ -55,14 +58,14 @@ local function gust_crossing(name, jet, image, vehicle)
       t:wait "7 s"
       t:gust { jet = { up = (jet == "up" and strength or -strength) .. " m/s", radius = "35 cm",
                        north = t:drawn("-5 cm", "5 cm"), east = t:drawn("-5 cm", "5 cm") } }
-      cross(t, jet, "through the middle", -1.5, 0)
-      cross(t, jet, "beside it", 1.5, 0.2)
+      cross(t, jet, allowed, "through the middle", -1.5, 0)
+      cross(t, jet, allowed, "beside it", 1.5, 0.2)
     end,
   }
 end
 
 for _, jet in ipairs { "up", "down" } do
   local suffix = jet == "up" and "" or "_" .. jet
-  gust_crossing("gust_crossing" .. suffix, jet, "flight", "hp_quad")
-  gust_crossing("gust_crossing_by_power" .. suffix, jet, "flight_st", "hp_quad_st")
+  gust_crossing("gust_crossing" .. suffix, jet, limits[jet], "flight", "hp_quad")
+  gust_crossing("gust_crossing_by_power" .. suffix, jet, limits[jet .. "_by_power"] or limits[jet], "flight_st", "hp_quad_st")
 end
