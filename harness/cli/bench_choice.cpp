@@ -7,8 +7,7 @@
 #include "harness/cli/find_board.hpp"
 #include "harness/cli/find_file.hpp"
 #include "harness/cli/find_plans.hpp"
-#include "io_bridges/board_description/bus_kind.hpp"
-#include "io_bridges/board_description/bus_name.hpp"
+#include "io_bridges/board_description/line_part.hpp"
 
 namespace whirl::cli {
 namespace {
@@ -57,14 +56,13 @@ Result<Done> check_links(const plan::Plan& plan, const BoardDescription& board,
 }
 
 bool serial_joins(const BoardDevice& device, const bench::BenchDescription& bench) {
-  return std::any_of(bench.serials.begin(), bench.serials.end(), [&](const auto& link) {
-    return is_uart(device.bus) && bus_number(device.bus) == link.uart;
-  });
+  return std::any_of(bench.serials.begin(), bench.serials.end(),
+                     [&](const auto& link) { return is_at_uart(device, link.uart); });
 }
 
 // Parts that are played on a line of their own as well.
 bool has_own_line(const BoardDevice& device) {
-  return is_uart(device.bus) && (device.type == "sbus" || device.type.starts_with("ublox_"));
+  return is_receiver(device) || is_gps(device);
 }
 
 bool pod_plays(const BoardDevice& device, const bench::BenchDescription& bench) {

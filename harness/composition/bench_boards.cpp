@@ -20,6 +20,7 @@
 #include "harness/target/bench/serial_links.hpp"
 #include "harness/target/copper_target.hpp"
 #include "io_bridges/board_description/bus_name.hpp"
+#include "io_bridges/board_description/line_part.hpp"
 #include "io_bridges/protocols/esc_codec.hpp"
 #include "io_bridges/rack/devices/pod_faults.hpp"
 #include "io_bridges/rack/devices/table.hpp"
@@ -120,15 +121,15 @@ Result<Done> add_nodes(const cli::Setup& setup, const bench::CanMaker& can, Link
 
 // Of a vehicle, a line may be the receiver's, or the GPS's.
 std::unique_ptr<bench::Link> serial_link(const cli::Setup& setup, const bench::SerialLink& link) {
-  const std::uint64_t seed = seed_of(setup, setup.node);
-  if (!setup.plan.stand && bench::receiver_at(setup.board, link) != nullptr) {
-    return std::make_unique<bench::ReceiverLine>(
-        bench::ReceiverLineOptions{link, setup.board, rack::device_types(), seed});
-  }
-  if (!setup.plan.stand && bench::gps_at(setup.board, link) != nullptr) {
-    return std::make_unique<bench::GpsLine>(
-        bench::GpsLineOptions{link, setup.board, rack::device_types(), seed});
-  }
+  const auto plays = [&](bench::LinePart kind) {
+    return !setup.plan.stand && bench::part_at(setup.board, link, kind) != nullptr;
+  };
+  const auto options = [&] {
+    return bench::LinePartOptions{link, setup.board, rack::device_types(),
+                                  seed_of(setup, setup.node)};
+  };
+  if (plays(is_receiver)) return std::make_unique<bench::ReceiverLine>(options());
+  if (plays(is_gps)) return std::make_unique<bench::GpsLine>(options());
   return std::make_unique<bench::BoardSerial>(link);
 }
 
@@ -159,8 +160,8 @@ std::map<std::string, Kinds> played_parts(const cli::Setup& setup) {
     }
   }
   for (const bench::SerialLink& link : setup.bench->serials) {
-    for (const BoardDevice* part :
-         {bench::receiver_at(setup.board, link), bench::gps_at(setup.board, link)}) {
+    for (const bench::LinePart kind : {is_receiver, is_gps}) {
+      const BoardDevice* part = bench::part_at(setup.board, link, kind);
       if (part != nullptr) all[part->name] = data_of(part->type);
     }
   }

@@ -15,9 +15,10 @@
 #include "harness/plan/needs.hpp"
 #include "harness/stand/bench_stand.hpp"
 #include "harness/stand/stand_world.hpp"
-#include "harness/target/bench/receiver_line.hpp"
+#include "harness/target/bench/serial_rack_link.hpp"
 #include "harness/target/copper_target.hpp"
 #include "harness/target/virtual_board.hpp"
+#include "io_bridges/board_description/line_part.hpp"
 
 namespace whirl {
 namespace {
@@ -121,8 +122,9 @@ bool plays_receiver(const BoardDescription& board) {
 bool bench_plays_receiver(const bench::BenchDescription& bench, const BoardDescription& board) {
   return std::any_of(bench.pods.begin(), bench.pods.end(),
                      [](const bench::PodLink& link) { return plays_receiver(link.parts); }) ||
-         std::any_of(bench.serials.begin(), bench.serials.end(),
-                     [&](const auto& link) { return bench::receiver_at(board, link) != nullptr; });
+         std::any_of(bench.serials.begin(), bench.serials.end(), [&](const auto& link) {
+           return bench::part_at(board, link, is_receiver) != nullptr;
+         });
 }
 
 // What of the ground the first board hears, itself or by a board in a part's place.

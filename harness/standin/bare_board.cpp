@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <set>
 
-#include "io_bridges/board_description/bus_kind.hpp"
+#include "io_bridges/board_description/line_part.hpp"
 #include "io_bridges/board_description/pod_host.hpp"
 #include "io_bridges/devices/core/receiver.hpp"
 #include "io_bridges/protocols/dronecan/pod_link.hpp"
@@ -59,8 +59,8 @@ BoardDescription bare_board(BoardDescription board) {
   std::set<std::string> buses;
   for (BoardDevice& device : board.devices) {
     if (device.type == "mavlink_link") device = line_of(device);
-    if (device.type == "sbus") device = line_of_receiver(device);
-    if (device.type.starts_with("ublox_") && is_uart(device.bus)) device = line_of_gps(device);
+    if (is_receiver(device)) device = line_of_receiver(device);
+    if (is_gps(device)) device = line_of_gps(device);
     if (is_pod_host(device)) device = end_of_host(device);
     if (device.type.ends_with("_dronecan")) buses.insert(device.bus);
   }

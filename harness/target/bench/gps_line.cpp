@@ -1,36 +1,14 @@
 #include "harness/target/bench/gps_line.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
-#include "io_bridges/board_description/bus_kind.hpp"
-#include "io_bridges/board_description/bus_name.hpp"
+#include "io_bridges/board_description/line_part.hpp"
 
 namespace whirl::bench {
-namespace {
 
-constexpr int kMost_pieces = 8;  // of a turn: who floods a line must not hold the loop
-
-bool is_gps(const BoardDevice& device, std::uint16_t uart) {
-  return device.type.starts_with("ublox_") && is_uart(device.bus) && bus_number(device.bus) == uart;
-}
-
-}  // namespace
-
-const BoardDevice* gps_at(const BoardDescription& board, const SerialLink& link) {
-  const auto found =
-      std::find_if(board.devices.begin(), board.devices.end(),
-                   [&](const BoardDevice& device) { return is_gps(device, link.uart); });
-  return found == board.devices.end() ? nullptr : &*found;
-}
-
-GpsLine::GpsLine(GpsLineOptions options)
-    : SerialRackLink(
-          {options.link.name, options.link.path, "a GPS receiver"}, {}, options.seed,
-          [uart = options.link.uart](const BoardDevice& device) { return is_gps(device, uart); },
-          std::nullopt),
-      options_(std::move(options)) {}
+GpsLine::GpsLine(LinePartOptions options)
+    : SerialRackLink(options, "a GPS receiver", {}, is_gps), options_(std::move(options)) {}
 
 Result<Done> GpsLine::open() {
   const auto built =
@@ -50,18 +28,6 @@ void GpsLine::make_safe() {
 void GpsLine::hear(std::uint8_t byte, double baud) {
   if (pieces_.empty() || pieces_.back().baud != baud) pieces_.push_back({baud, {}});
   pieces_.back().bytes.push_back(byte);
-}
-
-Result<Done> GpsLine::take_in(std::int64_t now_host_ns) {
-  advance(now_host_ns);
-  std::array<std::uint8_t, 1024> piece;
-  for (int i = 0; i < kMost_pieces; ++i) {
-    const auto got = tty_->read(piece);
-    if (!got) return got.error();
-    if (got.value() == 0) break;
-    rack_.give(std::span(piece).first(got.value()));
-  }
-  return Done{};
 }
 
 bool GpsLine::rests(std::int64_t now_host_ns) const {

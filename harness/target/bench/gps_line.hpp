@@ -1,5 +1,5 @@
-// The bench as a flight controller's GPS on a serial line of this host (serial_rack_link.hpp): the u-blox receiver of the board
-// file, with its faults, in the plant's motion. It answers settings and keeps them, and so does its baud rate.
+// The bench as a flight controller's GPS on a serial line of this host (serial_rack_link.hpp): the u-blox receiver of the
+// board file, with its faults, in the plant's motion. It answers settings and keeps them, its baud rate among them.
 //
 //   Line     8N1. The adapter is set to the receiver's rate, at first to that of the board file, whatever the bench's file says
 //   Rate     a new one is set once what was sent at the old one is over, kRest_ns later: so long an adapter may hold bytes back.
@@ -13,26 +13,15 @@
 #include <deque>
 #include <vector>
 
-#include "harness/target/bench/bench_description.hpp"
 #include "harness/target/bench/serial_rack_link.hpp"
 
 namespace whirl::bench {
-
-struct GpsLineOptions {
-  SerialLink link;
-  BoardDescription board;  // of it, the receiver on that UART
-  rack::DeviceTypes types;
-  std::uint64_t seed = 1;
-};
-
-// The GPS receiver that a link of a bench is to play; null: the line is of something else.
-const BoardDevice* gps_at(const BoardDescription& board, const SerialLink& link);
 
 class GpsLine final : public SerialRackLink {
  public:
   static constexpr std::int64_t kRest_ns = 5'000'000;  // of the host
 
-  explicit GpsLine(GpsLineOptions options);
+  explicit GpsLine(LinePartOptions options);
 
   Result<Done> open() override;
   std::int64_t next_due_host_ns() const override;
@@ -44,13 +33,12 @@ class GpsLine final : public SerialRackLink {
     std::vector<std::uint8_t> bytes;
   };
   void hear(std::uint8_t byte, double baud) override;
-  Result<Done> take_in(std::int64_t now_host_ns) override;
   Result<Done> send_waiting(std::int64_t now_host_ns) override;
   double next_baud() const { return pieces_.empty() ? rack_.baud() : pieces_.front().baud; }
   bool rests(std::int64_t now_host_ns) const;
   Result<Done> set_baud(double baud);
 
-  GpsLineOptions options_;
+  LinePartOptions options_;
   std::deque<Piece> pieces_;         // not yet written, each of one rate
   double baud_ = 0.0;                // of the adapter
   std::int64_t rested_host_ns_ = 0;  // what was written is over, and the adapter holds nothing

@@ -1,14 +1,10 @@
 #include "harness/target/bench/pod_line.hpp"
 
-#include <array>
-
 #include "io_bridges/board_description/pod_host.hpp"
 #include "io_bridges/protocols/dronecan/pod_link.hpp"
 
 namespace whirl::bench {
 namespace {
-
-constexpr int kMost_pieces = 8;  // of a turn: who floods a line must not hold the loop
 
 bool is_on_line(const BoardDevice& device) {
   return is_pod_host(device) && !can_of_host(device);
@@ -25,18 +21,6 @@ Result<Done> PodLine::open() {
   const auto built = build(options_.board, options_.types, "its host's line");
   if (!built) return built;
   return open_line(io::TtyFrame::n81, io::kPodBaud);
-}
-
-Result<Done> PodLine::take_in(std::int64_t now_host_ns) {
-  advance(now_host_ns);
-  std::array<std::uint8_t, 1024> piece;
-  for (int i = 0; i < kMost_pieces; ++i) {
-    const auto got = tty_->read(piece);
-    if (!got) return got.error();
-    if (got.value() == 0) break;
-    rack_.give(std::span(piece).first(got.value()));
-  }
-  return Done{};
 }
 
 Result<Done> PodLine::send_waiting(std::int64_t /*now_host_ns*/) {

@@ -1,5 +1,5 @@
-// The bench as the host of a pod on a serial line of this host (serial_rack_link.hpp): the parts that the pod plays to a flight
-// controller live here, in the plant's motion.
+// The bench as the host of a pod on a serial line of this host (serial_rack_link.hpp): the parts that the pod plays to a
+// flight controller live here, in the plant's motion.
 //
 //   Line     3 Mbaud (io_bridges/protocols/dronecan/pod_link.hpp). What a USB adapter gathers to packets of a millisecond
 //            the pod sees as samples that come late, and counts
@@ -27,7 +27,6 @@ class PodLine final : public SerialRackLink {
   std::vector<std::string> findings() const override;
 
  private:
-  Result<Done> take_in(std::int64_t now_host_ns) override;
   Result<Done> send_waiting(std::int64_t now_host_ns) override;
 
   PodLineOptions options_;

@@ -1,36 +1,15 @@
 #include "harness/target/bench/receiver_line.hpp"
 
-#include <algorithm>
 #include <array>
 
-#include "io_bridges/board_description/bus_kind.hpp"
-#include "io_bridges/board_description/bus_name.hpp"
+#include "io_bridges/board_description/line_part.hpp"
 #include "io_bridges/devices/core/receiver.hpp"
 
 namespace whirl::bench {
-namespace {
 
-bool is_receiver(const BoardDevice& device, std::uint16_t uart) {
-  return device.type == "sbus" && is_uart(device.bus) && bus_number(device.bus) == uart;
-}
-
-}  // namespace
-
-const BoardDevice* receiver_at(const BoardDescription& board, const SerialLink& link) {
-  const auto found =
-      std::find_if(board.devices.begin(), board.devices.end(),
-                   [&](const BoardDevice& device) { return is_receiver(device, link.uart); });
-  return found == board.devices.end() ? nullptr : &*found;
-}
-
-ReceiverLine::ReceiverLine(ReceiverLineOptions options)
-    : SerialRackLink(
-          {options.link.name, options.link.path, "a receiver with SBUS"},
-          {core::receiver::kSbusBaud, 8, 'E', 2.0}, options.seed,
-          [uart = options.link.uart](const BoardDevice& device) {
-            return is_receiver(device, uart);
-          },
-          std::nullopt),
+ReceiverLine::ReceiverLine(LinePartOptions options)
+    : SerialRackLink(options, "a receiver with SBUS", {core::receiver::kSbusBaud, 8, 'E', 2.0},
+                     is_receiver),
       options_(std::move(options)) {}
 
 Result<Done> ReceiverLine::open() {

@@ -1,8 +1,19 @@
 #include "harness/target/bench/serial_rack_link.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
+#include "io_bridges/board_description/line_part.hpp"
+
 namespace whirl::bench {
+
+const BoardDevice* part_at(const BoardDescription& board, const SerialLink& link, LinePart kind) {
+  const auto found = std::find_if(
+      board.devices.begin(), board.devices.end(),
+      [&](const BoardDevice& device) { return kind(device) && is_at_uart(device, link.uart); });
+  return found == board.devices.end() ? nullptr : &*found;
+}
 
 SerialRackLink::SerialRackLink(LinePlace place, const io::UartFormat& format, std::uint64_t seed,
                                rack::LineRack::Choice carries, const std::optional<PodPlaces>& pod)
@@ -13,10 +24,31 @@ SerialRackLink::SerialRackLink(LinePlace place, const io::UartFormat& format, st
             }),
       place_(std::move(place)) {}
 
+SerialRackLink::SerialRackLink(const LinePartOptions& options, std::string end,
+                               const io::UartFormat& format, LinePart kind)
+    : SerialRackLink(
+          {options.link.name, options.link.path, std::move(end)}, format, options.seed,
+          [kind, uart = options.link.uart](const BoardDevice& device) {
+            return kind(device) && is_at_uart(device, uart);
+          },
+          std::nullopt) {}
+
 Result<Done> SerialRackLink::open_line(io::TtyFrame frame, double baud) {
   auto tty = io::Tty::open(place_.path, static_cast<int>(std::lround(baud)), frame);
   if (!tty) return tty.error();
   tty_ = std::move(tty.value());
+  return Done{};
+}
+
+Result<Done> SerialRackLink::take_in(std::int64_t now_host_ns) {
+  advance(now_host_ns);
+  std::array<std::uint8_t, 1024> piece;
+  for (int i = 0; i < kMost_pieces; ++i) {
+    const auto got = tty_->read(piece);
+    if (!got) return got.error();
+    if (got.value() == 0) break;
+    rack_.give(std::span(piece).first(got.value()));
+  }
   return Done{};
 }
 

@@ -81,7 +81,7 @@ struct Rig {
     board.name = "flying";
     board.devices.push_back({.name = "gps", .type = type, .bus = "usart6"});
     board.devices.back().set("params.first_fix", 2.0);
-    link.emplace(GpsLineOptions{{"gps", far.path(), 6}, board, rack::device_types()});
+    link.emplace(LinePartOptions{{"gps", far.path(), 6}, board, rack::device_types()});
     link->keep_time(
         {[](std::int64_t host_ns) { return host_ns; }, [](std::int64_t t_ns) { return t_ns; }});
     EXPECT_TRUE(link->open().ok());

@@ -44,7 +44,7 @@ struct Rig {
     board.name = "flying";
     board.devices.push_back({.name = "gps", .type = type, .bus = "usart6"});
     board.devices.back().set("params.first_fix", 1.0);
-    link.emplace(GpsLineOptions{{"gps", far->path(), 6}, board, rack::device_types()});
+    link.emplace(LinePartOptions{{"gps", far->path(), 6}, board, rack::device_types()});
     link->keep_time(
         {[](std::int64_t host_ns) { return host_ns; }, [](std::int64_t t_ns) { return t_ns; }});
   }
@@ -211,7 +211,7 @@ TEST(GpsLine, AnUnpluggedLineAndABoardWithoutReceiverAreSaid) {
   BoardDescription none;
   none.name = "none";
   const auto opened =
-      GpsLine(GpsLineOptions{{"gps", "/nowhere", 6}, none, rack::device_types()}).open();
+      GpsLine(LinePartOptions{{"gps", "/nowhere", 6}, none, rack::device_types()}).open();
   ASSERT_FALSE(opened.ok());
   EXPECT_NE(opened.error().what.find("no device on usart6"), std::string::npos);
 }
