@@ -140,7 +140,7 @@ Result<Done> fuzz_parsers(const Amount& amount) {
   if (!places()) return places().error();
   ParserFuzzOptions options;
   options.root = places().value().root;
-  // Beside the tests, less optimized and with counters of edges only, which are there after ./whirl test.
+  // Less optimized and counting edges only, but there once ./whirl test has built its tests.
   if (amount.smoke) options.build = options.root + "/build/sanitize";
   options.seconds = amount.smoke ? 6.0 : 3600.0;
   options.runs = static_cast<std::int64_t>(amount.seeds);

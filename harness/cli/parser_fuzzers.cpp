@@ -51,8 +51,9 @@ Result<std::vector<Parser>> find_parsers(const ParserFuzzOptions& options) {
                        build / "corpus" / name, build / "findings" / (name + "-"),
                        build / "logs" / (name + ".log")});
     if (!fs::exists(parsers.back().program, status)) {
-      return Error{ErrorKind::bad_input, parsers.back().program, "is not built",
-                   "./whirl fuzz builds it"};
+      return Error{
+          ErrorKind::bad_input, parsers.back().program, "is not built",
+          options.build.empty() ? "./whirl fuzz builds it" : "./whirl fuzz --smoke builds it"};
     }
   }
   if (parsers.size() < std::max<std::size_t>(1, options.only.size())) {

@@ -9,7 +9,7 @@ namespace whirl::cli {
 
 struct ParserFuzzOptions {
   std::string root;        // of the checkout: seeds and dictionaries
-  std::string build = {};  // of the preset; empty: ROOT/build/fuzz
+  std::string build = {};  // of another preset; empty: ROOT/build/fuzz
   double seconds = 10.0;   // for each parser, or:
   std::int64_t runs = 0;   // so many inputs each, however long it takes
   std::uint64_t seed = 1;  // of the mutations; the corpus that earlier runs found counts too
