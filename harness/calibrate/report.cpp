@@ -101,6 +101,15 @@ Result<Calibration> identify(StandData data) {
   return Calibration{std::move(data), sense.value(), motor.value(), still.value(), rotor.value()};
 }
 
+Result<Calibration> identify(StandData data, const Setup& setup) {
+  auto found = identify(std::move(data));
+  if (found) {
+    found.value().tell_motor = setup.tell_motor;
+    found.value().air_within = setup.air_within;
+  }
+  return found;
+}
+
 Result<Done> physical(const Calibration& c) {
   for (const Coefficient* x :
        {&c.sense.gain, &c.motor.torque_constant, &c.motor.back_emf, &c.motor.resistance,

@@ -5,6 +5,7 @@
 
 #include "harness/calibrate/identify.hpp"
 #include "harness/calibrate/rotor_fit.hpp"
+#include "harness/calibrate/setup.hpp"
 #include "results/charts.hpp"
 
 namespace whirl::calibrate {
@@ -23,6 +24,8 @@ struct Calibration {
 };
 
 Result<Calibration> identify(StandData data);
+// The same, to be told as the setup wants it: `tell_motor`, `air_within`.
+Result<Calibration> identify(StandData data, const Setup& setup);
 // What must hold before an ESC is told: see physical() of each fit.
 Result<Done> physical(const Calibration& calibration);
 

@@ -58,4 +58,8 @@ Result<CalibrationFile> read_calibration(const std::string& path) {
   return CalibrationFile{std::move(s), stand};
 }
 
+double density_of(const calibrate::Setup& setup, const stand::StandParams& stand) {
+  return stand.air ? stand.air->density_kgpm3 : setup.density_kgpm3;
+}
+
 }  // namespace whirl::catalogue

@@ -17,6 +17,7 @@
 #include "base/result.hpp"
 #include "harness/calibrate/setup.hpp"
 #include "harness/lua/table.hpp"
+#include "harness/stand/stand_params.hpp"
 
 namespace whirl::catalogue {
 
@@ -26,5 +27,8 @@ struct CalibrationFile {
 };
 
 Result<CalibrationFile> read_calibration(const std::string& path);
+
+// Of the air that the stand says, kg/m3, and where it says none of the calibration's own day.
+double density_of(const calibrate::Setup& setup, const stand::StandParams& stand);
 
 }  // namespace whirl::catalogue

@@ -50,15 +50,6 @@ Result<Done> compose(const catalogue::CalibrationFile& file, const Composition& 
   return Done{};
 }
 
-Result<Calibration> concluded(calibrate::StandData data, const calibrate::Setup& setup) {
-  auto result = calibrate::identify(std::move(data));
-  if (result) {
-    result.value().tell_motor = setup.tell_motor;
-    result.value().air_within = setup.air_within;
-  }
-  return result;
-}
-
 // Measures, concludes, and stores the constants in the ESC, all in one power-up.
 Result<Calibration> on_the_stand(const catalogue::CalibrationFile& file,
                                  const Composition& composition, const std::string& data_path) {
@@ -75,7 +66,7 @@ Result<Calibration> on_the_stand(const catalogue::CalibrationFile& file,
   if (!data) return data.error();
   const auto kept = write_text(data_path, data_text(data.value()));
   if (!kept) return kept.error();
-  auto result = concluded(std::move(data.value()), setup);
+  auto result = calibrate::identify(std::move(data.value()), setup);
   if (!result || !physical(result.value())) return result;
   progress("storing the constants in the ESC");
   if (auto stored = store(bench, lines(result.value())); !stored) return stored.error();
@@ -85,7 +76,7 @@ Result<Calibration> on_the_stand(const catalogue::CalibrationFile& file,
 Result<Calibration> again(const std::string& data_path, const calibrate::Setup& setup) {
   auto data = calibrate::read_data(data_path);
   if (!data) return data.error();
-  return concluded(std::move(data.value()), setup);
+  return calibrate::identify(std::move(data.value()), setup);
 }
 
 }  // namespace

@@ -29,8 +29,7 @@ Result<inflow_bound::Report> inflow_bound_of(const std::string& file, const std:
   if (!stand) return stand.error();
   const inflow_bound::Copy copy{stand.value().blade, stand::motor_of(stand.value().stage),
                                 stand::shunt_of(stand.value().stage),
-                                stand.value().air ? stand.value().air->density_kgpm3
-                                                  : calibration.value().setup.density_kgpm3};
+                                catalogue::density_of(calibration.value().setup, stand.value())};
   return inflow_bound::report(copy, {0.8, 1.6, 2.4, 3.2, 4.0}, voltages(stand.value().battery));
 }
 

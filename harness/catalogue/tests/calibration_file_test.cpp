@@ -39,6 +39,15 @@ TEST(CalibrationFile, TakesWhatIsWrittenAndFillsInTheRest) {
   EXPECT_TRUE(near(same_day.value().setup.air_within, 0.005, round_off(1, 1)));
 }
 
+TEST(CalibrationFile, TheStandsAirGoesBeforeItsOwnDensity) {
+  calibrate::Setup setup;
+  setup.density_kgpm3 = 1.19;
+  stand::StandParams stand;
+  EXPECT_EQ(density_of(setup, stand), 1.19);
+  stand.air.emplace().density_kgpm3 = 0.82;
+  EXPECT_EQ(density_of(setup, stand), 0.82);
+}
+
 TEST(CalibrationFile, RefusesWithPlaceAndReason) {
   const struct {
     const char* body;

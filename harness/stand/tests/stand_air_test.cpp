@@ -56,6 +56,12 @@ TEST(StandAir, GivesTheThrustOfItsDynamicPressure) {
   expect("{ above_sea = '1000 m', temperature = '35 degC' }", 1.01602, 0.03, "12 % lower");
 }
 
+// 500 m below the sea 32.5 degC make 1.225 kg/m3 as well, and a viscosity 4.7 % higher ([USSA76] eq. 33a, 42, 51).
+TEST(StandAir, GivesLessThrustWhereItIsMoreViscous) {
+  EXPECT_LT(thrust_N("{ above_sea = '-500 m', temperature = '32.5 degC' }", 600.0),
+            0.997 * thrust_N("{}", 600.0));
+}
+
 TEST(StandAir, CoolsTheMotorWhereItIsSaid) {
   EXPECT_EQ(stand_in("").stage.count("ambient"), 0u);
   EXPECT_TRUE(near(stand_in("{ temperature = '35 degC' }").stage.at("ambient"), 308.15,
