@@ -69,4 +69,15 @@ flight::EscParams read_esc(const lua::Table& t) {
   return e;
 }
 
+double read_still_air(const lua::Table& t, const fw::esc::Calibration& calibration) {
+  if (!t.has("still_air")) return 0.0;
+  const bool by_thrust = calibration.mode == fw::esc::Mode::thrust_by_speed ||
+                         calibration.mode == fw::esc::Mode::thrust_by_power;
+  if (!by_thrust) t.refuse("still_air", "is a thrust, and by its mode the ESC takes none");
+  if (!calibration.identified) t.refuse("still_air", "wants an ESC with a calibration");
+  const fw::esc::Range range = fw::esc::range_of(fw::esc::Mode::thrust_by_power);
+  return t.quantity("still_air", Dimension::force,
+                    lua::between(static_cast<double>(range.min), static_cast<double>(range.max)));
+}
+
 }  // namespace whirl::catalogue

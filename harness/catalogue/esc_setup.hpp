@@ -1,7 +1,7 @@
 // A vehicle's ESCs as its file writes them: what the control core is told, and its current sensor.
 //
 //   esc = { mode = "thrust_by_rpm", max_current = "20 A", brake_current = "15 A",
-//           arming_voltage = "15.7 V", calibration = { file = "...", kt = 0.01005 }, shunt = { ... } }
+//           arming_voltage = "15.7 V", still_air = "2.2 N", calibration = { file = "...", kt = 0.01005 }, shunt = { ... } }
 //   Calibration  names and SI numbers of the image's `set` (firmware/esc/core/parameters.hpp); a file
 //                is what a stand has found (kind = "esc_calibration"), and what stands beside it wins
 #pragma once
@@ -12,5 +12,8 @@ namespace whirl::catalogue {
 
 // Complaints stay with the table. Pole pairs are the motor's, not read here.
 flight::EscParams read_esc(const lua::Table& t);
+// The thrust at which each is told what still air takes, N; 0: the file does not ask for it. Refused of
+// an ESC that nobody has calibrated, or that takes no thrust.
+double read_still_air(const lua::Table& t, const fw::esc::Calibration& calibration);
 
 }  // namespace whirl::catalogue

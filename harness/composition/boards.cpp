@@ -11,6 +11,7 @@
 #include "harness/composition/copies.hpp"
 #include "harness/composition/stand_in_command.hpp"
 #include "harness/flight/flight_world.hpp"
+#include "harness/flight/still_air.hpp"
 #include "harness/pacing/host_clock.hpp"
 #include "harness/plan/needs.hpp"
 #include "harness/stand/bench_stand.hpp"
@@ -178,6 +179,9 @@ Result<std::unique_ptr<World>> make_world(const cli::Setup& setup) {
   if (!far) return far.error();
   params.value().far_shafts = std::move(far.value());
   set_far_parts(setup, params.value());
+  if (const auto told = flight::tell_still_air(params.value(), setup.seed); !told) {
+    return told.error();
+  }
   return std::unique_ptr<World>(std::make_unique<flight::FlightWorld>(params.value(), setup.seed));
 }
 

@@ -36,6 +36,16 @@ struct FlightParams {
   std::shared_ptr<const plant::Blade> blade;
   std::string controller = "esc_core";  // of each motor: the name of a ControllerType
   EscParams esc;                        // esc_core's
+  double still_air_thrust_N =
+      0.0;  // at which each is told what still air takes (still_air.hpp); 0: not
+  std::vector<fw::esc::Calibration>
+      calibrations;                    // by motor, what came of it; empty: esc.calibration
+  EscParams esc_of(int motor) const {  // its number: 1, 2...
+    EscParams its = esc;
+    if (!calibrations.empty())
+      its.calibration = calibrations.at(static_cast<std::size_t>(motor) - 1);
+    return its;
+  }
   CaptureParams capture;
   Surroundings place;
   BoardEars ears;

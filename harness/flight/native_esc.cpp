@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "firmware/esc/core/still_air.hpp"
 #include "harness/flight/controllers.hpp"
 #include "harness/flight/flight_params.hpp"
 
@@ -117,6 +118,20 @@ plant::MotorCommand NativeEsc::step(std::int64_t now_ns, const plant::MotorState
   return {std::floor(duty * kPwm_counts) / kPwm_counts, kFreewheel};
 }
 
+std::optional<double> NativeEsc::take_still_air(const std::function<void()>& tick) {
+  using Answer = fw::esc::StillAir::Answer;
+  fw::esc::StillAir air;
+  air.begin();
+  Answer answer = Answer::measuring;
+  while (answer == Answer::measuring) {
+    tick();
+    answer = air.sample(core_.estimator());
+  }
+  if (answer == Answer::refused) return {};
+  core_.take_still_power(air.share());
+  return static_cast<double>(air.share());
+}
+
 io::EscState NativeEsc::status() const {
   return {static_cast<double>(core_.bus_current_A()),
           static_cast<double>(core_.speed_radps() / fw::esc::kRadps_per_rpm),
@@ -135,7 +150,7 @@ ControllerType native_esc_type() {
   return {"esc_core", kFreewheel,
           [](const FlightParams& params, std::uint64_t seed,
              int number) -> std::unique_ptr<MotorController> {
-            return std::make_unique<NativeEsc>(params.esc, seed, number);
+            return std::make_unique<NativeEsc>(params.esc_of(number), seed, number);
           }};
 }
 

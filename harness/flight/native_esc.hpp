@@ -23,6 +23,8 @@
 //            beyond 22 A (the core's own bounds act); the amplifier's ripple and its removal
 #pragma once
 #include <cstdint>
+#include <functional>
+#include <optional>
 
 #include "firmware/esc/core/core.hpp"
 #include "firmware/esc/core/sensing.hpp"
@@ -51,6 +53,9 @@ class NativeEsc final : public MotorController {
   bool armed() const override { return core_.supervisor().armed(); }
   std::vector<NamedValue> signals() const override;
   const fw::esc::Core& core() const { return core_; }
+  // What the image does with `still`: `tick` is to step this ESC and its motor by a millisecond. The share that it found;
+  // nothing: refused.
+  std::optional<double> take_still_air(const std::function<void()>& tick);
 
  private:
   enum class Phase : std::uint8_t { off, catching, aligning, turning };

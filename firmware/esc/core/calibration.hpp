@@ -46,6 +46,7 @@ struct StaticMap {
 
   float CT(float w) const { return a3 * w + a2 + a1 / w; }
   float CP(float w) const { return (q4 * w + q3) * w + q2; }
+  void take_still_power(float share) { q4 *= share, q3 *= share, q2 *= share; }  // of CP
 };
 
 // Where the losses and the rotor's model were identified, and how they change with speed in there.

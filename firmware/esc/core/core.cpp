@@ -68,6 +68,12 @@ bool Core::recalibrate(const Calibration& calibration) {
   return true;
 }
 
+void Core::take_still_power(float share) {
+  calibration_.free_air.take_still_power(share);
+  estimator_.take_still_power(share);
+  speed_control_.take_still_power(share);
+}
+
 bool Core::set_mode(Mode mode) {
   if (!at_rest() || range_of(mode).max <= 0.0f) return false;
   calibration_.mode = mode;

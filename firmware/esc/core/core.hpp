@@ -46,6 +46,8 @@ class Core {
   void arm_by_hand();                    // as 25 zeros would
   Drive tick(const Sensed& sensed);
   bool recalibrate(const Calibration& calibration);  // false: refused while the motor turns
+  // What still_air.hpp has found: of the calibration, the power of still air becomes this share of itself.
+  void take_still_power(float share);
   bool set_mode(Mode mode);  // false: refused (turning, or a mode that a propeller has no use for)
   void latch(Latched fault) { supervisor_.latch(fault); }
   void watch(bool on) { supervisor_.watch(on); }

@@ -93,6 +93,7 @@ class SpeedController {
     return demand;
   }
   void restart() { integral_V_ = 0.0f; }
+  void take_still_power(float share) { free_air_.take_still_power(share); }
 
  private:
   static constexpr float kSteady_radps = 4.0f;

@@ -168,6 +168,25 @@ float ThrustEstimator::confidence() const {
   return 1.0f / (1.0f + noise * noise);
 }
 
+bool ThrustEstimator::balanced() const {
+  return calibration_.identified && calibration_.power.holds(speed_radps_) && unrest_ < kCalm &&
+         gapless_s_ > kSmoothing_s;
+}
+
+float ThrustEstimator::balance_ratio() const {
+  const float w = speed_radps_;
+  return (power_W_ + excess_Nm_ * w) / (calibration_.free_air.CP(w) * w * w * w);
+}
+
+// What it has concluded from the power before, is of the map before.
+void ThrustEstimator::take_still_power(float share) {
+  calibration_.free_air.take_still_power(share);
+  excess_Nm_ = 0.0f;
+  last_ = {};
+  confidence_ = 0.0f;
+  power_ratio_ = 1.0f;
+}
+
 float ThrustEstimator::thrust_per_ampere() const {
   if (!observable() || !(power_W_ > 0.0f)) return 0.0f;
   return thrust_N_ * confidence_ * last_.leverage * watts_per_ampere_ / power_W_;

@@ -31,6 +31,12 @@ class ThrustEstimator {
   float acceleration_radps2() const { return speed_.acceleration_radps2(); }
   bool observable() const { return last_.status == Estimate::converged; }
   const ThrustEstimate& solution() const { return last_; }
+  // The power balance holds: calibrated, at a speed for which it was, the rotor calm, no gaps in the current.
+  bool balanced() const;
+  // Power of this moment over that of still air's map, with all that has been taken for an error of the balance. Pre: balanced().
+  float balance_ratio() const;
+  // From now on that share of it is still air's power.
+  void take_still_power(float share);
   // How far one ampere of the bus too much would shift the estimated thrust.
   float thrust_per_ampere() const;
 

@@ -4,6 +4,7 @@
 
 #include "firmware/esc/core/parameters.hpp"
 #include "firmware/esc/core/pulse_throttle.hpp"
+#include "firmware/esc/core/still_air.hpp"
 #include "firmware/esc/image/i2c_slave.hpp"
 #include "firmware/esc/image/registers.hpp"
 #include "firmware/esc/image/serial.hpp"
@@ -48,7 +49,7 @@ class Line {  // what is being answered
   }
 
  private:
-  std::array<char, 144> text_{};  // the longest answer is commands' list
+  std::array<char, 152> text_{};  // the longest answer is commands' list
   std::size_t length_ = 0;
 };
 
@@ -196,6 +197,18 @@ bool pwm(float width_us, Core& core) {  // as a pulse of that width would
   return true;
 }
 
+struct StillAirAsked {
+  StillAir air;
+  bool asked = false;
+  std::uint32_t ticks = 0;  // at the latest sample
+};
+constinit StillAirAsked still;
+
+void begin_still() {
+  still.air.begin();
+  still.asked = true;
+}
+
 void stop(Core& core) {
   const TickLock lock;
   core.on_setpoint(0);
@@ -227,10 +240,29 @@ void execute(std::string_view text, Core& core, Settings& settings) {
   if (words.verb == "identified" && number) {
     return answer(set_identified(value != 0.0f, core, settings));
   }
+  if (words.verb == "still") return begin_still();
   if (words.verb == "save") return answer(save(core, settings));
   Line().text(
       "unknown: duty rpm thrust power st pwm | arm stop status inflow mode set get stream watch "
-      "motor identified save");
+      "motor identified still save");
+}
+
+void go_on(std::uint32_t ticks, Core& core, Settings& settings) {
+  if (!still.asked || ticks == still.ticks) return;
+  still.ticks = ticks;
+  {
+    const TickLock lock;
+    const StillAir::Answer found = still.air.sample(core.estimator());
+    if (found == StillAir::Answer::measuring) return;
+    still.asked = false;
+    if (found == StillAir::Answer::found) {
+      core.take_still_power(still.air.share());
+      settings.calibration.free_air = core.calibration().free_air;
+      Line().text("still ").real(still.air.share());
+      return;
+    }
+  }
+  answer(false);
 }
 
 }  // namespace fw::esc

@@ -32,7 +32,7 @@ MotorDrive drive;
 ZeroCurrent zero;
 PulseThrottle pulses;
 ThrottleSources sources;
-std::uint32_t ticks = 0;
+volatile std::uint32_t ticks = 0;  // the main loop looks at it
 
 StreamSample sample(float raw_current_A) {
   const ThrustEstimator& found = core->estimator();
@@ -108,7 +108,7 @@ __attribute__((noinline)) void control_task() {
                      .current_A = core->bus_current_A(),
                      .speed_rpm = static_cast<std::int32_t>(core->speed_radps() / kRadps_per_rpm),
                      .flags = core->flags()});
-  ++ticks;
+  ticks = ticks + 1;
   if (stream::due()) stream::record(sample(raw_current_A));
 }
 
@@ -147,6 +147,7 @@ extern "C" void fw_main() {
   start_tick();
   for (;;) {
     stream::send();
+    go_on(ticks, *core, stored);
     const std::string_view line = serial::take_line();
     if (!line.empty()) {
       execute(line, *core, stored);
