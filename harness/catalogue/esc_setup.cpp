@@ -69,15 +69,22 @@ flight::EscParams read_esc(const lua::Table& t) {
   return e;
 }
 
-double read_still_air(const lua::Table& t, const fw::esc::Calibration& calibration) {
-  if (!t.has("still_air")) return 0.0;
-  const bool by_thrust = calibration.mode == fw::esc::Mode::thrust_by_speed ||
-                         calibration.mode == fw::esc::Mode::thrust_by_power;
-  if (!by_thrust) t.refuse("still_air", "is a thrust, and by its mode the ESC takes none");
+std::optional<flight::StillAirRun> read_still_air(const lua::Table& t,
+                                                  const fw::esc::Calibration& calibration) {
+  if (!t.has("still_air")) return {};
   if (!calibration.identified) t.refuse("still_air", "wants an ESC with a calibration");
-  const fw::esc::Range range = fw::esc::range_of(fw::esc::Mode::thrust_by_power);
-  return t.quantity("still_air", Dimension::force,
-                    lua::between(static_cast<double>(range.min), static_cast<double>(range.max)));
+  const lua::Table asked = t.table("still_air");
+  const fw::esc::Range range = fw::esc::range_of(fw::esc::Mode::thrust_by_speed);
+  flight::StillAirRun run;
+  run.thrust_N =
+      asked.quantity("thrust", Dimension::force,
+                     lua::between(static_cast<double>(range.min), static_cast<double>(range.max)));
+  run.warm_up_ns = asked.duration_ns_or("warm_up", run.warm_up_ns);
+  constexpr std::int64_t kLeast_ns = 2'000'000'000, kMost_ns = 600'000'000'000;
+  if (run.warm_up_ns < kLeast_ns || run.warm_up_ns > kMost_ns) {
+    asked.refuse("warm_up", "must be within 2 s .. 600 s");
+  }
+  return run;
 }
 
 }  // namespace whirl::catalogue

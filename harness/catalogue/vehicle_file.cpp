@@ -155,7 +155,7 @@ Result<flight::FlightParams> read_vehicle(const std::string& path, const Setting
   p.controller = controller_of(esc);
   p.esc = read_esc(esc);
   p.esc.pole_pairs = p.vehicle.motor.pole_pairs;
-  p.still_air_thrust_N = read_still_air(esc, p.esc.calibration);
+  p.still_air = read_still_air(esc, p.esc.calibration);
   if (t.has("capture")) read_capture(t.table("capture"), p.capture);
   const std::string propeller = t.text("propeller");
   if (const auto good = t.finish(); !good) return good.error();

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,14 +31,19 @@ struct FarShaft {
   std::uint16_t stage = 1;  // its power stage's number there
 };
 
+// Before a flight each ESC is told what still air takes: still_air.hpp.
+struct StillAirRun {
+  double thrust_N = 0.0;
+  std::int64_t warm_up_ns = 60'000'000'000;
+};
+
 struct FlightParams {
   std::string name;
   plant::VehicleParams vehicle;
   std::shared_ptr<const plant::Blade> blade;
   std::string controller = "esc_core";  // of each motor: the name of a ControllerType
   EscParams esc;                        // esc_core's
-  double still_air_thrust_N =
-      0.0;  // at which each is told what still air takes (still_air.hpp); 0: not
+  std::optional<StillAirRun> still_air;
   std::vector<fw::esc::Calibration>
       calibrations;                    // by motor, what came of it; empty: esc.calibration
   EscParams esc_of(int motor) const {  // its number: 1, 2...

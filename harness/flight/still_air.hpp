@@ -4,7 +4,9 @@
 //
 //   Rig      that motor, rotor and pack alone, out of ground effect, in the air over the vehicle's place: averaged
 //            motor and native core as in flight; the shunt is the one that flies
-//   Course   25 zeros, then the thrust for run_s: current's zero and winding as after a short hover
+//   Course   armed, warm_up at that thrust by speed, then `still`. Friction falls by some percent of power while grease
+//            warms up, so the vehicle takes off at once: a copy's motors begin the flight as warm as this left them.
+//            What that takes of the pack is not counted
 //   Errors   an ESC that refuses, with its motor's number: a fault of the file's thrust or calibration
 #pragma once
 #include <cstdint>
@@ -14,7 +16,7 @@
 
 namespace whirl::flight {
 
-// Does nothing where params.still_air_thrust_N is 0; else fills in params.calibrations and tells of each motor in params.drawn
+// Does nothing without params.still_air; else fills in params.calibrations and tells of each motor in params.drawn
 // what it found. Pre: draw_parts() has been here.
 Result<Done> tell_still_air(FlightParams& params, std::uint64_t seed);
 

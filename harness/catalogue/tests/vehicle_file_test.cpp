@@ -142,6 +142,28 @@ TEST(VehicleFile, CalibrationHasTheNamesOfTheImagesSet) {
   EXPECT_EQ(esc.shunt.offset_high_A, 4.3);
 }
 
+TEST(VehicleFile, StillAirIsToldToCalibratedEscsOnly) {
+  const auto with = [](const std::string& more) {
+    return read_changed("esc = {", "esc = { still_air = { thrust = '2.2 N'" + more + ",");
+  };
+  const auto params = with(", warm_up = '20 s' }, calibration = { identified = true }");
+  ASSERT_TRUE(params.ok()) << params.error().message();
+  EXPECT_EQ(params.value().still_air->thrust_N, 2.2);
+  EXPECT_EQ(params.value().still_air->warm_up_ns, 20'000'000'000);
+  EXPECT_FALSE(read_changed("esc = {", "esc = {").value().still_air);
+  const std::pair<std::string, std::string> wrong[] = {
+      {" }", "esc.still_air: wants an ESC with a calibration"},
+      {", warm_up = '1 s' }, calibration = { identified = true }",
+       "esc.still_air.warm_up: must be"},
+      {", speed = 1 }, calibration = { identified = true }", "esc.still_air.speed"}};
+  for (const auto& [more, complaint] : wrong) {
+    const auto refused = with(more);
+    ASSERT_FALSE(refused.ok()) << more;
+    EXPECT_NE(refused.error().message().find(complaint), std::string::npos)
+        << refused.error().message();
+  }
+}
+
 TEST(VehicleFile, CalibrationComesFromTheFileOfAStand) {
   const ScratchFolder folder;
   const std::string path = folder.file("esc_calibration.lua");

@@ -16,7 +16,7 @@ FlightParams by_power() {
   auto params =
       catalogue::read_vehicle(std::string(kSourceFolder) + "/test_plans/vehicles/hp_quad_st.lua");
   EXPECT_TRUE(params.ok()) << params.error().message();
-  params.value().still_air_thrust_N = 2.2;
+  params.value().still_air->warm_up_ns = 3'000'000'000;  // of the drawing: nothing warms up
   return params.value();
 }
 
@@ -64,7 +64,7 @@ TEST(StillAirOfAVehicle, FindsWhatEachPropellerTakes) {
 
 TEST(StillAirOfAVehicle, WithoutBeingAskedAllFlyWithTheFile) {
   FlightParams params = by_power();
-  params.still_air_thrust_N = 0.0;
+  params.still_air.reset();
   ASSERT_TRUE(tell_still_air(params, 1).ok());
   EXPECT_TRUE(params.calibrations.empty());
   EXPECT_EQ(params.esc_of(2).calibration.free_air.q2, params.esc.calibration.free_air.q2);
