@@ -125,7 +125,7 @@ std::optional<double> NativeEsc::take_still_air(const std::function<void()>& tic
   Answer answer = Answer::measuring;
   while (answer == Answer::measuring) {
     tick();
-    answer = air.sample(core_.estimator());
+    answer = air.sample(core_);
   }
   if (answer == Answer::refused) return {};
   core_.take_still_power(air.share());

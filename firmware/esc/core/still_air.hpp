@@ -11,7 +11,7 @@
 #pragma once
 #include <cstdint>
 
-#include "firmware/esc/core/thrust_estimator.hpp"
+#include "firmware/esc/core/core.hpp"
 
 namespace fw::esc {
 
@@ -24,9 +24,11 @@ class StillAir {
 
   void begin() { sum_ = 0.0f, calm_ms_ = all_ms_ = 0; }
 
-  Answer sample(const ThrustEstimator& estimator) {
+  Answer sample(const Core& core) {
     if (++all_ms_ > kLongest_ms) return Answer::refused;
-    if (!estimator.balanced()) {
+    const ThrustEstimator& estimator = core.estimator();
+    // Of a bridge that is off, the balance is what it was last.
+    if (!core.drive().energised || !estimator.balanced()) {
       begin_again();
       return Answer::measuring;
     }

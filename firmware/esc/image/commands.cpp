@@ -252,7 +252,7 @@ void go_on(std::uint32_t ticks, Core& core, Settings& settings) {
   still.ticks = ticks;
   {
     const TickLock lock;
-    const StillAir::Answer found = still.air.sample(core.estimator());
+    const StillAir::Answer found = still.air.sample(core);
     if (found == StillAir::Answer::measuring) return;
     still.asked = false;
     if (found == StillAir::Answer::found) {

@@ -27,7 +27,7 @@ Answer ask(AirBench& bench, double thrust, StillAir& air, int* ms = nullptr) {
   for (int i = 1; i <= StillAir::kLongest_ms + 10; ++i) {
     bench.hold(thrust, 1);
     if (ms != nullptr) *ms = i;
-    if (const Answer answer = air.sample(bench.core.estimator()); answer != Answer::measuring) {
+    if (const Answer answer = air.sample(bench.core); answer != Answer::measuring) {
       return answer;
     }
   }
@@ -80,6 +80,7 @@ TEST(StillAir, WhatNoAirTakesGoesIntoTheShare) {
   EXPECT_TRUE(near(air.share(), 1.03, stated(0.003, "gaps of the bench")));
   bench.core.take_still_power(air.share());
   bench.hold(2.4, 1000);
+  EXPECT_TRUE(near(bench.core.estimator().power_ratio(), 1.0, stated(0.002, "nothing in excess")));
   ASSERT_EQ(ask(bench, 2.4, air), Answer::found);
   EXPECT_TRUE(near(air.share(), 1.0, stated(0.001, "the same rotor")));
 }
@@ -95,6 +96,10 @@ TEST(StillAir, RefusesWhatNoCopyTakesAndWhereTheBalanceDoesNotHold) {
   int ms = 0;
   EXPECT_EQ(ask(stands, 0.0, air, &ms), Answer::refused);
   EXPECT_EQ(ms, StillAir::kLongest_ms + 1);
+  AirBench stopped(told_too_much(0.97f));
+  stopped.start(2.4);
+  stopped.hold(0.0, 1);
+  EXPECT_EQ(ask(stopped, 0.0, air, &ms), Answer::refused);  // whatever was last
   Calibration slow = calibrated(Mode::thrust_by_power);
   slow.power.to_radps = 300.0f;
   AirBench beyond(slow);
@@ -118,7 +123,7 @@ TEST(StillAir, AStepOfThrustIsNoCalmSecond) {
   while (answer == Answer::measuring) {
     bench.hold(ms < 700 ? 2.4 : 3.2, 1);
     ++ms;
-    answer = air.sample(bench.core.estimator());
+    answer = air.sample(bench.core);
   }
   EXPECT_EQ(answer, Answer::found);
   EXPECT_GT(ms, 1700);

@@ -62,6 +62,26 @@ TEST(StillAirOfAVehicle, FindsWhatEachPropellerTakes) {
   EXPECT_EQ(copy.esc_of(4).calibration.free_air.q2, copy.calibrations[3].free_air.q2);
 }
 
+// A motor that warms up: the flight begins where the warm-up ended, and what was told is of a warm one.
+TEST(StillAirOfAVehicle, TheFlightBeginsAsWarmAsTheWarmUpEnded) {
+  double share[2] = {}, start_K[2] = {};
+  for (const int longer : {0, 1}) {
+    FlightParams params = by_power();
+    params.vehicle.motor.heat_capacity_JpK = 20.0;
+    params.vehicle.motor.bearing_share = 0.3;
+    params.vehicle.motors.assign(4, params.vehicle.motor);
+    params.still_air->warm_up_ns = longer ? 20'000'000'000 : 3'000'000'000;
+    const auto told = tell_still_air(params, 1);
+    ASSERT_TRUE(told.ok()) << told.error().message();
+    EXPECT_EQ(params.calibrations[1].mode, fw::esc::Mode::thrust_by_power);
+    share[longer] = found(params, 1);
+    start_K[longer] = params.vehicle.motors[1].start_temp_K;
+  }
+  EXPECT_GT(start_K[0], plant::MotorParams{}.ambient_temp_K + 0.5);
+  EXPECT_GT(start_K[1], start_K[0] + 3.0);
+  EXPECT_LT(share[1], share[0] - 0.005);  // its grease is thinner
+}
+
 TEST(StillAirOfAVehicle, WithoutBeingAskedAllFlyWithTheFile) {
   FlightParams params = by_power();
   params.still_air.reset();
