@@ -196,7 +196,8 @@ inline Seen on_one_bus(const Script& script) {
   return seen;
 }
 
-struct Board : Place {
+// Not `Board`: that is the virtual board itself, in this namespace.
+struct BoardOnBus : Place {
   WireEnds ends{
       {events, [this](const io::Finding& f) { findings.push_back(f); }, [this] { closed = true; }}};
   void step(Nanoseconds from, Nanoseconds to) { wired_step(events, ends, from, to, closed); }
@@ -217,7 +218,7 @@ class ThreeBoards {
       boards_[kBoard_of[deed.node]].plan(deed, *scribes_[deed.node]);
     }
   }
-  Board& board(std::size_t number) { return boards_[number]; }
+  BoardOnBus& board(std::size_t number) { return boards_[number]; }
   io::BoardWire& wire(std::size_t number) { return wires_[number - 1]; }
 
   // All but that one stand, for what it would say.
@@ -243,7 +244,7 @@ class ThreeBoards {
   Seen seen() {
     run(0, grains_);
     Seen seen;
-    for (Board& board : boards_) board.ends.run_ends(grains_ * kGrain_ns);
+    for (BoardOnBus& board : boards_) board.ends.run_ends(grains_ * kGrain_ns);
     add(boards_[0], scribes_, seen);
     for (int b = 1; b < 3; ++b) add(boards_[b], {}, seen);
     return seen;
@@ -251,7 +252,7 @@ class ThreeBoards {
 
  private:
   int grains_;
-  Board boards_[3];
+  BoardOnBus boards_[3];
   std::deque<io::BoardWire> wires_;
   std::vector<Scribe*> scribes_;
 };
