@@ -38,14 +38,14 @@ std::vector<MotorParams> motors_of(const VehicleParams& params) {
   return params.motors;
 }
 
+}  // namespace
+
 ShaftLoad shaft_load(const RotorLoads& loads, double at_speed_radps) {
   const double torque = loads.shaft_torque_Nm;
   const bool brakes = torque * at_speed_radps > 0.0;
   if (!brakes || std::abs(at_speed_radps) < kFewTurns_radps) return {0.0, torque};
   return {torque / (at_speed_radps * std::abs(at_speed_radps)), 0.0};
 }
-
-}  // namespace
 
 struct Vehicle::Parts {
   Parts(const VehicleParams& vehicle, RotorSet rotor_set, std::unique_ptr<Powertrain> shafts_of,

@@ -31,6 +31,9 @@ namespace whirl::plant {
 class Blade;             // plant/rotor/blade.hpp
 struct RotorConditions;  // plant/rotor/rotor.hpp
 struct RotorLoads;
+// What these loads, of a rotor at that speed, are to its shaft until the next ones: they follow the square of speed.
+ShaftLoad shaft_load(const RotorLoads& loads, double at_speed_radps);
+
 using RotorStep = std::function<RotorLoads(const RotorConditions& conditions, double dt_s)>;
 using RotorSet = std::vector<RotorStep>;
 

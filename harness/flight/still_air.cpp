@@ -15,7 +15,6 @@ namespace {
 constexpr std::int64_t kTick_ns = 1'000'000;
 constexpr double kTick_s = 1e-3;
 constexpr int kZeros_ms = 600, kSet_point_ms = 20;
-constexpr double kFewTurns_radps = 1.0;  // below, no torque is worth its name
 
 // By its map alone: an ESC that does not know still air's power yet takes it for a wind.
 EscParams by_speed(EscParams esc) {
@@ -50,11 +49,9 @@ class Rig {
   double winding_temperature_K() const { return state_.motors[0].winding_temperature_K; }
   void tick() {
     powertrain_.command(0, esc_.step(now_ns_, state_.motors[0], state_.bus_voltage_V));
-    const double w = powertrain_.speed_radps(0);
-    conditions_.omega_radps = w;
-    const double torque_Nm = rotor_(conditions_, kTick_s).shaft_torque_Nm;
+    conditions_.omega_radps = powertrain_.speed_radps(0);
     const plant::ShaftLoad load =
-        w > kFewTurns_radps ? plant::ShaftLoad{torque_Nm / (w * w), 0.0} : plant::ShaftLoad{};
+        plant::shaft_load(rotor_(conditions_, kTick_s), conditions_.omega_radps);
     powertrain_.set_loads({&load, 1});
     powertrain_.step(kTick_s, state_);
     now_ns_ += kTick_ns;

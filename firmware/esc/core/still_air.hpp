@@ -22,7 +22,10 @@ class StillAir {
   static constexpr std::uint16_t kMean_ms = 1000, kLongest_ms = 5000;
   static constexpr float kMost_off = 0.15f;
 
-  void begin() { sum_ = 0.0f, calm_ms_ = all_ms_ = 0; }
+  void begin() {
+    all_ms_ = 0;
+    begin_again();
+  }
 
   Answer sample(const Core& core) {
     if (++all_ms_ > kLongest_ms) return Answer::refused;

@@ -248,21 +248,20 @@ void execute(std::string_view text, Core& core, Settings& settings) {
 }
 
 void go_on(std::uint32_t ticks, Core& core, Settings& settings) {
+  using Answer = StillAir::Answer;
   if (!still.asked || ticks == still.ticks) return;
   still.ticks = ticks;
+  Answer said = Answer::measuring;
   {
     const TickLock lock;
-    const StillAir::Answer found = still.air.sample(core);
-    if (found == StillAir::Answer::measuring) return;
-    still.asked = false;
-    if (found == StillAir::Answer::found) {
-      core.take_still_power(still.air.share());
-      settings.calibration.free_air = core.calibration().free_air;
-      Line().text("still ").real(still.air.share());
-      return;
-    }
+    said = still.air.sample(core);
+    if (said == Answer::found) core.take_still_power(still.air.share());
   }
-  answer(false);
+  if (said == Answer::measuring) return;
+  still.asked = false;
+  if (said == Answer::refused) return answer(false);
+  settings.calibration.free_air = core.calibration().free_air;
+  Line().text("still ").real(still.air.share());
 }
 
 }  // namespace fw::esc

@@ -82,6 +82,21 @@ TEST(StillAirOfAVehicle, TheFlightBeginsAsWarmAsTheWarmUpEnded) {
   EXPECT_LT(share[1], share[0] - 0.005);  // its grease is thinner
 }
 
+// Whether an ESC would take what it does not know yet for a wind does not matter to the rig, which is run by speed.
+TEST(StillAirOfAVehicle, AnEscThatWouldTellAWindRunsNoFaster) {
+  double start_K[2] = {};
+  for (const int tells : {0, 1}) {
+    FlightParams params = by_power();
+    params.esc.calibration.shared_power = tells ? 0.97f : 0.5f;
+    params.vehicle.motor.heat_capacity_JpK = 20.0;
+    params.vehicle.motors.assign(4, params.vehicle.motor);
+    params.vehicle.airframe.rotors[0].torque_error = -0.1;
+    ASSERT_TRUE(tell_still_air(params, 1).ok());
+    start_K[tells] = params.vehicle.motors[0].start_temp_K;
+  }
+  EXPECT_EQ(start_K[0], start_K[1]);
+}
+
 TEST(StillAirOfAVehicle, WithoutBeingAskedAllFlyWithTheFile) {
   FlightParams params = by_power();
   params.still_air.reset();
