@@ -74,11 +74,9 @@ std::optional<flight::StillAirRun> read_still_air(const lua::Table& t,
   if (!t.has("still_air")) return {};
   if (!calibration.identified) t.refuse("still_air", "wants an ESC with a calibration");
   const lua::Table asked = t.table("still_air");
-  const fw::esc::Range range = fw::esc::range_of(fw::esc::Mode::thrust_by_speed);
+  const io::EscRange range = io::range_of(io::EscMode::thrust_by_rpm);
   flight::StillAirRun run;
-  run.thrust_N =
-      asked.quantity("thrust", Dimension::force,
-                     lua::between(static_cast<double>(range.min), static_cast<double>(range.max)));
+  run.thrust_N = asked.quantity("thrust", Dimension::force, lua::between(range.min, range.max));
   run.warm_up_ns = asked.duration_ns_or("warm_up", run.warm_up_ns);
   constexpr std::int64_t kLeast_ns = 2'000'000'000, kMost_ns = 600'000'000'000;
   if (run.warm_up_ns < kLeast_ns || run.warm_up_ns > kMost_ns) {

@@ -151,6 +151,12 @@ TEST(VehicleFile, StillAirIsToldToCalibratedEscsOnly) {
   EXPECT_EQ(params.value().still_air->thrust_N, 2.2);
   EXPECT_EQ(params.value().still_air->warm_up_ns, 20'000'000'000);
   EXPECT_FALSE(read_changed("esc = {", "esc = {").value().still_air);
+  for (const char* end : {"0.8 N", "8 N"}) {  // of the mode's range
+    EXPECT_TRUE(read_changed("esc = {", "esc = { still_air = { thrust = '" + std::string(end) +
+                                            "' }, calibration = { identified = true },")
+                    .ok())
+        << end;
+  }
   const std::pair<std::string, std::string> wrong[] = {
       {" }", "esc.still_air: wants an ESC with a calibration"},
       {", warm_up = '1 s' }, calibration = { identified = true }",
