@@ -16,7 +16,8 @@ namespace {
 
 namespace mpu = whirl::core::mpu;
 
-constexpr std::uint32_t kStatus_us = 10'000, kStatus_on_can_us = 50'000;
+constexpr std::uint32_t kStatus_us = 10'000,
+                        kStatus_on_can_us = 30'000;  // of the newest 32 samples, 1 ms each
 constexpr std::uint8_t kFrozen = 1, kNo_supply = 2;
 constexpr std::uint8_t kSample_bytes = 16, kFault_bytes = 2;
 constexpr std::uint8_t kTold[] = {mpu::PWR_MGMT_1,  mpu::CONFIG,       mpu::SMPLRT_DIV,

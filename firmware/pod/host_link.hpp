@@ -1,4 +1,5 @@
-// The host's frames, and the status that goes back: 100 times a second over the UART, 20 over CAN.
+// The host's frames, and the status that goes back: each 10 ms over the UART, each 30 ms over CAN: its flags
+// are of the newest 32 samples, so that each is told of.
 //
 //   Ways     UART and CAN are heard alike; what the pod tells goes where the host spoke last
 //   Read     from the main loop, more often than the UART's ring of 256 bytes wraps (0.85 ms)

@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <optional>
+#include <string>
 
 #include "io_bridges/board_description/board_description.hpp"
 
@@ -19,6 +20,12 @@ inline std::optional<int> can_of_host(const BoardDevice& host) {
   const auto can = host.value("params.can");
   if (!can || *can == KeyValue(0.0)) return std::nullopt;
   return static_cast<int>(std::get<double>(*can));
+}
+
+// The bus that a device hangs on: its own key, or of a host whose link is on CAN that one ("can2").
+inline std::string bus_of(const BoardDevice& device) {
+  const auto can = is_pod_host(device) ? can_of_host(device) : std::nullopt;
+  return can ? "can" + std::to_string(*can) : device.bus;
 }
 
 }  // namespace whirl

@@ -31,8 +31,7 @@ CanRack::CanRack(int bus, double rate_Hz, std::uint64_t seed, FrameSink heard)
 }
 
 bool CanRack::carries(const BoardDevice& device) const {
-  if (is_pod_host(device)) return can_of_host(device) == number_;
-  return device.bus == "can" + std::to_string(number_);
+  return bus_of(device) == "can" + std::to_string(number_);
 }
 
 void CanRack::give(const io::CanFrame& frame) {

@@ -1,6 +1,7 @@
 #include "io_bridges/protocols/dronecan/pod_link.hpp"
 
 #include <algorithm>
+#include <bit>
 
 #include "base/check.hpp"
 #include "io_bridges/protocols/crc.hpp"
@@ -71,6 +72,17 @@ PodStatus pod_status(std::span<const std::uint8_t> payload) {
 }
 
 }  // namespace
+
+void PodFlags::add(const PodStatus& status) {
+  constexpr unsigned kTold = 32;
+  const unsigned came = begun_ ? static_cast<std::uint8_t>(status.newest_sample - newest_) : 0;
+  begun_ = true;
+  newest_ = status.newest_sample;
+  const unsigned told = std::min(came, kTold);
+  untold_ += came - told;
+  const std::uint64_t of_these = (std::uint64_t{1} << told) - 1;
+  flagged_ += static_cast<std::uint64_t>(std::popcount(status.flagged & of_these));
+}
 
 std::vector<std::uint8_t> pack_pod_sample(std::uint8_t sequence, std::uint16_t time_us,
                                           const std::array<std::int16_t, 7>& counts) {

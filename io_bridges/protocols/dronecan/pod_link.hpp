@@ -40,6 +40,20 @@ struct PodStatus {
   std::uint16_t wait_us = 0;  // the longest of a sample for its time, of the last whole second
 };
 
+// What the statuses have marked of the samples, each sample once. A status tells of the newest 32: where more have come since the
+// one before, the older ones stand in none. Valid: fewer than 256 samples from status to status.
+class PodFlags {
+ public:
+  void add(const PodStatus& status);
+  std::uint64_t flagged() const { return flagged_; }  // lost or late
+  std::uint64_t untold() const { return untold_; }
+
+ private:
+  bool begun_ = false;
+  std::uint8_t newest_ = 0;
+  std::uint64_t flagged_ = 0, untold_ = 0;
+};
+
 std::vector<std::uint8_t> pack_pod_sample(std::uint8_t sequence, std::uint16_t time_us,
                                           const std::array<std::int16_t, 7>& counts);
 std::vector<std::uint8_t> pack_pod_faults(std::uint8_t sequence, bool frozen, bool no_supply,

@@ -116,6 +116,28 @@ TEST(PodLink, AStatusIsReadFieldByField) {
   EXPECT_EQ(s.wait_us, 0x109);
 }
 
+TEST(PodFlags, EachSampleCountsOnceAndWhatNoStatusTellsIsCounted) {
+  PodFlags flags;
+  const auto add = [&flags](std::uint8_t newest, std::uint32_t marked) {
+    PodStatus status;
+    status.newest_sample = newest;
+    status.flagged = marked;
+    flags.add(status);
+  };
+  add(250, 0xFFFFFFFF);  // of before: nobody asks
+  EXPECT_EQ(flags.flagged(), 0u);
+  add(250, 0xFFFFFFFF);  // nothing new
+  EXPECT_EQ(flags.flagged(), 0u);
+  add(4, 0x00000E01);  // ten are new: bits 0 to 9
+  EXPECT_EQ(flags.flagged(), 2u);
+  add(36, 0x80000001);  // 32
+  EXPECT_EQ(flags.flagged(), 4u);
+  EXPECT_EQ(flags.untold(), 0u);
+  add(86, 0x80000000);  // 50: 18 of them stand nowhere
+  EXPECT_EQ(flags.flagged(), 5u);
+  EXPECT_EQ(flags.untold(), 18u);
+}
+
 TEST(PodLink, AFlippedBitAnywhereCostsThatFrameOnly) {
   for (std::size_t at = 1; at < kStatusFrame.size(); ++at) {
     if (at == 3) continue;  // a wrong length swallows what follows, too

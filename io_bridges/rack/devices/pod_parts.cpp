@@ -6,8 +6,9 @@
 //   Air     PROM at the start and once a second, then pressure and temperature by turns, at the finest oversampling
 //   Field   75 Hz at 1.3 Ga, each measurement as it is placed; the pod does not tell how the part is set
 //   Line    a sample goes at once; what is slow follows the next one, so that no sample waits for it
-//   Asked   figures by their names, as of pod_replay; `spi_*` are of how long answers on the pod's SPI had stood in
-//           DR when their first bit went out, by byte: the first of a transfer, and the others
+//   Asked   figures by their names, as of pod_replay; `pod_flagged` are samples that a status has marked as lost or late,
+//           `pod_untold` those that came between two statuses and stand in neither's 32; `spi_*` are of how long
+//           answers on the pod's SPI had stood in DR when their first bit went out, by byte: the first of a transfer, and the others
 //   Faults  of the parts, by their data (pod_faults.hpp); an IMU's other identity and its loss of supply the pod itself plays,
 //           told at most 10 ms later. Those of a wire are the controller's side's
 #include <optional>
@@ -147,6 +148,7 @@ class PodPartsDevice final : public RackDevice {
 
   void told(const io::PodStatus& status) {
     status_ = status;
+    flags_.add(status);
     if (!started_) return;
     for (std::size_t i = 0; i < kSettings.size(); ++i) {
       if (settings_[i] == status.settings[i]) continue;
@@ -263,6 +265,8 @@ class PodPartsDevice final : public RackDevice {
     const auto whole = [](auto value) { return static_cast<std::int64_t>(value); };
     const io::SpiSlack slack = slave_ == nullptr ? io::SpiSlack{} : slave_->slack();
     return {{"samples", whole(samples_)},
+            {"pod_flagged", whole(flags_.flagged())},
+            {"pod_untold", whole(flags_.untold())},
             {"setpoints", whole(escs_.setpoints())},
             {"setpoints_refused", whole(escs_.refused())},
             {"spi_first_bytes", whole(slack.first.bytes)},
@@ -280,6 +284,7 @@ class PodPartsDevice final : public RackDevice {
   PodReceivers receivers_;
   const io::SpiSlave* slave_;
   io::PodStatus status_;
+  io::PodFlags flags_;
   InertialSensor motion_;
   SensedAir air_;
   SensedField field_;

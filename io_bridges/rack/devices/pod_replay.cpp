@@ -23,7 +23,7 @@ namespace {
 
 constexpr Nanoseconds kBehind_ns = 2'000'000;  // the replay's clock after the recording's
 // When the controller would do without a data-ready, and how long the pod's last status may be off: it tells
-// 100 times a second over the UART, 20 over CAN, where a sample is three frames behind one of others.
+// each 10 ms over the UART, each 30 ms over CAN, where a sample is three frames behind one of others.
 struct Patience {
   Nanoseconds ready_ns, status_ns;
 };
