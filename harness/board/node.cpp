@@ -51,6 +51,10 @@ std::optional<int> can_of_host(const BoardDescription& board) {
   return host == nullptr ? std::nullopt : can_of_host(*host);
 }
 
+std::string device_bus(const BoardDevice& device) {
+  return bus_of(device);
+}
+
 std::string timing_profile(const std::vector<Node>& nodes) {
   std::string all;
   for (const Node& node : nodes) {

@@ -40,6 +40,8 @@ bool plays_parts(const BoardDescription& board);
 std::set<std::string> pod_parts(const BoardDescription& board);
 // The CAN bus that such a board's host is on; nothing: it is on a serial line.
 std::optional<int> can_of_host(const BoardDescription& board);
+// The bus that a device hangs on: "i2c3"; of a pod's host on CAN that one, which is a parameter of it.
+std::string device_bus(const BoardDevice& device);
 
 // In words: which clock each board's time passes by.
 std::string timing_profile(const std::vector<Node>& nodes);

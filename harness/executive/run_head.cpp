@@ -1,7 +1,6 @@
 // What a run's file of messages begins with.
 #include "harness/executive/run.hpp"
 #include "harness/lockstep/lockstep.hpp"
-#include "io_bridges/board_description/pod_host.hpp"
 
 namespace whirl {
 
@@ -21,7 +20,7 @@ results::RunHead run_head(const plan::Plan& plan, const std::vector<Node>& nodes
     named.name = node.name;
     for (const BoardDevice& device : node.board.devices) {
       named.devices.push_back(device.name);
-      named.buses.push_back(bus_of(device));
+      named.buses.push_back(device_bus(device));
       if (device.type == "pulse_source") named.throttles.push_back(device.motor);
     }
     named.bauds_Hz = node.board.bauds_Hz();

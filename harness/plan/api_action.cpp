@@ -8,7 +8,6 @@
 #include "harness/plan/requests.hpp"
 #include "harness/plan/values.hpp"
 #include "io_bridges/board_description/bus_name.hpp"
-#include "io_bridges/board_description/pod_host.hpp"
 
 namespace whirl::plan {
 namespace {
@@ -77,7 +76,7 @@ fault_at::Device device_at(lua_State* L, const std::string& name, const BoardDes
   if (device == nullptr) raise(L, "unknown device '" + name + "' on " + board.name);
   // One on a pin ("PA10") has its number on the board alone.
   const bool on_pin = device->bus.starts_with('P');
-  const int bus = on_pin ? -1 : named_bus(L, bus_of(*device));
+  const int bus = on_pin ? -1 : named_bus(L, device_bus(*device));
   return {name, bus, device->address != -1 ? device->address : board.number(name), device->motor};
 }
 
@@ -131,7 +130,8 @@ FaultPlace place_of_fault(lua_State* L, const lua::Table& asked, const std::stri
 void refuse_on_joined(lua_State* L, const FaultSpec& fault, const Node& node) {
   if (!fault.kind.starts_with("can_")) return;
   std::string bus = target_of(fault);
-  if (std::holds_alternative<fault_at::Device>(fault.place)) bus = bus_of(*node.board.find(bus));
+  if (std::holds_alternative<fault_at::Device>(fault.place))
+    bus = device_bus(*node.board.find(bus));
   const auto joined = node.joined.find(bus);
   if (joined == node.joined.end()) return;
   raise(L, node.name + "/" + bus + " is part of " + joined->second,

@@ -6,7 +6,6 @@
 #include "harness/plan/raise.hpp"
 #include "harness/plan/timing_window.hpp"
 #include "io_bridges/board_description/bus_name.hpp"
-#include "io_bridges/board_description/pod_host.hpp"
 
 namespace whirl::plan {
 namespace {
@@ -68,7 +67,7 @@ void read_place(lua_State* L, Script& self, const lua::Table& given, CanWindow& 
     raise(L, "'" + text + "' is part of " + joined.at(at.rest),
           "bus = \"" + joined.at(at.rest) + "\"");
   }
-  const auto on_it = [&at](const BoardDevice& device) { return bus_of(device) == at.rest; };
+  const auto on_it = [&at](const BoardDevice& device) { return device_bus(device) == at.rest; };
   if (std::none_of(board.devices.begin(), board.devices.end(), on_it)) {
     raise(L, "no device of " + board.name + " is on " + at.rest);
   }

@@ -112,6 +112,36 @@ TEST(CanWindows, ABusThatAnotherBoardArbitratesIsNamedThere) {
   }
 }
 
+// It names no bus of its own.
+TEST(CanWindows, AndFaultsTakeThePodsHostForANodeOfItsBus) {
+  Scenario s = with_two_signals(
+      "t:fault { kind = 'can_late', device = 'host', value = '1 ms' }"
+      "t:can { bus = 'can2', from = 'host', during = '20 ms' } t:wait '30 ms'");
+  s.other_devices.push_back({.name = "host", .bus = "", .host_on_can = 2});
+  s.board_faults.emplace_back("can_late", true);
+  int bus = 0, number = -1;
+  s.on_fault = [&](const io::FaultCommand& fault) {
+    bus = fault.bus;
+    number = fault.address;
+  };
+  add_frame(s, 5 * kMs, kStatus, 3);
+  add_frame(s, 6 * kMs, kStatus, -1, 3);  // the microcontroller's
+  EXPECT_EQ(only(s).name, "can2 host errors");
+  EXPECT_EQ(only(s).measured, 0.0);
+  EXPECT_TRUE(passes(s));
+  EXPECT_EQ(bus, 2);
+  EXPECT_EQ(number, 3);  // behind the three that each board of these has
+  for (const auto& [lua, words] : std::vector<std::pair<std::string, std::string>>{
+           {"t:can { bus = 'can1', from = 'host' }", "no device of"},
+           {"t:fault { kind = 'can_cut', device = 'host' }", "can2 is part of fc/can1"}}) {
+    Scenario wrong = with_two_signals(lua);
+    wrong.other_devices = s.other_devices;
+    wrong.joined = {{"can2", "fc/can1"}};
+    const results::Report report = report_of(wrong);
+    EXPECT_NE(report.reason.find(words), std::string::npos) << lua << ": " << report.reason;
+  }
+}
+
 TEST(CanWindows, LatencyEndsWithTheFrameOfTheSetPoints) {
   Scenario s = on_can(
       "t:latency { from = 'imu', through = { 'fw::task' }, to = 'esc_a', at_most = '2 ms', during "

@@ -174,6 +174,10 @@ BoardDescription board_of(const Scenario& scenario) {
     device.bus = other.bus;
     device.address = other.address;
     device.motor = other.motor;
+    if (other.host_on_can != 0) {
+      device.type = "pod_parts";
+      device.keys["params.can"] = static_cast<double>(other.host_on_can);
+    }
     board.devices.push_back(device);
   }
   board.watch = scenario.functions;

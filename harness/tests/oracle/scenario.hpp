@@ -121,6 +121,7 @@ struct Message {
 struct OtherDevice {
   std::string name, bus;
   int address = -1, motor = 0;
+  int host_on_can = 0;  // the host of a pod, which is on that bus by a parameter
 };
 
 struct Line {  // said by the firmware, so long after it was asked

@@ -72,8 +72,8 @@ end
 -- All of its sensors are the pod's, a GPS and a receiver with SBUS as well: characters pass between the boards' UARTs, each in
 -- the time that it takes. Outdoors nothing but the GPS tells where it is, and nothing but the receiver flies it; each is
 -- shown by being there, and by its wire being cut. Limits of a hover by GPS: test_plans/flight/include/judged_gps.lua,
--- for a sixth of the time.
-function pod_receivers(name, board)
+-- for a sixth of the time. `windows`: on the link of the pod's host.
+function pod_receivers(name, board, windows)
   local receivers = sensors()
   receivers[4] = { from = "flight.gps", to = "pod.usart6", fastest = "57600 baud" }
   receivers[5] = { from = "flight.sbus", to = "pod.usart2", fastest = "100000 baud" }
@@ -93,6 +93,7 @@ function pod_receivers(name, board)
       t:wait "4 s"
       t:command { rc = { arm = true } }
       t:within("2 s", function(s) return s.told_armed == 1 end, "armed by the switch")
+      if windows then windows(t) end
       t:budget("flight/fw::gps_task") { execution = "200 us", response = "500 us" }
       t:wait "2 s"
 
