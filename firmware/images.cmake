@@ -49,7 +49,7 @@ target_compile_definitions(flight_st PRIVATE FW_ESC_MODE=thrust_by_power)
 include(${PROJECT_SOURCE_DIR}/io_bridges/devices/core/sources.cmake)
 list(TRANSFORM WHIRL_CORE_SOURCES PREPEND ${PROJECT_SOURCE_DIR}/io_bridges/devices/core/)
 fw_image(pod FLASH 32 RAM 8 FOLDER . SOURCES images/pod.cpp pod/pod_time.cpp pod/spi_slave.cpp pod/imu.cpp pod/host_uart.cpp
-         pod/host_link.cpp pod/ram_vectors.cpp pod/i2c_slave.cpp pod/sensors.cpp pod/escs.cpp pod/gps_out.cpp pod/receiver_out.cpp pod/host_can.cpp hal/clock.cpp hal/can_link.cpp ${WHIRL_CORE_SOURCES})
+         pod/host_link.cpp pod/ram_vectors.cpp pod/i2c_slave.cpp pod/sensors.cpp pod/escs.cpp pod/played_line.cpp pod/battery_out.cpp pod/receiver_out.cpp pod/host_can.cpp hal/clock.cpp hal/can_link.cpp ${WHIRL_CORE_SOURCES})
 target_compile_definitions(pod PRIVATE FW_CRYSTAL_MHZ=8)
 foreach(image hardfault silent sleeper starved)
   fw_image(${image} FLASH 4 RAM 1 FOLDER images SOURCES images/${image}.cpp)

@@ -29,8 +29,9 @@ struct RCC {
                                  CCMDATARAMEN = bit(20), DMA1EN = bit(21), DMA2EN = bit(22);
   static constexpr std::uint32_t TIM2EN = bit(0), TIM4EN = bit(2), TIM5EN = bit(3), TIM6EN = bit(4),
                                  TIM7EN = bit(5), SPI3EN = bit(15), USART2EN = bit(17),
-                                 I2C1EN = bit(21), I2C2EN = bit(22), I2C3EN = bit(23),
-                                 CAN1EN = bit(25), CAN2EN = bit(26), PWREN = bit(28);
+                                 USART3EN = bit(18), I2C1EN = bit(21), I2C2EN = bit(22),
+                                 I2C3EN = bit(23), CAN1EN = bit(25), CAN2EN = bit(26),
+                                 PWREN = bit(28), DACEN = bit(29);
   static constexpr std::uint32_t TIM1EN = bit(0), USART1EN = bit(4), USART6EN = bit(5),
                                  ADC1EN = bit(8), SPI1EN = bit(12), SYSCFGEN = bit(14);
   static constexpr std::uint32_t SPI1RST = bit(12);
@@ -90,6 +91,13 @@ struct ADC1 {
   using CCR = Reg32<base + 0x304>;  // common to the three converters
   static constexpr std::uint32_t EOC = bit(1), ADON = bit(0), SWSTART = bit(30);
   static constexpr std::uint32_t SMP_56 = 3u, ADCPRE_DIV4 = 1u << 16;
+};
+
+struct DAC {
+  static constexpr std::uint32_t base = 0x4000'7400;
+  using CR = Reg32<base + 0x00>;
+  using DHR12R1 = Reg32<base + 0x08>;
+  static constexpr std::uint32_t EN1 = bit(0);
 };
 
 struct SYSCFG {
@@ -162,6 +170,7 @@ struct Usart {
 };
 using USART1 = Usart<0x4001'1000>;
 using USART2 = Usart<0x4000'4400>;
+using USART3 = Usart<0x4000'4800>;
 using USART6 = Usart<0x4001'1400>;
 
 // bxCAN; its registers: hal/bxcan_registers.hpp. The filters of both are CAN1's.
@@ -221,6 +230,8 @@ using Spi3RxDma = DmaStream<kDma1, 0>;    // channel 0
 using Spi3TxDma = DmaStream<kDma1, 7>;    // channel 0
 using I2c3RxDma = DmaStream<kDma1, 2>;    // channel 3
 using I2c2RxDma = DmaStream<kDma1, 3>;    // channel 7
+using Usart3RxDma = DmaStream<kDma1, 1>;  // channel 4
+using Usart3TxDma = DmaStream<kDma1, 3>;  // channel 4
 using Usart2RxDma = DmaStream<kDma1, 5>;  // channel 4
 using Usart2TxDma = DmaStream<kDma1, 6>;  // channel 4
 using Spi1RxDma = DmaStream<kDma2, 0>;    // channel 3

@@ -12,9 +12,12 @@
 //                 0x08 its baud rate (u32)
 //                 0x09 SBUS: 22 bytes of channels as on the line, flags (bit 7: nothing goes out)
 //                 0x0A CPPM: at most 16 x u16, lengths in 0.5 us; none: nothing goes out
+//                 0x0B bytes of the radio, as of the GPS      0x0C its baud rate (u32)
+//                 0x0D the battery's level at the ADC: u16, of 4095
 //   Pod to host   0x81 status, see host_link.hpp
 //                 0x82 a set-point came: number 0..3, 1: valid, value (u16)
 //                 0x83 bytes that the GPS was told: when the pod tells it (u32, us), at most 44
+//                 0x84 bytes that the radio was told, likewise
 //   Bytes         integers low byte first
 #pragma once
 #include <array>
@@ -39,9 +42,13 @@ enum class FrameKind : std::uint8_t {
   gps_baud = 0x08,
   sbus = 0x09,
   cppm = 0x0A,
+  radio = 0x0B,
+  radio_baud = 0x0C,
+  battery = 0x0D,
   status = 0x81,
   setpoint = 0x82,
   gps_written = 0x83,
+  radio_written = 0x84,
 };
 
 struct Frame {

@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <array>
 
+#include "firmware/pod/battery_out.hpp"
 #include "firmware/pod/escs.hpp"
-#include "firmware/pod/gps_out.hpp"
 #include "firmware/pod/host_can.hpp"
 #include "firmware/pod/host_uart.hpp"
 #include "firmware/pod/imu.hpp"
+#include "firmware/pod/played_line.hpp"
 #include "firmware/pod/receiver_out.hpp"
 #include "firmware/pod/sensors.hpp"
 
@@ -19,10 +20,20 @@ namespace mpu = whirl::core::mpu;
 constexpr std::uint32_t kStatus_us = 10'000,
                         kStatus_on_can_us = 30'000;  // of the newest 32 samples, 1 ms each
 constexpr std::uint8_t kFrozen = 1, kNo_supply = 2;
-constexpr std::uint8_t kSample_bytes = 16, kFault_bytes = 2;
+constexpr std::uint8_t kSample_bytes = 16, kFault_bytes = 2, kBaud_bytes = 4, kLevel_bytes = 2;
 constexpr std::uint8_t kTold[] = {mpu::PWR_MGMT_1,  mpu::CONFIG,       mpu::SMPLRT_DIV,
                                   mpu::GYRO_CONFIG, mpu::ACCEL_CONFIG, mpu::INT_ENABLE,
                                   mpu::INT_PIN_CFG, mpu::USER_CTRL};
+
+// What a frame says to a line of its kinds; others say nothing to it.
+template <typename Line>
+void play(const Frame& frame, FrameKind bytes, FrameKind baud, Line& line) {
+  constexpr std::size_t kTime = 4;
+  if (frame.kind == bytes && frame.length > kTime && frame.length <= kTime + kLinePiece) {
+    line.add(frame.whole(0), frame.bytes(kTime));
+  }
+  if (frame.kind == baud && frame.length == kBaud_bytes) line.add_baud(frame.whole(0));
+}
 
 }  // namespace
 
@@ -49,7 +60,8 @@ void HostLink::poll(std::uint32_t now_us) {
   }
   host_can.poll(now_us);
   send_setpoints();
-  send_gps_written(now_us);
+  send_written(FrameKind::gps_written, gps_number_, gps_out.take_written(now_us), now_us);
+  send_written(FrameKind::radio_written, radio_number_, radio_out.take_written(now_us), now_us);
   if (static_cast<std::int32_t>(now_us - status_due_us_) >= 0) send_status(now_us);
 }
 
@@ -87,14 +99,13 @@ void HostLink::on_slow_frame(const Frame& frame) {
   }
 }
 
-// For the lines of GPS and receiver.
+// For the lines of GPS, radio and receiver, and the battery's level.
 void HostLink::on_output(const Frame& frame, std::uint32_t now_us) {
-  constexpr std::size_t kTime = 4;
-  if (frame.kind == FrameKind::gps && frame.length > kTime &&
-      frame.length <= kTime + GpsOut::kPiece) {
-    gps_out.add(frame.whole(0), frame.bytes(kTime));
+  play(frame, FrameKind::gps, FrameKind::gps_baud, gps_out);
+  play(frame, FrameKind::radio, FrameKind::radio_baud, radio_out);
+  if (frame.kind == FrameKind::battery && frame.length == kLevel_bytes) {
+    battery_out.set(frame.half(0));
   }
-  if (frame.kind == FrameKind::gps_baud && frame.length == 4) gps_out.add_baud(frame.whole(0));
   if (frame.kind == FrameKind::sbus && frame.length == SbusOut::kData) {
     sbus_out.set(frame.bytes(0), now_us);
   }
@@ -123,10 +134,10 @@ void HostLink::send_setpoints() {
   }
 }
 
-void HostLink::send_gps_written(std::uint32_t now_us) {
-  const std::span<const std::uint8_t> bytes = gps_out.take_written(now_us);
+void HostLink::send_written(FrameKind kind, std::uint8_t& number,
+                            std::span<const std::uint8_t> bytes, std::uint32_t now_us) {
   if (bytes.empty()) return;
-  FrameWriter out(FrameKind::gps_written, gps_number_++);
+  FrameWriter out(kind, number++);
   out.word(now_us);
   for (const std::uint8_t byte : bytes) out.byte(byte);
   send(out);
@@ -152,7 +163,8 @@ void HostLink::send_status(std::uint32_t now_us) {
        {spi.transfers, spi.bursts, imu.samples(), longest_turn_us_, now_us}) {
     out.word(count);
   }
-  for (const std::uint32_t count : {gps_out.dropped(), unsent_, clock_.longest_wait_us()}) {
+  for (const std::uint32_t count :
+       {gps_out.dropped(), unsent_, clock_.longest_wait_us(), radio_out.dropped()}) {
     out.half(std::min<std::uint32_t>(count, 0xFFFF));
   }
   send(out);

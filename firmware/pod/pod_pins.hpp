@@ -1,5 +1,5 @@
-// The pod's pins, on a bare STM32F405 board (Olimex STM32-H405). SPI1 on its second set, so that PA4 and
-// PA5 stay free for the DAC.
+// The pod's pins, on a bare STM32F405 board (Olimex STM32-H405). SPI1 on its second set, so that PA4
+// is the DAC's.
 #pragma once
 #include "firmware/hal/pins.hpp"
 
@@ -18,7 +18,10 @@ using EscScl34 = hal::Pin<hw::GPIOA, 8>;
 using EscSda34 = hal::Pin<hw::GPIOC, 9>;
 using GpsTx = hal::Pin<hw::GPIOC, 6>;
 using GpsRx = hal::Pin<hw::GPIOC, 7>;
-using SbusTx = hal::Pin<hw::GPIOA, 2>;  // an inverter behind it
+using RadioTx = hal::Pin<hw::GPIOC, 10>;
+using RadioRx = hal::Pin<hw::GPIOC, 11>;
+using BatteryLevel = hal::Pin<hw::GPIOA, 4>;  // DAC, channel 1
+using SbusTx = hal::Pin<hw::GPIOA, 2>;        // an inverter behind it
 using CppmPin = hal::Pin<hw::GPIOB, 6>;
 using HostTx = hal::Pin<hw::GPIOA, 9>;
 using HostRx = hal::Pin<hw::GPIOA, 10>;

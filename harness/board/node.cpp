@@ -43,6 +43,8 @@ std::set<std::string> pod_parts(const BoardDescription& board) {
   std::set<std::string> all{"mpu6000", "ms5611", "hmc5883l", "esc_i2c"};
   if (host->value("params.gps") == KeyValue(true)) all.insert("ublox_6");
   if (host->value("params.receiver") == KeyValue(true)) all.insert("sbus");
+  if (host->value("params.radio") == KeyValue(true)) all.insert("mavlink_link");
+  if (host->value("params.battery") == KeyValue(true)) all.insert("battery_sense");
   return all;
 }
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "harness/board/wire_ends.hpp"
+#include "io_bridges/board_description/analog_device.hpp"
 #include "io_bridges/board_description/bus_kind.hpp"
 #include "io_bridges/board_description/bus_name.hpp"
 
@@ -63,13 +64,14 @@ Result<Done> check_buses(const plan::Plan& plan, const std::vector<Node>& nodes,
                          const plan::PlanBoardWire& wire, const std::string& name) {
   const std::string bus = bus_there(nodes, wire);
   const BoardDevice* device = nodes[wire.leader].board.find(wire.device);
-  const BusKind kind = bus_kind(bus);
+  const BusKind kind = device != nullptr && puts_a_level(*device) ? BusKind::dac : bus_kind(bus);
   if (kind == BusKind::none || (kind == BusKind::i2c && device->address < 0)) {
-    return wrong(plan, name + " is no target on an I2C, SPI or CAN bus, and on no UART", "");
+    return wrong(
+        plan, name + " is no target on an I2C, SPI or CAN bus, and on no UART or analog pin", "");
   }
   if (kind != bus_kind(wire.bus)) {
     return wrong(plan, name + " is on " + bus + ", the other end on " + wire.bus,
-                 "both are I2C, both SPI, both CAN, or both a UART");
+                 "both are I2C, both SPI, both CAN, both a UART, or an analog pin and a DAC");
   }
   return Done{};
 }

@@ -23,6 +23,7 @@ struct BoardEars {
   bool radio = true;                 // a telemetry radio
   bool receiver = true;              // of radio control
   std::uint8_t receivers_board = 0;  // of the run: on which it is
+  std::uint8_t radios_board = 0;
 };
 
 // A motor controller that is a board of its own: the shaft that its power stage turns is the vehicle's.

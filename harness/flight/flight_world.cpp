@@ -116,9 +116,9 @@ void FlightWorld::on_messages(const io::Batch& happened) {
       }
     } else if (header.kind == io::Kind::gnss_solution) {
       receiver_.on_solution(reader.as<io::GnssSolution>());
-    } else if (header.kind == io::Kind::uart_received && header.port == kRadioPort) {
+    } else if (header.kind == io::Kind::uart_received && is_radio(header)) {
       station_.receive(reader.payload(), header.t_ns);
-    } else if (header.kind == io::Kind::uart_delivered && header.port == kRadioPort) {
+    } else if (header.kind == io::Kind::uart_delivered && is_radio(header)) {
       station_.delivered(reader.payload(), header.t_ns);
     }
   }
@@ -174,11 +174,10 @@ void FlightWorld::send(std::int64_t t_ns, io::Batch& sensed) {
     far_->send(t_ns, sensed);
   }
   transmitter_.step(t_ns, sensed);
-  const auto send = [&sensed](std::int64_t at_ns, std::span<const std::uint8_t> frame) {
-    sensed.add(io::Kind::uart_frame, kRadioPort, at_ns, frame.data(),
-               static_cast<std::uint32_t>(frame.size()));
+  const auto send = [&](std::int64_t at_ns, std::span<const std::uint8_t> frame) {
+    sensed.add({at_ns, io::Kind::uart_frame, ears_.radios_board, kRadioPort, 0}, {frame});
   };
-  guest_.send(kRadioPort, t_ns, sensed);
+  guest_.send(ears_.radios_board, kRadioPort, t_ns, sensed);
   const plant::Truth seen{.p_WB_W_m = s.p_WB_W_m, .v_WB_W_mps = s.v_WB_W_mps, .q_WB = s.q_WB};
   const auto hidden = [&] { return faults_.any(kCapture_lost, t_ns); };
   if (const auto pose = capture_.look(t_ns, seen, hidden)) {

@@ -50,7 +50,9 @@ class FlightWorld : public World {
   void read(std::span<double> values) const override;
   bool hears(const io::Header& head) const override {
     return (far_ && far_->hears(head)) || far_parts_.hears(head) || far_parts_.finds(head) ||
-           far_parts_.is_esc(head);
+           far_parts_.is_esc(head) ||
+           ((head.kind == io::Kind::uart_received || head.kind == io::Kind::uart_delivered) &&
+            is_radio(head));
   }
   void step(std::int64_t t_ns, const io::Batch& happened, io::Batch& sensed) override;
   Result<Done> command(const Command& command, std::int64_t now_ns) override;
@@ -128,6 +130,10 @@ class FlightWorld : public World {
   std::vector<double> unbalance_m_;  // likewise, over the vehicle's mass
   const plant::AirframeParams airframe_;
   const std::vector<plant::Obstacle> obstacles_;
+  bool is_radio(const io::Header& head) const {
+    return head.board == ears_.radios_board && head.port == kRadioPort;
+  }
+
   std::uint64_t seed_;
   std::vector<DrawnPart> drawn_;
   std::optional<Hand> hand_;

@@ -32,10 +32,10 @@ bool GuestRadio::add(const std::vector<std::uint8_t>& bytes) {
   return leads;
 }
 
-void GuestRadio::send(std::uint16_t port, std::int64_t t_ns, io::Batch& sensed) {
+void GuestRadio::send(std::uint8_t board, std::uint16_t port, std::int64_t t_ns,
+                      io::Batch& sensed) {
   for (const std::vector<std::uint8_t>& bytes : waiting_) {
-    sensed.add(io::Kind::uart_frame, port, t_ns, bytes.data(),
-               static_cast<std::uint32_t>(bytes.size()));
+    sensed.add({t_ns, io::Kind::uart_frame, board, port, 0}, {std::span(bytes)});
   }
   waiting_.clear();
 }

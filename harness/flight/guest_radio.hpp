@@ -15,7 +15,8 @@ class GuestRadio {
  public:
   // True: with this it leads.
   bool add(const std::vector<std::uint8_t>& bytes);
-  void send(std::uint16_t port, std::int64_t t_ns, io::Batch& sensed);
+  // To the radio of that board of the run.
+  void send(std::uint8_t board, std::uint16_t port, std::int64_t t_ns, io::Batch& sensed);
 
  private:
   std::vector<std::vector<std::uint8_t>> waiting_;

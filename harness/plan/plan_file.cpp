@@ -69,6 +69,14 @@ PlanWire::End wire_end(const lua::Table& t, const char* key, const Plan& plan) {
   return end;
 }
 
+std::int64_t read_latency_ns(const lua::Table& t) {
+  const std::int64_t latency_ns = t.duration_ns_or("latency", kUsualLatency_ns);
+  if (latency_ns < kLeastLatency_ns || latency_ns > kMostLatency_ns) {
+    t.refuse("latency", "a line's latency is 2 us to 1 ms");
+  }
+  return latency_ns;
+}
+
 void read_board_wire(const lua::Table& t, Plan& plan) {
   const auto from = place_on_node(t.text("from"), plan), to = place_on_node(t.text("to"), plan);
   if (!from) t.refuse("from", "'" + t.text("from") + "' is on no node", "write NODE.DEVICE");
@@ -79,10 +87,9 @@ void read_board_wire(const lua::Table& t, Plan& plan) {
   if (to->second.starts_with("spi")) {
     wire.select = t.text("select");
     wire.ready = t.text_or("ready", "");
-    wire.latency_ns = t.duration_ns_or("latency", kUsualLatency_ns);
-    if (wire.latency_ns < kLeastLatency_ns || wire.latency_ns > kMostLatency_ns) {
-      t.refuse("latency", "a line's latency is 2 us to 1 ms");
-    }
+    wire.latency_ns = read_latency_ns(t);
+  } else if (bus_kind(to->second) == BusKind::dac) {
+    wire.latency_ns = read_latency_ns(t);
   } else if (is_uart(to->second)) {
     const double fastest = t.quantity_or("fastest", Dimension::baud, kUsualFastest_baud,
                                          lua::between(kLeastFastest_baud, kMostFastest_baud));

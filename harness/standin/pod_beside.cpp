@@ -15,18 +15,20 @@ namespace {
 
 constexpr const char *kSelect = "PA15", *kReady = "PC4";
 
-// Where the pod plays a part, as docs/pod.md has its pins. Of its lines to GPS and receiver the fastest that it speaks.
+// Where the pod plays a part, as docs/pod.md has its pins. Of its lines to GPS, receiver and radio the fastest that it speaks.
 struct Seat {
   const char *type, *bus;
   double fastest_baud = 0.0;
 };
-constexpr std::array<Seat, 7> kSeats{{{"mpu6000", "spi1"},
+constexpr std::array<Seat, 9> kSeats{{{"mpu6000", "spi1"},
                                       {"ms5611", "i2c1"},
                                       {"hmc5883l", "i2c1"},
                                       {"esc_i2c", "i2c2"},  // of motors 1 and 2
                                       {"esc_i2c", "i2c3"},
                                       {"ublox_6", "usart6", 57'600.0},
-                                      {"sbus", "usart2", 100'000.0}}};
+                                      {"sbus", "usart2", 100'000.0},
+                                      {"mavlink_link", "usart3", 57'600.0},
+                                      {"battery_sense", "dac1"}}};
 constexpr std::int64_t kReady_ns = 100'000;  // as in test_plans/chain/pod.lua
 
 const Seat* seat_of(const BoardDevice& device) {
@@ -51,6 +53,7 @@ std::vector<WirePlace> places_of(const PodBeside& boards) {
       place.ready = kReady;
       place.latency_ns = kReady_ns;
     }
+    if (bus_kind(place.bus) == BusKind::dac) place.latency_ns = kReady_ns;
     if (is_uart(place.bus)) place.latency_ns = shortest_character_ns(seat->fastest_baud);
     places.push_back(std::move(place));
   }

@@ -31,13 +31,20 @@ BoardDescription board_named(const std::string& name) {
   return read_board(kRoot + "/test_plans/boards/" + name + ".lua").value();
 }
 
+enum class PodPlays { receivers, all };  // all: the radio and the battery too
+
 // The pod's host on its line, or on a bus.
 struct Metal {
-  Metal(const ScratchFolder& folder, CommonClock& clock, std::unique_ptr<io::CanPort> can = {})
-      : radio(folder.file("radio")), pod(folder.file("pod")), on_can(can != nullptr) {
+  Metal(const ScratchFolder& folder, CommonClock& clock, std::unique_ptr<io::CanPort> can = {},
+        PodPlays plays = PodPlays::receivers)
+      : radio(plays == PodPlays::all ? "" : folder.file("radio")),
+        pod(folder.file("pod")),
+        on_can(can != nullptr) {
     StandInOptions wires;
     wires.pace = kPace;
-    wires.lines.push_back({2, std::move(io::PseudoTerminal::open(radio).value())});
+    if (!radio.empty()) {
+      wires.lines.push_back({2, std::move(io::PseudoTerminal::open(radio).value())});
+    }
     if (on_can) {
       wires.can = std::move(can);
       wires.can_bus = 2;
@@ -56,6 +63,7 @@ struct Metal {
     stand_in.emplace(world, std::move(seen), std::move(wires), &clock);
   }
   std::string pods_board() const {
+    if (radio.empty()) return "pod_with_all";
     return on_can ? "pod_with_receivers_can" : "pod_with_receivers";
   }
   std::string link() const {
@@ -63,7 +71,7 @@ struct Metal {
            (on_can ? "interface = \"memory" : "path = \"" + pod) + "\" }";
   }
 
-  std::string radio, pod;
+  std::string radio, pod;  // no radio: the pod's
   bool on_can;
   Periods periods;  // of data-ready, as the flight controller sees it
   NoWorld world{16.0};
@@ -74,9 +82,11 @@ std::string bench_file(const Metal& metal) {
   return "return { bench = \"stand_in\", board = \"px4fmu_v1_sbus\", pace = " +
          std::to_string(kPace) + R"(, late = "5 ms", late_share = "5 %",
   links = { )" +
-         metal.link() + R"(,
-            { name = "radio", bus = "usart2", path = ")" +
-         metal.radio + R"(", baud = "57600 baud" } },
+         metal.link() +
+         (metal.radio.empty() ? std::string()
+                              : R"(, { name = "radio", bus = "usart2", path = ")" + metal.radio +
+                                    R"(", baud = "57600 baud" })") +
+         R"( },
   safety = { phrase = "clear", longest = "120 s", heartbeat = "1 s" } })";
 }
 
@@ -90,6 +100,19 @@ constexpr const char* kUp = R"(plan "up" {
     local up = t:record({ "tilt", "attitude_error" }, "0.5 s")
     t:expect(up:max "tilt", "tilt"):at_most "5 deg"
     t:expect(up:max "attitude_error", "and its own word of it"):at_most "3 deg"
+  end,
+})";
+
+// And with its battery by the pod: two resistors of 1 %, and the telemetry's age (test_plans/chain/pod_radio.lua).
+constexpr const char* kUp_told = R"(plan "up and told" {
+  image = "flight", board = "px4fmu_v1_sbus", vehicle = "hp_quad", timeout = "20 s",
+  run = function(t)
+    t:within("8 s", function(s) return s.told_ready == 1 end, "it says that it can be armed")
+    up_by_the_sticks(t)
+    local up = t:record({ "tilt", "attitude_error" }, "0.5 s")
+    t:expect(up:max "tilt", "tilt"):at_most "5 deg"
+    t:expect(up:max "attitude_error", "and its own word of it"):at_most "3 deg"
+    t:expect(math.abs(t:value("told_voltage").value - t:value("bus_voltage").value), "its word of its battery is off by, V"):at_most(0.35)
   end,
 })";
 
@@ -132,8 +155,8 @@ ComposedRun fly(const ScratchFolder& folder, CommonClock& clock, Metal& metal,
 TEST(BenchPod, TheRealImageFliesOnSensorsAndControllersThatThePodPlays) {
   const ScratchFolder folder;
   CommonClock clock;
-  Metal metal(folder, clock);
-  const ComposedRun run = fly(folder, clock, metal, nullptr);
+  Metal metal(folder, clock, nullptr, PodPlays::all);
+  const ComposedRun run = fly(folder, clock, metal, nullptr, kUp_told);
   EXPECT_EQ(run.code, 0) << run.file["reason"];
   expect_even(run, metal.periods);
 }

@@ -78,7 +78,7 @@ TEST(BoardWires, BothEndsAreI2cOrBothSpiAndEachBusHasOneMaster) {
   EXPECT_EQ(Rig(2).wire(0, "esc1", 1).wire(0, "baro", 1).refused(),
             "wires: b.i2c2 has two masters");
   EXPECT_EQ(Rig(2).wire(0, "rc", 1).refused(),
-            "wires: a.rc is no target on an I2C, SPI or CAN bus, and on no UART");
+            "wires: a.rc is no target on an I2C, SPI or CAN bus, and on no UART or analog pin");
   EXPECT_EQ(Rig(2).wire(0, "esc7", 1).refused(), "wires: board has no device 'esc7'");
 }
 

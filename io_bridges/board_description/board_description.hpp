@@ -77,13 +77,13 @@ struct BoardDescription {
 // place of a device; where it has the slave, it follows on a bus. What joins the same two boards has one fd.
 // Of CAN the board that arbitrates is as the master's.
 struct WireEnd {
-  std::string device = {};              // of the master's board; empty: this board follows
-  std::string bus = {};                 // of the slave's board: "i2c2", "spi1", "can1", "usart6"
-  int fd = -1;                          // io_bridges/link/wire.hpp
-  int port = 0;                         // of the bus there
-  bool shared = false;                  // it has other ports as well
+  std::string device = {};  // of the master's board; empty: this board follows
+  std::string bus = {};     // of the slave's board: "i2c2", "spi1", "can1", "usart6", "dac1"
+  int fd = -1;              // io_bridges/link/wire.hpp
+  int port = 0;             // of the bus there
+  bool shared = false;      // it has other ports as well
   std::string select = {}, ready = {};  // of SPI, the slave's pins; no data-ready: empty
-  std::int64_t latency_ns = 0;          // of data-ready; of a UART its shortest character
+  std::int64_t latency_ns = 0;          // of data-ready, a level; of a UART its shortest character
   bool arbitrates = false;  // of CAN without a device's place: this board does, on its `bus`
   std::string far = {};     // the other board's name there
 

@@ -11,6 +11,9 @@ namespace whirl {
 inline constexpr std::uint16_t kPodHostUart =
     1;  // of the pod, for its host; questions and answers are named so on CAN as well
 
+// Of the messages of a telemetry radio that a pod plays: as the flight controller's own has it.
+inline constexpr std::uint16_t kPodRadioPort = 2;
+
 inline bool is_pod_host(const BoardDevice& device) {
   return device.type == "pod_parts";
 }

@@ -1,5 +1,5 @@
 // A wire between two boards' processes: one page of shared memory, a ring of messages down, one answer and a
-// ring of edges and characters up. The bus master's board leads, the slave's board follows behind it in virtual time.
+// ring of edges, levels and characters up. The bus master's board leads, the slave's board follows behind it in virtual time.
 //
 //   Ports     what two boards have between them is one wire, so that the follower sees all of it in one order: a bus
 //             each, and what belongs to it
@@ -74,10 +74,11 @@ struct WireMessage {
   WireCan can = {};
 };
 
-// From the follower to the leader: a line's edge, or a character whose start bit is here.
+// From the follower to the leader: a line's edge, a new level, or a character whose start bit is here.
 struct WireEdge {
   std::int64_t t_ns = 0;
   std::uint8_t port = 0, level = 0, mark = 0;  // mark: no edge, see WireAct
+  double level_V = 0.0;                        // of an analog line
   std::int64_t until_ns = 0;                   // of a character: its last stop bit has passed
   WireCharacter character = {};
   WireCan can = {};

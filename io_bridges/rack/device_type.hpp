@@ -56,6 +56,8 @@ class Rack {
 
   virtual io::Wire* pin(const std::string& name) = 0;
   virtual bool set_analog(const std::string& pin, std::function<double(Nanoseconds)> volts) = 0;
+  // Told at each change of what the DAC's channel puts out.
+  virtual bool on_dac(int /*channel*/, std::function<void(double volts)> /*told*/) { return false; }
   virtual io::I2cBus* i2c(int number) = 0;
   virtual io::CanBus* can(int number) = 0;  // with the faults of its wire and its log
   // With the faults of its wires and its log.

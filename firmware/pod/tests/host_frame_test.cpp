@@ -66,6 +66,7 @@ TEST(HostFrame, WhatThePodWritesTheHostReads) {
   out.half(2);
   out.half(3);
   out.half(1100);
+  out.half(5);
   int heard = 0;
   whirl::io::PodLinkReader host([&](const whirl::io::PodStatus& s) {
     ++heard;
@@ -74,6 +75,7 @@ TEST(HostFrame, WhatThePodWritesTheHostReads) {
     EXPECT_EQ(s.now_us, 123456u);
     EXPECT_EQ(s.unsent, 3);
     EXPECT_EQ(s.wait_us, 1100);
+    EXPECT_EQ(s.radio_dropped, 5);
   });
   for (const std::uint8_t byte : out.finish()) host.add(byte);
   EXPECT_EQ(heard, 1);

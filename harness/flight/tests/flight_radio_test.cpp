@@ -91,5 +91,41 @@ TEST(FlightWorld, TellsWhenACommandHasReachedTheVehiclesUart) {
   EXPECT_EQ(flight.world.command_on_wire_ns(), flight.t_ns + 123'456);
 }
 
+// The radio that a second board plays: what goes up goes to it, and only what it hears counts.
+TEST(FlightWorld, TheRadioMayBeOfAnotherBoard) {
+  FlightParams params = hp_quad_file();
+  params.ears.radios_board = 1;
+  FlightWorld world(params, 1);
+  ASSERT_TRUE(plan::command(world, table("{ position = { height = '1 m' } }"), 0).ok());
+  io::MavlinkSender vehicle{1, 1, 0};
+  io::Statustext text;
+  text.text[0] = 'a';
+  const auto bytes = io::encode(io::pack(text, vehicle));
+  std::int64_t t_ns = 0;
+  const auto texts_after_one_from = [&](std::uint8_t board) {
+    io::Batch happened, sensed;
+    const io::Header head{t_ns, io::Kind::uart_received, board, kRadioPort,
+                          static_cast<std::uint32_t>(bytes.size())};
+    EXPECT_EQ(world.hears(head), board == 1);
+    happened.add(head, std::span<const std::uint8_t>(bytes));
+    world.step(t_ns += kMs, happened, sensed);
+    return world.told_texts().size();
+  };
+  EXPECT_EQ(texts_after_one_from(0), 0u);
+  EXPECT_EQ(texts_after_one_from(1), 1u);
+  int up = 0;
+  for (int i = 0; i < 200; ++i) {
+    io::Batch sensed;
+    world.step(t_ns += kMs, {}, sensed);
+    for (io::Reader r(sensed.bytes()); r.next();) {
+      if (r.header().kind != io::Kind::uart_frame) continue;
+      EXPECT_EQ(r.header().board, 1);
+      EXPECT_EQ(r.header().port, kRadioPort);
+      ++up;
+    }
+  }
+  EXPECT_GT(up, 0);
+}
+
 }  // namespace
 }  // namespace whirl::flight

@@ -3,8 +3,6 @@
 #include <array>
 #include <charconv>
 
-#include "io_bridges/board_description/pod_host.hpp"
-
 namespace whirl::bench {
 namespace {
 
@@ -26,7 +24,8 @@ constexpr std::array<Count, 6> kCounts{{{"pod_lost", "samples never reached the 
 }  // namespace
 
 bool PodCounts::hears(const io::Reader& told) {
-  if (told.header().kind != io::Kind::uart_received) return false;
+  const io::Header& head = told.header();
+  if (head.kind != io::Kind::uart_received || head.port != kPodHostUart) return false;
   const std::string line(told.payload().begin(), told.payload().end());
   const auto space = line.find(' ');
   long value = 0;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "io_bridges/board_description/pod_host.hpp"
 #include "io_bridges/rack/far_rack.hpp"
 
 namespace whirl::bench {
@@ -14,9 +15,9 @@ class PodCounts {
   // Its host is on that rack, which has to live as long.
   explicit PodCounts(rack::FarRack& rack) : rack_(rack) {}
 
-  // An order is for the pod's host: all are but lines of text, which are the flight controller's.
+  // An order is for the pod's host: all are but lines of text, which are the flight controller's; those for its radio it may play.
   static bool is_for_host(const io::Reader& order) {
-    return order.header().kind != io::Kind::uart_frame;
+    return order.header().kind != io::Kind::uart_frame || order.header().port == kPodRadioPort;
   }
   // An answer of the host's; it is kept here.
   bool hears(const io::Reader& told);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 
 #include "base/check.hpp"
 #include "io_bridges/protocols/crc.hpp"
@@ -11,9 +12,11 @@ namespace {
 
 constexpr std::uint8_t kStart = 0xA5, kSample = 0x01, kFaults = 0x02, kBarometer = 0x03,
                        kProm = 0x04, kMagnetometer = 0x05, kEsc = 0x06, kGps = 0x07,
-                       kGpsBaud = 0x08, kSbus = 0x09, kCppm = 0x0A, kStatus = 0x81,
-                       kSetpoint = 0x82, kGpsWritten = 0x83;
-constexpr std::size_t kHead = 4, kTail = 2, kStatusBytes = 54, kSetpointBytes = 4;
+                       kGpsBaud = 0x08, kSbus = 0x09, kCppm = 0x0A, kRadio = 0x0B,
+                       kRadioBaud = 0x0C, kBattery = 0x0D, kStatus = 0x81, kSetpoint = 0x82,
+                       kGpsWritten = 0x83, kRadioWritten = 0x84;
+constexpr std::size_t kHead = 4, kTail = 2, kStatusBytes = 56, kSetpointBytes = 4;
+constexpr double kMostLevel = 4095.0;
 constexpr std::uint8_t kSilent = 0x80;  // of SBUS's flags
 
 std::uint16_t checksum(std::span<const std::uint8_t> bytes) {
@@ -68,6 +71,7 @@ PodStatus pod_status(std::span<const std::uint8_t> payload) {
   status.gps_dropped = walk.half();
   status.unsent = walk.half();
   status.wait_us = walk.half();
+  status.radio_dropped = walk.half();
   return status;
 }
 
@@ -129,18 +133,25 @@ std::vector<std::uint8_t> pack_pod_esc(std::uint8_t sequence, std::uint8_t esc,
   return sealed(std::move(frame));
 }
 
-std::vector<std::uint8_t> pack_pod_gps(std::uint8_t sequence, std::uint32_t at_us,
-                                       std::span<const std::uint8_t> bytes) {
-  WHIRL_CHECK(bytes.size() <= kPodGpsBytes, bytes.size());
-  std::vector<std::uint8_t> frame{kStart, kGps, sequence, 0};
+std::vector<std::uint8_t> pack_pod_bytes(PodEnd line, std::uint8_t sequence, std::uint32_t at_us,
+                                         std::span<const std::uint8_t> bytes) {
+  WHIRL_CHECK(bytes.size() <= kPodLineBytes, bytes.size());
+  std::vector<std::uint8_t> frame{kStart, line == PodEnd::gps ? kGps : kRadio, sequence, 0};
   add_whole(frame, at_us);
   frame.insert(frame.end(), bytes.begin(), bytes.end());
   return sealed(std::move(frame));
 }
 
-std::vector<std::uint8_t> pack_pod_gps_baud(std::uint8_t sequence, std::uint32_t baud) {
-  std::vector<std::uint8_t> frame{kStart, kGpsBaud, sequence, 0};
+std::vector<std::uint8_t> pack_pod_baud(PodEnd line, std::uint8_t sequence, std::uint32_t baud) {
+  std::vector<std::uint8_t> frame{kStart, line == PodEnd::gps ? kGpsBaud : kRadioBaud, sequence, 0};
   add_whole(frame, baud);
+  return sealed(std::move(frame));
+}
+
+std::vector<std::uint8_t> pack_pod_battery(std::uint8_t sequence, double level) {
+  std::vector<std::uint8_t> frame{kStart, kBattery, sequence, 0};
+  add_half(frame,
+           static_cast<std::uint16_t>(std::lround(std::clamp(level, 0.0, 1.0) * kMostLevel)));
   return sealed(std::move(frame));
 }
 
@@ -201,9 +212,10 @@ bool PodLinkReader::on_frame(std::uint8_t kind, std::span<const std::uint8_t> pa
     const auto esc = static_cast<std::uint8_t>(walk.next(1));
     const bool valid = walk.next(1) != 0;
     if (on_setpoint_) on_setpoint_({esc, valid, walk.half()});
-  } else if (kind == kGpsWritten && payload.size() > kTime) {
+  } else if ((kind == kGpsWritten || kind == kRadioWritten) && payload.size() > kTime) {
     const std::uint32_t t_us = walk.next(kTime);
-    if (on_gps_written_) on_gps_written_({t_us, walk.bytes});
+    const auto& told = kind == kGpsWritten ? on_gps_written_ : on_radio_written_;
+    if (told) told({t_us, walk.bytes});
   } else {
     return false;
   }

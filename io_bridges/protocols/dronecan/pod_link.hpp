@@ -7,9 +7,10 @@
 //                0x05 magnetometer: x, y, z; 0x06 an ESC's status: number, mA, rpm, flags
 //                0x07 bytes of the GPS, from when on by the pod's clock (us; 0: at once); 0x08 its baud rate
 //                0x09 SBUS: channels as on the line and flags; 0x0A CPPM: lengths of its channels
-//   From it      0x81 status (54 bytes): settings, what was lost or late, and counters
+//                0x0B bytes of the radio, as of the GPS; 0x0C its baud rate; 0x0D the battery's level at the ADC, of 4095
+//   From it      0x81 status (56 bytes): settings, what was lost or late, and counters
 //                0x82 a set-point came: number of the ESC, 1: valid, value
-//                0x83 bytes that the flight controller told the GPS, and when the pod tells it
+//                0x83 bytes that the flight controller told the GPS, and when the pod tells it; 0x84 the same of the radio
 //   Errors       a damaged or unknown frame is skipped and counted
 #pragma once
 #include <array>
@@ -38,6 +39,7 @@ struct PodStatus {
   std::uint32_t now_us = 0;  // the pod's clock
   std::uint16_t gps_dropped = 0, unsent = 0;
   std::uint16_t wait_us = 0;  // the longest of a sample for its time, of the last whole second
+  std::uint16_t radio_dropped = 0;
 };
 
 // What the statuses have marked of the samples, each sample once. A status tells of the newest 32: where more have come since the
@@ -69,11 +71,15 @@ std::vector<std::uint8_t> pack_pod_esc(std::uint8_t sequence, std::uint8_t esc,
                                        std::int16_t current_mA, std::uint16_t speed_rpm,
                                        std::uint8_t flags);
 
-// At most kPodGpsBytes; at_us: see above.
-inline constexpr std::size_t kPodGpsBytes = 44;
-std::vector<std::uint8_t> pack_pod_gps(std::uint8_t sequence, std::uint32_t at_us,
-                                       std::span<const std::uint8_t> bytes);
-std::vector<std::uint8_t> pack_pod_gps_baud(std::uint8_t sequence, std::uint32_t baud);
+// A line at whose end the host plays a device.
+enum class PodEnd : std::uint8_t { gps, radio };
+// At most kPodLineBytes; at_us: see above.
+inline constexpr std::size_t kPodLineBytes = 44;
+std::vector<std::uint8_t> pack_pod_bytes(PodEnd line, std::uint8_t sequence, std::uint32_t at_us,
+                                         std::span<const std::uint8_t> bytes);
+std::vector<std::uint8_t> pack_pod_baud(PodEnd line, std::uint8_t sequence, std::uint32_t baud);
+// At the flight controller's ADC, of the pod's supply: 0 to 1, held there.
+std::vector<std::uint8_t> pack_pod_battery(std::uint8_t sequence, double level);
 // Of an SBUS frame the channels and flags; `silent`: nothing goes out.
 std::vector<std::uint8_t> pack_pod_sbus(std::uint8_t sequence, const SbusFrame& frame,
                                         bool silent = false);
@@ -89,7 +95,7 @@ struct PodSetpoint {
   std::uint16_t value = 0;
 };
 
-struct PodGpsWritten {
+struct PodWritten {
   std::uint32_t t_us = 0;  // the pod's clock
   std::span<const std::uint8_t> bytes;
 };
@@ -99,8 +105,8 @@ class PodLinkReader {
   explicit PodLinkReader(std::function<void(const PodStatus&)> on_status)
       : on_status_(std::move(on_status)) {}
   void on_setpoint(std::function<void(const PodSetpoint&)> sink) { on_setpoint_ = std::move(sink); }
-  void on_gps_written(std::function<void(const PodGpsWritten&)> sink) {
-    on_gps_written_ = std::move(sink);
+  void on_written(PodEnd line, std::function<void(const PodWritten&)> sink) {
+    (line == PodEnd::gps ? on_gps_written_ : on_radio_written_) = std::move(sink);
   }
   void add(std::uint8_t byte);                  // of the UART
   void add(const dronecan::PodFrame& message);  // of CAN
@@ -113,7 +119,7 @@ class PodLinkReader {
 
   std::function<void(const PodStatus&)> on_status_;
   std::function<void(const PodSetpoint&)> on_setpoint_;
-  std::function<void(const PodGpsWritten&)> on_gps_written_;
+  std::function<void(const PodWritten&)> on_gps_written_, on_radio_written_;
   std::vector<std::uint8_t> bytes_;
   std::uint64_t damaged_ = 0;
 };

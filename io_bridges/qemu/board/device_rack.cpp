@@ -3,6 +3,7 @@
 #include <map>
 #include <set>
 
+#include "io_bridges/board_description/analog_device.hpp"
 #include "io_bridges/board_description/bus_kind.hpp"
 #include "io_bridges/devices/can_wire_faults.hpp"
 #include "io_bridges/devices/wire_faults.hpp"
@@ -48,6 +49,9 @@ class DeviceRack::Wiring final : public rack::Rack {
   bool set_analog(const std::string& pin, std::function<double(io::Nanoseconds)> volts) override {
     analog_.push_back(pin);
     return site_.chip.set_analog(pin, std::move(volts));
+  }
+  bool on_dac(int channel, std::function<void(double volts)> told) override {
+    return site_.chip.on_dac(channel, std::move(told));
   }
   io::I2cBus* i2c(int number) override;
   io::CanBus* can(int number) override;
@@ -153,8 +157,8 @@ Result<Done> DeviceRack::Wiring::add(const BoardDescription& board, int number) 
   const rack::DeviceType* type = rack::find_type(site_.types, device.type);
   WHIRL_CHECK(type != nullptr, device.type);
   const WireEnd* far = far_end(device);
-  // A part that senses has nothing to tell where another board stands in its place; nor has one on a UART.
-  const bool mute = !type->senses.empty() || is_uart(device.bus);
+  // A part that senses has nothing to tell where another board stands in its place; nor has one on a UART or an analog pin.
+  const bool mute = !type->senses.empty() || is_uart(device.bus) || puts_a_level(device);
   if (far != nullptr && mute) return far_.lead(device, number, *far, {});
   rack::DeviceSlot slot(*this, board.name, device, *type, number);
   if (far != nullptr) {

@@ -1,10 +1,12 @@
 #include "io_bridges/qemu/board/far_ends.hpp"
 
 #include "base/check.hpp"
+#include "io_bridges/board_description/analog_device.hpp"
 #include "io_bridges/board_description/bus_kind.hpp"
 #include "io_bridges/board_description/bus_name.hpp"
 #include "io_bridges/messages/messages.hpp"
 #include "io_bridges/qemu/board/i2c_wire.hpp"
+#include "io_bridges/qemu/board/level_wire.hpp"
 #include "io_bridges/qemu/board/spi_wire.hpp"
 #include "io_bridges/qemu/board/uart_wire.hpp"
 
@@ -33,10 +35,14 @@ Result<Done> FarEnds::lead(const BoardDevice& device, int number, const WireEnd&
     if (join_uart_(bus_of_device, wire.value()->port<LeaderUart>(port, end.latency_ns))) {
       return Done{};
     }
+  } else if (puts_a_level(device)) {
+    auto& led = wire.value()->port<LeaderLevel>(port, end.latency_ns);
+    const auto volts = [&led](io::Nanoseconds now) { return led.volts(now); };
+    if (rack_.set_analog(device.bus, volts)) return Done{};
   }
-  return Error{ErrorKind::bad_input, device.place + ": " + device.name,
-               "is no device on I2C, SPI, CAN or a UART of this part: no board can take its place",
-               ""};
+  return Error{
+      ErrorKind::bad_input, device.place + ": " + device.name,
+      "is on no I2C, SPI, CAN, UART or analog pin of this part: no board can take its place", ""};
 }
 
 bool FarEnds::lead_spi(LeaderWire& wire, const BoardDevice& device, int number,
@@ -80,6 +86,9 @@ Result<Done> FarEnds::follow(const WireEnd& end) {
   } else if (is_uart(end.bus)) {
     auto& led = wire.value()->port<FollowerUart>(port, end.bus, end.latency_ns);
     if (join_uart_(number, led)) return Done{};
+  } else if (bus_kind(end.bus) == BusKind::dac) {
+    auto& led = wire.value()->port<FollowerLevel>(port);
+    if (rack_.on_dac(number, [&led](double level_V) { led.put(level_V); })) return Done{};
   }
   return Error{ErrorKind::bad_input, end.bus,
                "the part has no such bus for the wire to another board, or a device is on its UART",

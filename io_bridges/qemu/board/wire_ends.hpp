@@ -1,6 +1,6 @@
 // The ends of a board's wires to other boards. The bus master's board leads: for each byte it asks the slave's
 // board. The slave's board follows: it acts as the master on its own buses at the times that it is told, and
-// blocks where it does not know what comes next. What a bus carries: i2c_wire.hpp, spi_wire.hpp, uart_wire.hpp. A CAN
+// blocks where it does not know what comes next. What a bus carries: i2c_wire.hpp, spi_wire.hpp, uart_wire.hpp, level_wire.hpp. A CAN
 // bus has no master, and wires of its own: can_wire.hpp.
 //
 //   Waiting   a leader waits for answers and marks only, a follower for messages only, and posts its answer at the

@@ -73,6 +73,8 @@ class ChipModel {
   virtual bool join_uart(int number, io::UartPeer& peer) = 0;  // USARTn or UARTn
   // Volts at an analog input, asked for at each sampling instant.
   virtual bool set_analog(std::string_view pin, std::function<double(Nanoseconds)> volts) = 0;
+  // Told at each change of what the DAC's channel puts out. False: the part has no such channel.
+  virtual bool on_dac(int /*channel*/, std::function<void(double volts)> /*told*/) { return false; }
   virtual void set_vdd(double /*volts*/) {
   }  // the supply's level for PWR's detector; 3.3 V at first
   // For what follows a timer's pattern rather than its edges (a power stage), and for CAN nodes.

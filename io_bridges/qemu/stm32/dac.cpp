@@ -1,5 +1,8 @@
 #include "io_bridges/qemu/stm32/dac.hpp"
 
+#include <bit>
+#include <utility>
+
 #include "io_bridges/qemu/stm32/register_access.hpp"
 
 namespace whirl::stm32 {
@@ -45,6 +48,23 @@ void Dac::reset() {
   }
   select_triggers();
   update_interrupt();
+  tell();
+}
+
+void Dac::on_change(int channel, std::function<void(double volts)> told) {
+  channel_[static_cast<std::size_t>(channel - 1)].told = std::move(told);
+}
+
+void Dac::tell() {
+  for (int channel = 1; channel <= 2; ++channel) {
+    Channel& c = channel_[static_cast<std::size_t>(channel - 1)];
+    const double now_V = volts(channel);
+    if (!c.told || std::bit_cast<std::uint64_t>(now_V) == std::bit_cast<std::uint64_t>(c.told_V)) {
+      continue;
+    }
+    c.told_V = now_V;
+    c.told(now_V);
+  }
 }
 
 double Dac::volts(int channel) const {
@@ -110,6 +130,7 @@ void Dac::wave(int ch) {
 
 void Dac::trigger(int ch) {
   wave(ch);
+  tell();
   if ((control(ch) & kDma) == 0) return;
   Channel& c = channel_[static_cast<std::size_t>(ch)];
   if (c.request.level()) {
@@ -220,6 +241,7 @@ void Dac::write(std::uint32_t offset, std::uint32_t value, unsigned size) {
       break;
   }
   update_interrupt();
+  tell();
 }
 
 }  // namespace whirl::stm32

@@ -5,6 +5,7 @@
 //   Left out settling time, output buffer, the one to three APB1 clocks between DHR and DOR
 #pragma once
 #include <array>
+#include <functional>
 
 #include "io_bridges/qemu/stm32/irq_line.hpp"
 #include "io_bridges/qemu/stm32/peripheral.hpp"
@@ -25,16 +26,21 @@ class Dac : public Peripheral {
     return channel_[static_cast<std::size_t>(channel - 1)].request;
   }
   double volts(int channel) const;
+  // Told whenever they are other ones than before.
+  void on_change(int channel, std::function<void(double volts)> told);
 
  private:
   struct Channel {
     std::uint32_t holding = 0, output = 0, triangle = 0, noise = 0xAAA;
     bool triangle_falls = false;
     DmaRequest request;
+    std::function<void(double volts)> told;
+    double told_V = 0.0;
   };
   std::uint32_t control(int ch) const { return (cr_ >> (16 * ch)) & 0x3FFF; }
   void hold(int ch, std::uint32_t value12);
   void trigger(int ch);
+  void tell();
   void wave(int ch);
   void select_triggers();
   void update_interrupt();

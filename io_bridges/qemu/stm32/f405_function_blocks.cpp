@@ -66,6 +66,11 @@ class F405FunctionBlocks : public FunctionBlockSet {
   void reset_backup_domain() override { rtc_.reset_backup_domain(); }
   void backup_clock_changed() override { rtc_.clock_changed(); }
   double dac_volts(int channel) override { return dac_.volts(channel); }
+  bool on_dac(int channel, std::function<void(double)> told) override {
+    if (channel != 1 && channel != 2) return false;
+    dac_.on_change(channel, std::move(told));
+    return true;
+  }
 
  private:
   static AdcConfig adc_config(const FunctionBlockHost& host) {

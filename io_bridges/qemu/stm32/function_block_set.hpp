@@ -27,6 +27,7 @@ class FunctionBlockSet : public FunctionBlocks {
   void exti_edge(int line, Nanoseconds now) override;
   void reset(ResetCause cause) override;
   double dac_volts(int /*channel*/) override { return 0.0; }
+  bool on_dac(int /*channel*/, std::function<void(double)> /*told*/) override { return false; }
 
  protected:
   Timer& add_timer(const TimerConfig& config, std::uint32_t base);

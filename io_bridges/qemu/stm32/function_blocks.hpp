@@ -50,6 +50,8 @@ class FunctionBlocks {
   virtual void reset_backup_domain() = 0;    // RCC_BDCR.BDRST
   virtual void backup_clock_changed() = 0;   // RTCSEL, RTCEN or LSE/LSI on/off changed
   virtual double dac_volts(int channel) = 0;
+  // Told at each change of a channel's volts. False: the part has no such channel.
+  virtual bool on_dac(int channel, std::function<void(double volts)> told) = 0;
 };
 
 std::unique_ptr<FunctionBlocks> make_f405_function_blocks(const Chip& chip,

@@ -51,6 +51,9 @@ class Part : public ChipModel {
   io::SpiSlave* spi_slave(int number) override;
   bool join_uart(int number, io::UartPeer& peer) override;
   bool set_analog(std::string_view pin, std::function<double(Nanoseconds)> volts) override;
+  bool on_dac(int channel, std::function<void(double volts)> told) override {
+    return functions_->on_dac(channel, std::move(told));
+  }
   void set_vdd(double volts) override {
     rcc_.set_vdd(volts);
     pwr_.set_vdd(volts);

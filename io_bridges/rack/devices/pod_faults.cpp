@@ -15,8 +15,8 @@ struct Seat {
   std::vector<Kind> kinds;
 };
 
-const std::array<Seat, 5>& seats() {
-  static const std::array<Seat, 5> all{
+const std::array<Seat, 6>& seats() {
+  static const std::array<Seat, 6> all{
       {{"mpu6000",
         kPodImu,
         {Kind::sensor_frozen, Kind::sensor_offset, Kind::sensor_scale, Kind::sensor_drift,
@@ -35,7 +35,8 @@ const std::array<Seat, 5>& seats() {
         kPodGps,
         {Kind::sensor_frozen, Kind::sensor_offset, Kind::sensor_late, Kind::sensor_wrong_identity,
          Kind::gnss_jammed, Kind::gnss_spoofed, Kind::gnss_dropout, Kind::gnss_brown_out}},
-       {"sbus", kPodReceiver, {Kind::rc_link_lost, Kind::rc_glitch}}}};
+       {"sbus", kPodReceiver, {Kind::rc_link_lost, Kind::rc_glitch}},
+       {"battery_sense", kPodBattery, {Kind::sensor_offset}}}};
   return all;
 }
 

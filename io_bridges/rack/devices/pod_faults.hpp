@@ -11,7 +11,14 @@
 namespace whirl::rack {
 
 inline constexpr int kPodBus = 0x7000;
-enum PodAddress : int { kPodImu = 1, kPodBarometer, kPodMagnetometer, kPodGps, kPodReceiver };
+enum PodAddress : int {
+  kPodImu = 1,
+  kPodBarometer,
+  kPodMagnetometer,
+  kPodGps,
+  kPodReceiver,
+  kPodBattery
+};
 
 // Of a device type that a pod can play: "mpu6000". Nothing: faults of it find nothing there.
 std::optional<int> pod_address(const std::string& type);

@@ -10,7 +10,8 @@
 #include <utility>
 
 #include "io_bridges/devices/sbus.hpp"
-#include "io_bridges/rack/devices/pod_gps.hpp"
+#include "io_bridges/devices/ublox.hpp"
+#include "io_bridges/rack/devices/pod_line_end.hpp"
 #include "io_bridges/rack/devices/pod_output_check.hpp"
 #include "io_bridges/rack/devices/table.hpp"
 
@@ -82,7 +83,7 @@ class PodHostDevice final : public RackDevice {
                    }),
         gps_(queue_, receiver_of(slot), place, nullptr, slot.rack().finding()),
         said_(
-            queue_, gps_, reader_,
+            queue_, io::PodEnd::gps, gps_, [this] { return gps_.baud(); }, reader_,
             {[this](const std::vector<std::uint8_t>& frame) { link_.send(frame); },
              [this](std::uint8_t byte, double baud) { gps_check_.given(byte, baud, queue_.now()); },
              [this](double baud) { gps_line_.speak_at(baud); }}),
@@ -193,7 +194,7 @@ class PodHostDevice final : public RackDevice {
   GpsCheck gps_check_;
   PodLine gps_line_, sbus_line_;
   io::Ublox gps_;
-  PodGps said_;
+  PodLineEnd said_;
   io::Event sample_, sbus_, cppm_;
   std::uint64_t number_ = 0, setpoints_ = 0;
   io::PodSetpoint setpoint_;

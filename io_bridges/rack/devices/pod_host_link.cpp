@@ -38,6 +38,7 @@ PodFigures figures_of(const io::PodStatus& status) {
           {"pod_unsent", status.unsent},
           {"pod_wait_us", status.wait_us},
           {"pod_gps_dropped", status.gps_dropped},
+          {"pod_radio_dropped", status.radio_dropped},
           {"pod_turn_us", status.longest_turn_us},
           {"pod_now_us", status.now_us}};
 }

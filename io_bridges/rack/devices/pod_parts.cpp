@@ -1,6 +1,6 @@
 // The host of a pod, and behind it the parts that the pod plays: an MPU-6000, an MS5611 and an HMC5883L, each the
-// model that a board of the house carries, in the plant's motion, air and field; the four ESCs (pod_escs.hpp) and receivers
-// (pod_receivers.hpp).
+// model that a board of the house carries, in the plant's motion, air and field; the four ESCs (pod_escs.hpp), receivers
+// (pod_receivers.hpp), the radio (pod_radio.hpp) and the battery (pod_battery.hpp).
 //
 //   IMU     as it is set, which the pod's status tells; each of its samples is sent as it is ready
 //   Air     PROM at the start and once a second, then pressure and temperature by turns, at the finest oversampling
@@ -17,8 +17,10 @@
 #include "io_bridges/devices/hmc5883l.hpp"
 #include "io_bridges/devices/ms5611.hpp"
 #include "io_bridges/rack/devices/imu_keys.hpp"
+#include "io_bridges/rack/devices/pod_battery.hpp"
 #include "io_bridges/rack/devices/pod_escs.hpp"
 #include "io_bridges/rack/devices/pod_faults.hpp"
+#include "io_bridges/rack/devices/pod_radio.hpp"
 #include "io_bridges/rack/devices/pod_receivers.hpp"
 #include "io_bridges/rack/devices/table.hpp"
 #include "io_bridges/rack/models/inertial_sensor.hpp"
@@ -85,6 +87,9 @@ class PodPartsDevice final : public RackDevice {
         link_(slot, reader_),
         receivers_(slot, reader_,
                    [this](std::vector<std::uint8_t> frame) { send_slow(std::move(frame)); }),
+        radio_(slot, reader_,
+               [this](std::vector<std::uint8_t> frame) { send_slow(std::move(frame)); }),
+        battery_(slot),
         slave_(slot.rack().spi_slave(slot.whole("params.spi"))),
         motion_(physics, mounting_of(slot.axes("axes")), slot.rack().seed(), slot.name()),
         air_(air_of(), slot.rack().seed(), slot.name()),
@@ -118,10 +123,14 @@ class PodPartsDevice final : public RackDevice {
     all.push_back({io::Kind::body_motion});
     all.push_back({io::Kind::rc_channels});
     all.push_back({io::Kind::uart_frame, link_.uart()});
+    all.push_back({io::Kind::uart_frame, kPodRadioPort});
     return all;
   }
   void on_message(const io::Reader& message) override {
-    if (message.header().kind == io::Kind::uart_frame) return answer(PodHostLink::asked(message));
+    if (message.header().kind == io::Kind::uart_frame) {
+      if (message.header().port == kPodRadioPort) return radio_.on_message(message);
+      return answer(PodHostLink::asked(message));
+    }
     if (message.header().kind == io::Kind::esc_state) return escs_.on_message(message);
     if (message.header().kind == io::Kind::rc_channels) return receivers_.on_sticks(message);
     const auto motion = message.as<io::BodyMotion>();
@@ -129,6 +138,7 @@ class PodPartsDevice final : public RackDevice {
     air_.set(motion);
     field_.set(motion);
     receivers_.set(motion);
+    battery_.set(motion.bus_voltage_V);
   }
 
  private:
@@ -141,6 +151,7 @@ class PodPartsDevice final : public RackDevice {
     tell_part(baro_, {kReset}, now);
     next_.in(kReload_ns);
     receivers_.start();
+    radio_.start();
     started_ = true;
   }
 
@@ -223,6 +234,7 @@ class PodPartsDevice final : public RackDevice {
   void convert() {
     const Nanoseconds now = queue_.now();
     tell_faults(now);
+    if (auto news = battery_.news(now)) send_slow(std::move(*news));
     if (converting_) {
       send_slow(io::pack_pod_barometer(air_number_++, temperature_ ? 1 : 0,
                                        ask_part(baro_, kResult, 3, now)));
@@ -282,6 +294,8 @@ class PodPartsDevice final : public RackDevice {
   io::PodLinkReader reader_;
   PodHostLink link_;
   PodReceivers receivers_;
+  PodRadio radio_;
+  PodBattery battery_;
   const io::SpiSlave* slave_;
   io::PodStatus status_;
   io::PodFlags flags_;
@@ -323,7 +337,8 @@ DeviceType pod_parts_type() {
                                  axes_key("params.field_axes", "the magnetometer's, in the body")
                                      .with(std::vector<std::string>{"+y", "-x", "+z"})};
   add_imu_keys(keys);
-  for (const auto& more : {pod_link_keys(), pod_receiver_keys()}) {
+  for (const auto& more :
+       {pod_link_keys(), pod_receiver_keys(), pod_radio_keys(), pod_battery_keys()}) {
     keys.insert(keys.end(), more.begin(), more.end());
   }
   return {"pod_parts", "the host of a pod, and the sensors, ESCs and receivers that it plays",

@@ -54,10 +54,12 @@ PodReceivers::PodReceivers(DeviceSlot& slot, io::PodLinkReader& reader, Send sen
   gps_ = std::make_unique<io::Ublox>(
       queue_, gps_of(slot), [this](const io::Ublox::Query& query) { return place_.fix(query); },
       &slot.rack().faults(), slot.rack().finding());
-  said_ = std::make_unique<PodGps>(queue_, *gps_, reader,
-                                   PodGps::Ears{send_, [this](std::uint8_t, double) {
-                                                  if (!gather_.pending()) gather_.in(kMs);
-                                                }});
+  const auto gathers = [this](std::uint8_t, double) {
+    if (!gather_.pending()) gather_.in(kMs);
+  };
+  said_ = std::make_unique<PodLineEnd>(
+      queue_, io::PodEnd::gps, *gps_, [this] { return gps_->baud(); }, reader,
+      PodLineEnd::Ears{send_, gathers});
 }
 
 void PodReceivers::start() {

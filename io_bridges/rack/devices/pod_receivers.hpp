@@ -12,7 +12,7 @@
 #include "io_bridges/devices/radio_link.hpp"
 #include "io_bridges/devices/sbus.hpp"
 #include "io_bridges/rack/devices/gnss_place.hpp"
-#include "io_bridges/rack/devices/pod_gps.hpp"
+#include "io_bridges/rack/devices/pod_line_end.hpp"
 
 namespace whirl::rack {
 
@@ -36,7 +36,7 @@ class PodReceivers {
   Send send_;
   SensedPlace place_;
   std::unique_ptr<io::Ublox> gps_;  // null: none
-  std::unique_ptr<PodGps> said_;
+  std::unique_ptr<PodLineEnd> said_;
   io::RadioLink::Params radio_params_;
   io::RadioLink radio_;
   io::SbusGlitches glitches_;

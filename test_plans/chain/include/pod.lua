@@ -9,8 +9,10 @@ local function sensors()
   }
 end
 
-function pod_plan(name, run, board)
+-- more: wires besides those of sensors and ESCs.
+function pod_plan(name, run, board, more)
   local wires = sensors()
+  for i, wire in ipairs(more or {}) do wires[7 + i] = wire end
   for n = 1, 4 do wires[3 + n] = { from = "flight.esc" .. n, to = n < 3 and "pod.i2c2" or "pod.i2c3" } end
   plan(name) {
     nodes = {

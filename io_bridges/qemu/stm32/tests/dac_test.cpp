@@ -56,5 +56,23 @@ TEST(Dac, ASecondTriggerBeforeTheDmaServedIsAnUnderrun) {
   EXPECT_FALSE(dac.request(1).level());
 }
 
+// Once each: a register that is written again with what it has is no change.
+TEST(Dac, WhoListensIsToldEachChangeOfTheLevelAndNoOther) {
+  BareChip bare;
+  Dac dac(bare.chip(), 54);
+  std::vector<double> told;
+  dac.on_change(1, [&](double volts) { told.push_back(volts); });
+  put(dac, 0x08, 2048);  // not enabled
+  put(dac, 0x00, 1);
+  put(dac, 0x08, 2048);
+  put(dac, 0x14, 100);  // of the other channel
+  put(dac, 0x08, 1024);
+  dac.reset();
+  ASSERT_EQ(told.size(), 3u);
+  EXPECT_TRUE(near(told[0], 1.65, round_off(4, 1.65)));
+  EXPECT_TRUE(near(told[1], 0.825, round_off(4, 0.825)));
+  EXPECT_TRUE(near(told[2], 0.0, round_off(4, 1.0)));
+}
+
 }  // namespace
 }  // namespace whirl::stm32

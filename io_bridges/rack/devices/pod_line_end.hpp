@@ -1,15 +1,15 @@
-// A GPS receiver behind a pod's host: what it says the pod says on its line, at the receiver's rate; what the pod hears
-// there comes to it.
+// A device on a serial line behind a pod's host: what it says the pod says on its line, at the device's rate; what the pod
+// hears there comes to it.
 #pragma once
 #include <functional>
 #include <vector>
 
-#include "io_bridges/devices/ublox.hpp"
+#include "io_bridges/devices/bus.hpp"
 #include "io_bridges/rack/devices/pod_host_link.hpp"
 
 namespace whirl::rack {
 
-class PodGps {
+class PodLineEnd {
  public:
   // What is for the pod goes to `send`, packed; each byte and each change of its rate are told besides.
   struct Ears {
@@ -17,7 +17,9 @@ class PodGps {
     std::function<void(std::uint8_t byte, double baud)> byte = nullptr;
     std::function<void(double baud)> rate = nullptr;
   };
-  PodGps(io::EventQueue& queue, io::Ublox& receiver, io::PodLinkReader& reader, Ears ears);
+  // baud: the device's own, now. Both must live as long.
+  PodLineEnd(io::EventQueue& queue, io::PodEnd line, io::UartPeer& device,
+             std::function<double()> baud, io::PodLinkReader& reader, Ears ears);
 
   void tell_rate();
   // What has gathered: as a host does, with the next millisecond.
@@ -26,11 +28,13 @@ class PodGps {
 
  private:
   void said(std::uint8_t byte, double baud);
-  void written(const io::PodGpsWritten& written);
+  void written(const io::PodWritten& written);
   void follow(double baud);
 
   io::EventQueue& queue_;
-  io::Ublox& receiver_;
+  io::PodEnd line_;
+  io::UartPeer& device_;
+  std::function<double()> baud_;
   Ears ears_;
   std::uint8_t number_ = 0;
   std::uint32_t rate_;

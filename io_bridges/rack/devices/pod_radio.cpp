@@ -1,0 +1,50 @@
+#include "io_bridges/rack/devices/pod_radio.hpp"
+
+#include "io_bridges/board_description/pod_host.hpp"
+#include "io_bridges/rack/devices/mavlink_keys.hpp"
+
+namespace whirl::rack {
+namespace {
+
+constexpr Nanoseconds kMs = 1'000'000;
+constexpr double kBaud = io::MavlinkLink::Params{}.baud;
+
+}  // namespace
+
+std::vector<DeviceKey> pod_radio_keys() {
+  std::vector<DeviceKey> keys = air_keys();
+  keys.push_back(flag_key("params.radio", "it has a telemetry radio").with(false));
+  return keys;
+}
+
+PodRadio::PodRadio(DeviceSlot& slot, io::PodLinkReader& reader, Send send)
+    : gather_(slot.rack().events(), [this] { said_->flush(); }) {
+  if (!slot.flag("params.radio")) return;
+  io::EventQueue& queue = slot.rack().events();
+  link_ = std::make_unique<io::MavlinkLink>(queue, radio_of(slot, kBaud), slot.rack().finding());
+  const auto tell = [&slot](io::Kind kind) {
+    return [&happened = slot.rack().happened(), kind](std::span<const std::uint8_t> bytes,
+                                                      Nanoseconds t_ns) {
+      happened.add(kind, kPodRadioPort, t_ns, bytes.data(),
+                   static_cast<std::uint32_t>(bytes.size()));
+    };
+  };
+  link_->on_frame(tell(io::Kind::uart_received));
+  link_->on_delivered(tell(io::Kind::uart_delivered));
+  const auto gathers = [this](std::uint8_t, double) {
+    if (!gather_.pending()) gather_.in(kMs);
+  };
+  said_ = std::make_unique<PodLineEnd>(
+      queue, io::PodEnd::radio, *link_, [] { return kBaud; }, reader,
+      PodLineEnd::Ears{std::move(send), gathers});
+}
+
+void PodRadio::start() {
+  if (said_ != nullptr) said_->tell_rate();
+}
+
+void PodRadio::on_message(const io::Reader& message) {
+  if (link_ != nullptr) link_->send_frame(message.payload(), message.header().t_ns);
+}
+
+}  // namespace whirl::rack
