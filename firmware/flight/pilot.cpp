@@ -29,7 +29,7 @@ int position_of(std::uint16_t us) {
 
 PilotLink Pilot::link() const {
   const bool frames_come = held_ == kFrames && quiet_ms_ < kLost_ms;
-  if (frames_come && in_doubt_ms_ < kLost_ms) return PilotLink::ok;
+  if (frames_come && trusted_) return PilotLink::ok;
   if (last_refused_ || (frames_come && heard_)) return PilotLink::nonsense;
   return heard_ ? PilotLink::lost : PilotLink::never_heard;
 }
@@ -37,14 +37,6 @@ PilotLink Pilot::link() const {
 std::uint16_t Pilot::median_us(Channel channel) const {
   const std::uint16_t a = last_us_[0][channel], b = last_us_[1][channel], c = last_us_[2][channel];
   return std::max(std::min(a, b), std::min(std::max(a, b), c));
-}
-
-int Pilot::position(Channel channel) const {
-  const int first = position_of(last_us_[0][channel]);
-  for (const auto& frame_us : last_us_) {
-    if (position_of(frame_us[channel]) != first) return -1;
-  }
-  return first;
 }
 
 void Pilot::on_frame(std::span<const std::uint16_t> channels_us) {
@@ -55,17 +47,26 @@ void Pilot::on_frame(std::span<const std::uint16_t> channels_us) {
   last_refused_ = !good;
   if (!good) {
     ++refused_;
+    agreeing_ = 0;
     return;
   }
-  if (quiet_ms_ >= kLost_ms) held_ = 0;  // what was before a gap says nothing of now
+  if (quiet_ms_ >= kLost_ms) held_ = agreeing_ = 0;  // what was before a gap says nothing of now
   std::copy_n(channels_us.begin(), kChannels, last_us_[next_].begin());
   next_ = (next_ + 1) % kFrames;
   held_ = std::min(held_ + 1, kFrames);
   quiet_ms_ = 0;
-  const int mode = position(kMode), arm = position(kArm);
-  if (held_ < kFrames || mode < 0 || arm < 0) return;
+  const int mode = position_of(channels_us[kMode]), arm = position_of(channels_us[kArm]);
+  agreeing_ = mode == mode_ && arm == arm_ ? std::min(agreeing_ + 1, kMoved) : 1;
+  mode_ = mode;
+  arm_ = arm;
+  const bool moved = mode != told_mode_ || arm != told_arm_;
+  if (agreeing_ < (moved ? kMoved : kAgreeing)) return;
+  in_doubt_ms_ -= std::min(in_doubt_ms_, kTrusted_ms);
+  trusted_ = trusted_ || in_doubt_ms_ == 0;
+  if (!trusted_) return;
+  told_mode_ = mode;
+  told_arm_ = arm;
   heard_ = true;
-  in_doubt_ms_ = 0;
   demand_.roll = share_of_travel(median_us(kRoll));
   demand_.pitch = share_of_travel(median_us(kPitch));
   demand_.yaw = share_of_travel(median_us(kYaw));
