@@ -9,6 +9,7 @@
 //            to = "fc.usart2" }, ... } join their UARTs at the grain of the exchange; { from = "fc.esc1", to = "esc.i2c2" }:
 //            that board takes the place of the device esc1 on fc's bus; { from = "fc.imu", to = "pod.spi1", select = "PA15",
 //            ready = "PC4", latency = "100 us" } on SPI; { from = "fc.gps", to = "pod.usart6", fastest = "57600 baud" } on a UART;
+//            { from = "fc.battery", to = "pod.dac1", latency = "100 us" } at an analog pin;
 //            { from = "flight.esc1", to = "esc.can1" } on CAN, and { from = "a.can1", to = "b.can1" } joins two CANs
 //            A node's flash = { "esc_motor_1" } names ELF files that are flashed beside its image
 //   Stand    instead of vehicle: stand = { prop = "hk_10x4.5", battery = "4s_2200" }
@@ -49,7 +50,7 @@ struct PlanBoardWire {  // a board in the place of another one's device
   std::size_t leader = 0;
   std::string device;  // of the leader's board; or its bus, "can1", where none has its place taken
   std::size_t follower = 0;
-  std::string bus;  // of the follower: "i2c2", "spi1", "can1", "usart6"
+  std::string bus;  // of the follower: "i2c2", "spi1", "can1", "usart6", "dac1"
   // Of SPI: the follower's pins, `ready` may be empty, and its line's latency. Of a UART: its shortest character.
   std::string select = {}, ready = {};
   std::int64_t latency_ns = 0;

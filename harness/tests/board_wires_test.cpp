@@ -25,7 +25,9 @@ struct Rig {
           {.name = "sbus", .type = "sbus", .bus = "uart4"},
           {.name = "esc3", .type = "esc_dronecan", .bus = "can2", .motor = 3},
           {.name = "esc4", .type = "esc_dronecan", .bus = "can2", .motor = 4},
-          {.name = "rc", .type = "cppm", .bus = "PA10"}};
+          {.name = "rc", .type = "cppm", .bus = "PA10"},
+          {.name = "battery", .type = "battery_sense", .bus = "PC0"},
+          {.name = "current", .type = "current_sense", .bus = "PC1"}};
       nodes.push_back({std::string(1, static_cast<char>('a' + i)), board});
     }
   }
@@ -80,6 +82,16 @@ TEST(BoardWires, BothEndsAreI2cOrBothSpiAndEachBusHasOneMaster) {
   EXPECT_EQ(Rig(2).wire(0, "rc", 1).refused(),
             "wires: a.rc is no target on an I2C, SPI or CAN bus, and on no UART or analog pin");
   EXPECT_EQ(Rig(2).wire(0, "esc7", 1).refused(), "wires: board has no device 'esc7'");
+}
+
+TEST(BoardWires, AnAnalogPinIsJoinedToADacsChannelOfItsOwn) {
+  EXPECT_EQ(Rig(2).wire(0, "battery", 1, "dac1").wire(0, "current", 1, "dac2").refused(), "");
+  EXPECT_EQ(Rig(2).wire(0, "battery", 1, "usart6").refused(),
+            "wires: a.battery is on PC0, the other end on usart6");
+  EXPECT_EQ(Rig(2).wire(0, "rc", 1, "dac1").refused(),
+            "wires: a.rc is no target on an I2C, SPI or CAN bus, and on no UART or analog pin");
+  EXPECT_EQ(Rig(2).wire(0, "battery", 1, "dac1").wire(0, "current", 1, "dac1").refused(),
+            "wires: b.dac1 has two masters");
 }
 
 TEST(BoardWires, AUartIsJoinedToOneUart) {

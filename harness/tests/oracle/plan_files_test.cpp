@@ -174,6 +174,17 @@ TEST(PlanFile, ABoardInTheDevicesPlaceOnAUartHasTheShortestCharacterThatItMaySen
   EXPECT_EQ(line.plans[0].wires.size(), 1u);
 }
 
+TEST(PlanFile, ALevelFromAnotherBoardsDacHasALinesLatency) {
+  const auto wire = [](const std::string& more) {
+    return load(nodes("wires = { { from = 'a.battery', to = 'b.dac1'" + more + " } },"));
+  };
+  EXPECT_EQ(wire("").plans.at(0).board_wires.at(0).latency_ns, 100'000);
+  EXPECT_EQ(wire(", latency = '20 us'").plans.at(0).board_wires.at(0).latency_ns, 20'000);
+  EXPECT_NE(wire(", latency = '1 us'").error.find("a line's latency is 2 us to 1 ms"),
+            std::string::npos);
+  EXPECT_NE(wire(", fastest = '9600 baud'").error.find("fastest"), std::string::npos);
+}
+
 TEST(PlanFile, RefusesNodesAndWiresThatLeadNowhere) {
   const auto refused = [](const std::string& from, const std::string& to) {
     return load(nodes("wires = { { from = '" + from + "', to = '" + to + "' } },")).error;
