@@ -14,14 +14,20 @@ constexpr std::int64_t kMs = 1'000'000;
 constexpr std::uint16_t kHost = 1, kGps = 6;
 using Bytes = std::vector<std::uint8_t>;
 
-// The ends of the characters on the GPS's line. A line's end is told at once, whatever the rate of the one that listens.
-std::vector<std::int64_t> characters_of(const Bytes& from_host, int milliseconds) {
-  VirtualBoardOptions options;
-  const auto start = read_board_text(
+// The pod between a host, on its UART, and a line on that one.
+Result<BoardStart> pod_with(const std::string& bus, int baud) {
+  return read_board_text(
       R"({"board":"pod","mcu":"stm32f405rg","hse_Hz":8000000,"image":")" +
       std::string(WHIRL_FIRMWARE) +
       R"(/pod.elf","devices":[{"name":"host","type":"serial","bus":"usart1","baud":3000000},)"
-      R"({"name":"gps","type":"serial","bus":"usart6","baud":9600}]})");
+      R"({"name":"line","type":"serial","bus":")" +
+      bus + R"(","baud":)" + std::to_string(baud) + "}]}");
+}
+
+// The ends of the characters on the GPS's line. A line's end is told at once, whatever the rate of the one that listens.
+std::vector<std::int64_t> characters_of(const Bytes& from_host, int milliseconds) {
+  VirtualBoardOptions options;
+  const auto start = pod_with("usart6", 9600);
   EXPECT_TRUE(start);
   std::vector<std::int64_t> ends_ns;
   if (!start) return ends_ns;
@@ -76,11 +82,7 @@ TEST(PodRadioLine, CarriesBothWays) {
   constexpr std::uint16_t kRadio = 3;
   constexpr std::size_t kLength = 60;
   VirtualBoardOptions options;
-  const auto start = read_board_text(
-      R"({"board":"pod","mcu":"stm32f405rg","hse_Hz":8000000,"image":")" +
-      std::string(WHIRL_FIRMWARE) +
-      R"(/pod.elf","devices":[{"name":"host","type":"serial","bus":"usart1","baud":3000000},)"
-      R"({"name":"radio","type":"serial","bus":"usart3","baud":57600}]})");
+  const auto start = pod_with("usart3", 57600);
   ASSERT_TRUE(start);
   options.board = start.value();
   VirtualBoard board(options);
