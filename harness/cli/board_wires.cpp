@@ -65,7 +65,8 @@ Result<Done> check_buses(const plan::Plan& plan, const std::vector<Node>& nodes,
   const std::string bus = bus_there(nodes, wire);
   const BoardDevice* device = nodes[wire.leader].board.find(wire.device);
   const BusKind kind = device != nullptr && puts_a_level(*device) ? BusKind::dac : bus_kind(bus);
-  if (kind == BusKind::none || (kind == BusKind::i2c && device->address < 0)) {
+  if (kind == BusKind::none ||
+      (kind == BusKind::i2c && (device == nullptr || device->address < 0))) {
     return wrong(
         plan, name + " is no target on an I2C, SPI or CAN bus, and on no UART or analog pin", "");
   }
