@@ -95,8 +95,9 @@ struct Rig {
 
 // Lost and late, and the clock; the rest is zero.
 std::vector<std::uint8_t> status(std::uint16_t lost, std::uint16_t late, std::uint32_t now_us) {
-  std::vector<std::uint8_t> frame{0xA5, 0x81, 0x01, 0x36};
-  frame.resize(4 + 0x36);
+  constexpr std::uint8_t kLength = 56;
+  std::vector<std::uint8_t> frame{0xA5, 0x81, 0x01, kLength};
+  frame.resize(4 + kLength);
   const std::uint8_t settings[] = {1, 1, 0, 0x18, 0x18, 1, 0x10, 0};  // awake, 1 kHz
   std::copy(std::begin(settings), std::end(settings), frame.begin() + 4);
   const auto half = [&](std::size_t at, std::uint32_t value) {
