@@ -62,7 +62,7 @@ bool serial_joins(const BoardDevice& device, const bench::BenchDescription& benc
 
 // Parts that are played on a line of their own as well.
 bool has_own_line(const BoardDevice& device) {
-  return is_receiver(device) || is_gps(device);
+  return is_receiver(device) || is_gps(device) || device.type == "mavlink_link";
 }
 
 bool pod_plays(const BoardDevice& device, const bench::BenchDescription& bench) {
@@ -81,15 +81,14 @@ Result<Done> check_played(const BoardDevice& device, const BoardDescription& boa
   const bool played =
       std::any_of(bench.cans.begin(), bench.cans.end(),
                   [&](const auto& l) { return device.bus == "can" + std::to_string(l.bus); }) ||
-      ((device.type == "mavlink_link" || has_own_line(device)) && serial_joins(device, bench)) ||
-      pod_plays(device, bench);
+      (has_own_line(device) && serial_joins(device, bench)) || pod_plays(device, bench);
   if (played) return Done{};
   const bool on_can = device.bus.starts_with("can");
   return refused(bench.file,
                  "nothing plays " + device.name + ", a " + device.type + " on " + device.bus +
                      " of " + board.name,
                  on_can ? "links = { { bus = \"" + device.bus + "\", interface = \"can0\" } }"
-                 : device.type == "mavlink_link" || has_own_line(device)
+                 : has_own_line(device)
                      ? "links = { { bus = \"" + device.bus + "\", path = \"/dev/ttyUSB0\" } }"
                      : "links = { { pod = \"pod_with_receivers\", path = ... } } for what a pod "
                        "plays, or a board whose parts are nodes of CAN: px4fmu_v1_all_can");
@@ -101,8 +100,9 @@ Result<Done> check_flight_links(const BoardDescription& board,
     if (const auto played = check_played(device, board, bench); !played) return played;
     if (!has_own_line(device) || !serial_joins(device, bench) || !pod_plays(device, bench))
       continue;
-    return refused(bench.file, "both a pod and a line play " + device.name,
-                   "one of the two, or a pod's board without GPS and receiver: pod_with_parts");
+    return refused(
+        bench.file, "both a pod and a line play " + device.name,
+        "one of the two, or a pod's board that does not play it: pod_with_parts plays no line");
   }
   if (!bench.safety.limits.empty()) {
     return refused(bench.file, "limits: of a flight controller's bench nothing is measured",

@@ -160,6 +160,8 @@ struct Refusal {
 constexpr const char* kPod = R"({ name = "pod", pod = "pod_with_parts", path = "/nowhere" },)";
 constexpr const char* kPodWithGps =
     R"({ name = "pod", pod = "pod_with_receivers", path = "/nowhere" },)";
+constexpr const char* kPodWithRadio =
+    R"({ name = "pod", pod = "pod_with_radio", path = "/nowhere" },)";
 constexpr const char* kGps = R"({ name = "gps", bus = "usart6", path = "/nowhere/gps" },)";
 constexpr const char* kGpsAgain = R"({ name = "more", bus = "usart6", path = "/nowhere/more" },)";
 
@@ -167,6 +169,7 @@ constexpr const char* kGpsAgain = R"({ name = "more", bus = "usart6", path = "/n
 TEST(BenchGps, WhatNoBareLineCanBeIsRefusedInOneLineWithItsPlace) {
   const Refusal cases[] = {
       {kPodWithGps, "gnss_jammed", "bench.lua", "both a pod and a line play gps"},
+      {kPodWithRadio, "gnss_jammed", "bench.lua", "both a pod and a line play radio"},
       {kPod, "uart_loss", "gps.lua:4", "uart_loss"},
       {kPod, "i2c_nack", "gps.lua:4", "i2c_nack"},
   };
