@@ -131,24 +131,22 @@ bool bench_plays_receiver(const bench::BenchDescription& bench, const BoardDescr
 // What of the ground the first board hears, itself or by a board in a part's place.
 flight::BoardEars ears_of(const cli::Setup& setup) {
   flight::BoardEars ears{.radio = false, .receiver = false};
-  const auto who_plays = [&setup](const char* type) {
-    return std::find_if(setup.far.begin(), setup.far.end(),
-                        [&](const auto& far) { return pod_parts(*far.board).count(type) != 0; });
-  };
-  const auto played = who_plays("sbus"), speaks = who_plays("mavlink_link");
   for (const BoardDevice& device : setup.board.devices) {
-    const bool here = std::none_of(setup.wires.begin(), setup.wires.end(),
-                                   [&](const WireEnd& end) { return end.device == device.name; });
-    const bool receiver = device.type == "cppm" || device.type == "sbus";
-    if (device.type == "mavlink_link" && !here && speaks != setup.far.end()) {
-      ears.radio = true;
-      ears.radios_board = static_cast<std::uint8_t>(speaks->node);
+    const bool radio = device.type == "mavlink_link";
+    if (!radio && device.type != "cppm" && device.type != "sbus") continue;
+    bool& hears = radio ? ears.radio : ears.receiver;
+    if (std::none_of(setup.wires.begin(), setup.wires.end(),
+                     [&](const WireEnd& end) { return end.device == device.name; })) {
+      hears = true;
+      continue;
     }
-    if (device.type == "mavlink_link") ears.radio |= here;
-    if (receiver && here) ears.receiver = true;
-    if (!receiver || here || played == setup.far.end()) continue;
-    ears.receiver = true;
-    ears.receivers_board = static_cast<std::uint8_t>(played->node);
+    const char* type = radio ? "mavlink_link" : "sbus";
+    const auto played = std::find_if(setup.far.begin(), setup.far.end(), [&](const auto& far) {
+      return pod_parts(*far.board).count(type) != 0;
+    });
+    if (played == setup.far.end()) continue;
+    hears = true;
+    (radio ? ears.radios_board : ears.receivers_board) = static_cast<std::uint8_t>(played->node);
   }
   return ears;
 }

@@ -69,6 +69,9 @@ class FlightWorld : public World {
   const plant::VehicleState& truth() const { return vehicle_.state(); }
 
  private:
+  bool is_radio(const io::Header& head) const {
+    return head.board == ears_.radios_board && head.port == kRadioPort;
+  }
   plant::Vehicle make_vehicle(const FlightParams& params, plant::RotorSet rotors,
                               std::uint64_t seed);
   void make_controllers(const FlightParams& params, std::uint64_t seed,
@@ -130,10 +133,6 @@ class FlightWorld : public World {
   std::vector<double> unbalance_m_;  // likewise, over the vehicle's mass
   const plant::AirframeParams airframe_;
   const std::vector<plant::Obstacle> obstacles_;
-  bool is_radio(const io::Header& head) const {
-    return head.board == ears_.radios_board && head.port == kRadioPort;
-  }
-
   std::uint64_t seed_;
   std::vector<DrawnPart> drawn_;
   std::optional<Hand> hand_;

@@ -29,7 +29,7 @@ constexpr std::array<Seat, 9> kSeats{{{"mpu6000", "spi1"},
                                       {"sbus", "usart2", 100'000.0},
                                       {"mavlink_link", "usart3", 57'600.0},
                                       {"battery_sense", "dac1"}}};
-constexpr std::int64_t kReady_ns = 100'000;  // as in test_plans/chain/pod.lua
+constexpr std::int64_t kLine_ns = 100'000;  // of its lines, as in test_plans/chain/include/pod.lua
 
 const Seat* seat_of(const BoardDevice& device) {
   for (const Seat& seat : kSeats) {
@@ -51,9 +51,9 @@ std::vector<WirePlace> places_of(const PodBeside& boards) {
     if (bus_kind(place.bus) == BusKind::spi) {
       place.select = kSelect;
       place.ready = kReady;
-      place.latency_ns = kReady_ns;
+      place.latency_ns = kLine_ns;
     }
-    if (bus_kind(place.bus) == BusKind::dac) place.latency_ns = kReady_ns;
+    if (bus_kind(place.bus) == BusKind::dac) place.latency_ns = kLine_ns;
     if (is_uart(place.bus)) place.latency_ns = shortest_character_ns(seat->fastest_baud);
     places.push_back(std::move(place));
   }

@@ -92,7 +92,8 @@ std::string bench_file(const Metal& metal) {
 
 // As short as a flight can be: the hover is test_plans/flight/bench_hover_pod.lua, in the place of this one by
 // WHIRL_BENCH_POD_PLAN.
-constexpr const char* kUp = R"(plan "up" {
+std::string up_and(const std::string& more) {
+  return R"(plan "up" {
   image = "flight", board = "px4fmu_v1_sbus", vehicle = "hp_quad", timeout = "20 s",
   run = function(t)
     t:within("8 s", function(s) return s.told_ready == 1 end, "it says that it can be armed")
@@ -100,21 +101,14 @@ constexpr const char* kUp = R"(plan "up" {
     local up = t:record({ "tilt", "attitude_error" }, "0.5 s")
     t:expect(up:max "tilt", "tilt"):at_most "5 deg"
     t:expect(up:max "attitude_error", "and its own word of it"):at_most "3 deg"
-  end,
-})";
+)" + more +
+         "  end,\n}";
+}
 
-// And with its battery by the pod: two resistors of 1 %, and the telemetry's age (test_plans/chain/pod_radio.lua).
-constexpr const char* kUp_told = R"(plan "up and told" {
-  image = "flight", board = "px4fmu_v1_sbus", vehicle = "hp_quad", timeout = "20 s",
-  run = function(t)
-    t:within("8 s", function(s) return s.told_ready == 1 end, "it says that it can be armed")
-    up_by_the_sticks(t)
-    local up = t:record({ "tilt", "attitude_error" }, "0.5 s")
-    t:expect(up:max "tilt", "tilt"):at_most "5 deg"
-    t:expect(up:max "attitude_error", "and its own word of it"):at_most "3 deg"
+// With its battery by the pod: two resistors of 1 %, and the telemetry's age (test_plans/chain/pod_radio.lua).
+constexpr const char* kTold = R"(
     t:expect(math.abs(t:value("told_voltage").value - t:value("bus_voltage").value), "its word of its battery is off by, V"):at_most(0.35)
-  end,
-})";
+)";
 
 // Samples fall into the stand-in's milliseconds, two into one and none into the next: the flight controller's IMU is to be
 // even all the same, and what the pod counts of them little: a pseudo-terminal delivers one in some hundred a millisecond later
@@ -133,7 +127,7 @@ void expect_even(const ComposedRun& run, const Periods& periods) {
 }
 
 ComposedRun fly(const ScratchFolder& folder, CommonClock& clock, Metal& metal,
-                const bench::CanMaker& can, const char* text = kUp) {
+                const bench::CanMaker& can, const std::string& text = up_and("")) {
   const std::string file = folder.file("bench.lua"), up = folder.file("up.lua");
   std::ofstream(file) << bench_file(metal);
   std::ofstream(up) << kFlightSteps << text;
@@ -156,7 +150,7 @@ TEST(BenchPod, TheRealImageFliesOnSensorsAndControllersThatThePodPlays) {
   const ScratchFolder folder;
   CommonClock clock;
   Metal metal(folder, clock, nullptr, PodPlays::all);
-  const ComposedRun run = fly(folder, clock, metal, nullptr, kUp_told);
+  const ComposedRun run = fly(folder, clock, metal, nullptr, up_and(kTold));
   EXPECT_EQ(run.code, 0) << run.file["reason"];
   expect_even(run, metal.periods);
 }

@@ -78,11 +78,6 @@ pod_plan("pod on CAN: the host cut off for good", function(t)
   hovers(t)
   t:wait(t:drawn("0 s", "2 s"))
   t:fault { kind = "can_cut", device = "pod/host" }
-  t:within("800 ms", function(s)
-    for motor = 1, 4 do
-      if s["winding_current_" .. motor .. "_A"] > 0.5 then return false end
-    end
-    return true
-  end, "no rotor is driven")
+  t:within("800 ms", no_rotor_is_driven, "no rotor is driven")
   t:within("2 s", function(s) return s.told_armed == 0 end, "motors off")
 end, board)

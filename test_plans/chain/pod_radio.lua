@@ -11,12 +11,7 @@ local more = {
 
 local function radio_plan(name, run)
   pod_plan(name, function(t)
-    heartbeat(t)
-    t:command { arm = true }
-    t:within("4 s", function(s) return s.told_armed == 1 end, "armed")
-    t:command { takeoff = "1.1 m" }
-    t:within("5 s", function(s) return s.height_m > 1.0 end, "1 m high")
-    t:wait "3 s"
+    hovers(t, "5 s")
     run(t)
   end, "pod_with_radio", more)
 end
@@ -47,10 +42,5 @@ end)
 radio_plan("pod radio's wire is cut", function(t)
   t:fault { kind = "uart_silence", bus = "pod/usart3" }
   t:within("20 s", function(s) return s.on_ground == 1 end, "on the ground")
-  t:within("5 s", function(s)
-    for motor = 1, 4 do
-      if s["speed_" .. motor .. "_radps"] > 5 then return false end
-    end
-    return true
-  end, "no rotor turns")
+  t:within("5 s", function(s) return each_rotor(s, "speed_", "_radps", 5) end, "no rotor turns")
 end)

@@ -67,12 +67,7 @@ chain_plan("chain browns out on the ground", { timeout = "60 s", energy = false 
   heartbeat(t)
   arms_and_idles(t)
   all_reset(t)
-  t:within("100 ms", function(s)
-    for motor = 1, 4 do
-      if s["winding_current_" .. motor .. "_A"] > 0.5 then return false end
-    end
-    return true
-  end, "no rotor is driven")
+  t:within("100 ms", no_rotor_is_driven, "no rotor is driven")
   t:within("5 s", function(s) return s.told_armed == 0 end, "told as disarmed")
   t:within("5 s", function(s) return math.max(s.speed_1_radps, s.speed_2_radps, s.speed_3_radps, s.speed_4_radps) < 1 end,
            "the rotors stand")

@@ -30,4 +30,14 @@ io::MavlinkLink::Params radio_of(DeviceSlot& slot, double baud) {
   return params;
 }
 
+void tell_frames(io::MavlinkLink& radio, io::Batch& happened, std::uint16_t port) {
+  const auto tell = [&happened, port](io::Kind kind) {
+    return [&happened, port, kind](std::span<const std::uint8_t> bytes, Nanoseconds t_ns) {
+      happened.add(kind, port, t_ns, bytes.data(), static_cast<std::uint32_t>(bytes.size()));
+    };
+  };
+  radio.on_frame(tell(io::Kind::uart_received));
+  radio.on_delivered(tell(io::Kind::uart_delivered));
+}
+
 }  // namespace whirl::rack

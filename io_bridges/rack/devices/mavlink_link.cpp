@@ -10,14 +10,7 @@ class RadioDevice final : public RackDevice {
   explicit RadioDevice(DeviceSlot& slot)
       : uart_(slot.bus_number()),
         link_(slot.rack().events(), radio_of(slot, slot.quantity("baud")), slot.rack().finding()) {
-    const auto send = [&slot, this](io::Kind kind) {
-      return [&happened = slot.rack().happened(), kind, uart = uart_](
-                 std::span<const std::uint8_t> bytes, Nanoseconds t_ns) {
-        happened.add(kind, uart, t_ns, bytes.data(), static_cast<std::uint32_t>(bytes.size()));
-      };
-    };
-    link_.on_frame(send(io::Kind::uart_received));
-    link_.on_delivered(send(io::Kind::uart_delivered));
+    tell_frames(link_, slot.rack().happened(), uart_);
     slot.join_uart(link_);
   }
 

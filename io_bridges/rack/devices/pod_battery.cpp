@@ -1,6 +1,7 @@
 #include "io_bridges/rack/devices/pod_battery.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "io_bridges/messages/messages.hpp"
 #include "io_bridges/protocols/dronecan/pod_link.hpp"
@@ -33,8 +34,9 @@ std::optional<std::vector<std::uint8_t>> PodBattery::news(Nanoseconds now) {
   const io::Fault* offset = faults_.apply(io::FaultKind::sensor_offset, kPodBus, kPodBattery, now);
   if (offset != nullptr) battery_V = std::max(battery_V + offset->value, 0.0);
   const double level = divider_.tap_V(battery_V) / kSupply_V;
-  if (io::pack_pod_battery(0, level) == told_ && now - told_ns_ < kAgain_ns) return std::nullopt;
-  told_ = io::pack_pod_battery(0, level);
+  auto frame = io::pack_pod_battery(0, level);
+  if (frame == told_ && now - told_ns_ < kAgain_ns) return std::nullopt;
+  told_ = std::move(frame);
   told_ns_ = now;
   return io::pack_pod_battery(number_++, level);
 }

@@ -20,7 +20,7 @@ class PodBattery {
   explicit PodBattery(DeviceSlot& slot);
 
   void set(double battery_V) { battery_V_ = battery_V; }
-  // The frame for the pod; nothing: it has none, or nothing has changed in the last second.
+  // The frame for the pod; nothing: it plays none, or has told this level within the last second.
   std::optional<std::vector<std::uint8_t>> news(Nanoseconds now);
 
  private:
@@ -28,7 +28,7 @@ class PodBattery {
   bool played_;
   BatteryDivider divider_;
   double battery_V_ = 0.0;
-  std::vector<std::uint8_t> told_;
+  std::vector<std::uint8_t> told_;  // as number 0
   Nanoseconds told_ns_ = 0;
   std::uint8_t number_ = 0;
 };

@@ -13,12 +13,15 @@ std::uint32_t whole(double baud) {
 }  // namespace
 
 PodLineEnd::PodLineEnd(io::EventQueue& queue, io::PodEnd line, io::UartPeer& device,
-                       std::function<double()> baud, io::PodLinkReader& reader, Ears ears)
+                       std::function<double()> baud, io::PodLinkReader& reader, Ears ears,
+                       Nanoseconds gather_ns)
     : queue_(queue),
       line_(line),
       device_(device),
       baud_(std::move(baud)),
       ears_(std::move(ears)),
+      gather_ns_(gather_ns),
+      gather_(queue_, [this] { flush(); }),
       rate_(whole(baud_())) {
   reader.on_written(line_, [this](const io::PodWritten& w) { written(w); });
   device_.join([this](const io::UartByte& byte, const io::UartFormat& format) {
@@ -33,6 +36,7 @@ void PodLineEnd::tell_rate() {
 void PodLineEnd::said(std::uint8_t byte, double baud) {
   follow(baud);
   if (ears_.byte) ears_.byte(byte, baud);
+  if (gather_ns_ != 0 && !gather_.pending()) gather_.in(gather_ns_);
   bytes_.push_back(byte);
   if (bytes_.size() == io::kPodLineBytes) flush();
 }

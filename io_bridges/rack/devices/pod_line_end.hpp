@@ -17,14 +17,14 @@ class PodLineEnd {
     std::function<void(std::uint8_t byte, double baud)> byte = nullptr;
     std::function<void(double baud)> rate = nullptr;
   };
-  // baud: the device's own, now. Both must live as long.
+  // baud: the device's own, now. Both must live as long. gather_ns: what it says goes that long after its first byte, as a
+  // host does, or once a piece is full; 0: or when flush() says so.
   PodLineEnd(io::EventQueue& queue, io::PodEnd line, io::UartPeer& device,
-             std::function<double()> baud, io::PodLinkReader& reader, Ears ears);
+             std::function<double()> baud, io::PodLinkReader& reader, Ears ears,
+             Nanoseconds gather_ns = 0);
 
   void tell_rate();
-  // What has gathered: as a host does, with the next millisecond.
   void flush();
-  std::size_t gathered() const { return bytes_.size(); }
 
  private:
   void said(std::uint8_t byte, double baud);
@@ -36,6 +36,8 @@ class PodLineEnd {
   io::UartPeer& device_;
   std::function<double()> baud_;
   Ears ears_;
+  Nanoseconds gather_ns_;
+  io::Event gather_;
   std::uint8_t number_ = 0;
   std::uint32_t rate_;
   std::vector<std::uint8_t> bytes_;

@@ -17,26 +17,14 @@ std::vector<DeviceKey> pod_radio_keys() {
   return keys;
 }
 
-PodRadio::PodRadio(DeviceSlot& slot, io::PodLinkReader& reader, Send send)
-    : gather_(slot.rack().events(), [this] { said_->flush(); }) {
+PodRadio::PodRadio(DeviceSlot& slot, io::PodLinkReader& reader, Send send) {
   if (!slot.flag("params.radio")) return;
   io::EventQueue& queue = slot.rack().events();
   link_ = std::make_unique<io::MavlinkLink>(queue, radio_of(slot, kBaud), slot.rack().finding());
-  const auto tell = [&slot](io::Kind kind) {
-    return [&happened = slot.rack().happened(), kind](std::span<const std::uint8_t> bytes,
-                                                      Nanoseconds t_ns) {
-      happened.add(kind, kPodRadioPort, t_ns, bytes.data(),
-                   static_cast<std::uint32_t>(bytes.size()));
-    };
-  };
-  link_->on_frame(tell(io::Kind::uart_received));
-  link_->on_delivered(tell(io::Kind::uart_delivered));
-  const auto gathers = [this](std::uint8_t, double) {
-    if (!gather_.pending()) gather_.in(kMs);
-  };
+  tell_frames(*link_, slot.rack().happened(), kPodRadioPort);
   said_ = std::make_unique<PodLineEnd>(
       queue, io::PodEnd::radio, *link_, [] { return kBaud; }, reader,
-      PodLineEnd::Ears{std::move(send), gathers});
+      PodLineEnd::Ears{std::move(send)}, kMs);
 }
 
 void PodRadio::start() {

@@ -26,7 +26,6 @@ class PodRadio {
  private:
   std::unique_ptr<io::MavlinkLink> link_;  // null: none
   std::unique_ptr<PodLineEnd> said_;
-  io::Event gather_;
 };
 
 }  // namespace whirl::rack

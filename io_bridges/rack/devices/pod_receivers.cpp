@@ -48,18 +48,14 @@ PodReceivers::PodReceivers(DeviceSlot& slot, io::PodLinkReader& reader, Send sen
       glitches_(&slot.rack().faults(), kPodBus, kPodReceiver, slot.rack().seed(),
                 slot.name() + ".receiver"),
       has_radio_(slot.flag("params.receiver")),
-      gather_(queue_, [this] { said_->flush(); }),
       sticks_(queue_, [this] { tell_sticks(); }) {
   if (!slot.flag("params.gps")) return;
   gps_ = std::make_unique<io::Ublox>(
       queue_, gps_of(slot), [this](const io::Ublox::Query& query) { return place_.fix(query); },
       &slot.rack().faults(), slot.rack().finding());
-  const auto gathers = [this](std::uint8_t, double) {
-    if (!gather_.pending()) gather_.in(kMs);
-  };
   said_ = std::make_unique<PodLineEnd>(
       queue_, io::PodEnd::gps, *gps_, [this] { return gps_->baud(); }, reader,
-      PodLineEnd::Ears{send_, gathers});
+      PodLineEnd::Ears{send_}, kMs);
 }
 
 void PodReceivers::start() {

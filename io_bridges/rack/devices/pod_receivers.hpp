@@ -42,7 +42,7 @@ class PodReceivers {
   io::SbusGlitches glitches_;
   bool has_radio_;
   std::uint8_t number_ = 0;
-  io::Event gather_, sticks_;
+  io::Event sticks_;
 };
 
 }  // namespace whirl::rack

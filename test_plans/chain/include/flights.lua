@@ -34,15 +34,25 @@ function heartbeat_on_can(t)
   t:wait "3 s"
 end
 
--- From reset to a steady hover at 1.1 m.
-function hovers(t)
+-- From reset to a steady hover at 1.1 m; `climbs`: the time that it has to 1 m.
+function hovers(t, climbs)
   heartbeat(t)
   t:command { arm = true }
   t:within("4 s", function(s) return s.told_armed == 1 end, "armed")
   t:command { takeoff = "1.1 m" }
-  t:within("6 s", function(s) return s.height_m > 1.0 end, "1 m high")
+  t:within(climbs or "6 s", function(s) return s.height_m > 1.0 end, "1 m high")
   t:wait "3 s"
 end
+
+-- Whether that signal of each rotor is at most so much; of the lost one it may be more.
+function each_rotor(s, before, after, most, lost)
+  for motor = 1, 4 do
+    if motor ~= lost and s[before .. motor .. after] > most then return false end
+  end
+  return true
+end
+
+function no_rotor_is_driven(s, lost) return each_rotor(s, "winding_current_", "_A", 0.5, lost) end
 
 function lands(t)
   t:step "land"
@@ -54,12 +64,7 @@ end
 -- No rotor but the lost one's is driven any more 100 ms after it is known, as test_plans/flight/fail_safes.lua has it,
 -- and it ends on the ground.
 function cuts(t, words, lost)
-  t:within("100 ms", function(s)
-    for motor = 1, 4 do
-      if motor ~= lost and s["winding_current_" .. motor .. "_A"] > 0.5 then return false end
-    end
-    return true
-  end, "no other rotor is driven")
+  t:within("100 ms", function(s) return no_rotor_is_driven(s, lost) end, "no other rotor is driven")
   local currents = {}
   for motor = 1, 4 do
     if motor ~= lost then currents[#currents + 1] = "winding_current_" .. motor end
