@@ -30,7 +30,8 @@ function(fw_image name)
   target_link_libraries(${name} PRIVATE fw_options)
   set(script ${PROJECT_SOURCE_DIR}/firmware/hal/stm32f405rg.ld)
   target_link_options(${name} PRIVATE ${FW_CPU} -nostartfiles --specs=nano.specs -T${script}
-    -Wl,--gc-sections -Wl,--fatal-warnings -Wl,-Map=${CMAKE_BINARY_DIR}/${name}.map)
+    -Wl,--gc-sections -Wl,--fatal-warnings -Wl,-Map=${CMAKE_BINARY_DIR}/${name}.map
+    -Wl,--compress-debug-sections=zlib)  # each run reads the file whole; gdb unpacks them
   set_target_properties(${name} PROPERTIES LINK_DEPENDS ${script}
                         RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/${ARG_FOLDER})
   set(gate ${PROJECT_SOURCE_DIR}/firmware/gates/check_image.sh)

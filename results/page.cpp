@@ -1,6 +1,6 @@
 // index.html of a run: one file, no network, plots drawn by a small script of our own (page.html).
+#include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "base/json_text.hpp"
@@ -16,8 +16,10 @@ using nlohmann::ordered_json;
 ordered_json rounded(double x) {
   if (!std::isfinite(x)) return nullptr;
   char text[32];
-  std::snprintf(text, sizeof text, "%.4g", x);
-  return std::strtod(text, nullptr);
+  const char* end = std::to_chars(text, text + sizeof text, x, std::chars_format::general, 4).ptr;
+  double shown = 0.0;
+  std::from_chars(text, end, shown);
+  return shown;
 }
 
 ordered_json curve(const Curves& curves, std::size_t column) {

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
+#include <vector>
 
 #include "plant/rotor/blade_fit.hpp"
 #include "plant/rotor/blade_rings.hpp"
@@ -91,11 +93,15 @@ Mix mix_at(const std::vector<SectionStation>& sections, double x) {
   return {sections.back().polar.get(), nullptr, 0.0};
 }
 
+SectionCoefficients mixed(const Mix& mix, const SectionCoefficients& inner,
+                          const SectionCoefficients& outer) {
+  return {inner.cl + mix.outer_share * (outer.cl - inner.cl),
+          inner.cd + mix.outer_share * (outer.cd - inner.cd)};
+}
+
 SectionCoefficients mixed(const Mix& mix, double alpha, double reynolds) {
-  SectionCoefficients c = mix.inner->at(alpha, reynolds);
-  if (mix.outer == nullptr) return c;
-  const SectionCoefficients o = mix.outer->at(alpha, reynolds);
-  return {c.cl + mix.outer_share * (o.cl - c.cl), c.cd + mix.outer_share * (o.cd - c.cd)};
+  const SectionCoefficients c = mix.inner->at(alpha, reynolds);
+  return mix.outer == nullptr ? c : mixed(mix, c, mix.outer->at(alpha, reynolds));
 }
 
 // Rotation holds the flow on a section that would stall: the lift moves towards its attached line.
@@ -143,15 +149,41 @@ double stall_alpha_rad(const Mix& mix) {
   return angle;
 }
 
-SectionTable make_table(const Mix& mix, double chord_over_r, bool delay) {
+double angle_of_cell(int i) {
+  return (0.5 * i - 180.0) * kDeg;
+}
+
+// Polars at all cells of a table. All rings of a blade are mixed of a few, and most of a table's time goes into them.
+class Grids {
+ public:
+  const std::vector<SectionCoefficients>& of(const PolarFamily& polar) {
+    std::vector<SectionCoefficients>& cells = grids_[&polar];
+    if (!cells.empty()) return cells;
+    cells.reserve(static_cast<std::size_t>(kAngles) * kReynolds);
+    for (int level = 0; level < kReynolds; ++level) {
+      const double re = reynolds_of_level(level);
+      for (int i = 0; i < kAngles; ++i) cells.push_back(polar.at(angle_of_cell(i), re));
+    }
+    return cells;
+  }
+
+ private:
+  std::map<const PolarFamily*, std::vector<SectionCoefficients>> grids_;
+};
+
+SectionTable make_table(const Mix& mix, double chord_over_r, bool delay, Grids& grids) {
   SectionTable table;
   table.cells.reserve(static_cast<std::size_t>(kAngles) * kReynolds);
+  const auto& inner = grids.of(*mix.inner);
+  const auto* outer = mix.outer == nullptr ? nullptr : &grids.of(*mix.outer);
   for (int level = 0; level < kReynolds; ++level) {
     const double re = reynolds_of_level(level);
     const StallDelay sd = delay ? stall_delay(mix, chord_over_r, re) : StallDelay{};
     for (int i = 0; i < kAngles; ++i) {
-      const double alpha = (0.5 * i - 180.0) * kDeg;
-      SectionCoefficients c = mixed(mix, alpha, re);
+      const double alpha = angle_of_cell(i);
+      const std::size_t cell = table.cells.size();
+      SectionCoefficients c = inner[cell];
+      if (outer != nullptr) c = mixed(mix, c, (*outer)[cell]);
       if (delay) c.cl = delayed_lift(sd, alpha, c.cl);
       table.cells.push_back({static_cast<float>(c.cl), static_cast<float>(c.cd)});
     }
@@ -165,7 +197,7 @@ void fill_by_traits(const TraitVector& traits, Ring& ring) {
   for (int level = 0; level < kReynolds; ++level) {
     const TraitSection section = trait_section(traits, chord_over_r, reynolds_of_level(level));
     for (int i = 0; i < kAngles; ++i) {
-      const SectionCoefficients c = coefficients(section, (0.5 * i - 180.0) * kDeg);
+      const SectionCoefficients c = coefficients(section, angle_of_cell(i));
       ring.table.cells.push_back({static_cast<float>(c.cl), static_cast<float>(c.cd)});
     }
   }
@@ -192,6 +224,7 @@ void fill_rings(const PropellerDescription& d, Blade& blade) {
   const double width = (blade.radius_m - blade.root_m) / kRing_count;
   const double twist =
       d.traits != nullptr ? tip_twist_rad(d.traits->mean, 0.0) : d.tip_twist_correction_rad;
+  Grids grids;
   for (int i = 0; i < kRing_count; ++i) {
     Ring& ring = blade.rings[static_cast<std::size_t>(i)];
     ring.r_m = blade.root_m + (i + 0.5) * width;
@@ -204,7 +237,7 @@ void fill_rings(const PropellerDescription& d, Blade& blade) {
       continue;
     }
     const Mix mix = mix_at(d.sections, x);
-    ring.table = make_table(mix, ring.chord_m / ring.r_m, d.stall_delay);
+    ring.table = make_table(mix, ring.chord_m / ring.r_m, d.stall_delay, grids);
     ring.stall_alpha_rad = stall_alpha_rad(mix);
     ring.zero_lift_rad = attached(mix, 1e5).alpha0_rad;
   }
