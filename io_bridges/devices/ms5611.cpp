@@ -75,7 +75,8 @@ std::uint32_t Ms5611::counts(Nanoseconds now) {
 
 std::uint16_t Ms5611::last_prom_word(std::uint16_t word, Nanoseconds now) {
   const Fault* wrong = fault(FaultKind::sensor_wrong_identity, now);
-  return wrong == nullptr ? word : static_cast<std::uint16_t>(wrong->value);
+  if (wrong == nullptr) return word;
+  return static_cast<std::uint16_t>(word ^ static_cast<std::uint16_t>(wrong->value));
 }
 
 }  // namespace whirl::io

@@ -34,8 +34,8 @@
 //
 //   Faults   sensor_frozen (each result repeats the last of its kind), sensor_offset (axis 0 Pa,
 //            1 K), sensor_drift (the same a minute), sensor_saturated (that axis reads 0xFFFFFF), sensor_wrong_identity (PROM word 7,
-//            serial and CRC, reads value), sensor_late (conversions take value seconds longer),
-//            sensor_brown_out
+//            serial and CRC, has value's bits turned over: of 1 to 15 no copy's check holds),
+//            sensor_late (conversions take value seconds longer), sensor_brown_out
 #pragma once
 #include <cstdint>
 #include <functional>

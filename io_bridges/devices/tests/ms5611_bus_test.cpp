@@ -163,8 +163,10 @@ TEST(Ms5611Fault, SaturatedReadsAllOnesOfItsAxis) {
 
 TEST(Ms5611Fault, WrongIdentityBreaksTheCrc) {
   Ms5611Bench bench;
-  bench.faults.add(fault(FaultKind::sensor_wrong_identity, 0xBEEF));
-  EXPECT_EQ(bench.read(0xAE, 2), (Bytes{0xBE, 0xEF}));
+  const Bytes right = bench.read(0xAE, 2);
+  bench.faults.add(fault(FaultKind::sensor_wrong_identity, 0x8001));
+  EXPECT_EQ(bench.read(0xAE, 2), (Bytes{static_cast<std::uint8_t>(right.at(0) ^ 0x80),
+                                        static_cast<std::uint8_t>(right.at(1) ^ 0x01)}));
   EXPECT_EQ(bench.read(0xA2, 2), (Bytes{0x9C, 0xBF}));
 }
 
