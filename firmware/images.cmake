@@ -21,12 +21,16 @@ add_library(fw_options INTERFACE)
 target_link_libraries(fw_options INTERFACE fw_language)
 target_compile_options(fw_options INTERFACE ${FW_CPU})
 
-# fw_image(name SOURCES ... FLASH kib RAM kib): links, prints its size and checks it against the
-# budget and the list of symbols that may not be in it.
+# fw_image(name SOURCES ... | OBJECTS ... FLASH kib RAM kib): links, prints its size and checks it against the
+# budget and the list of symbols that may not be in it. OBJECTS: all of the image, its start too.
 function(fw_image name)
-  cmake_parse_arguments(ARG "" "FLASH;RAM;FOLDER" "SOURCES" ${ARGN})
-  add_executable(${name} ${ARG_SOURCES} ${PROJECT_SOURCE_DIR}/firmware/hal/startup.cpp
-                 ${PROJECT_SOURCE_DIR}/firmware/hal/fault_handler.cpp)
+  cmake_parse_arguments(ARG "" "FLASH;RAM;FOLDER" "SOURCES;OBJECTS" ${ARGN})
+  if(ARG_SOURCES)
+    list(APPEND ARG_SOURCES ${PROJECT_SOURCE_DIR}/firmware/hal/startup.cpp
+         ${PROJECT_SOURCE_DIR}/firmware/hal/fault_handler.cpp)
+  endif()
+  add_executable(${name} ${ARG_SOURCES} ${ARG_OBJECTS})
+  set_target_properties(${name} PROPERTIES LINKER_LANGUAGE CXX)
   target_link_libraries(${name} PRIVATE fw_options)
   set(script ${PROJECT_SOURCE_DIR}/firmware/hal/stm32f405rg.ld)
   target_link_options(${name} PRIVATE ${FW_CPU} -nostartfiles --specs=nano.specs -T${script}
@@ -43,9 +47,26 @@ set(FLIGHT_SOURCES images/flight.cpp images/boot_text.cpp images/flight_escs.cpp
     hal/i2c_master.cpp hal/can_link.cpp hal/uart_link.cpp hal/battery_adc.cpp hal/edge_capture.cpp hal/receiver_uart.cpp hal/flash.cpp)
 # Of the RAM, 19 KiB are the card's: 16 that bridge its longest pause, and a block each way.
 fw_image(flight FLASH 128 RAM 32 FOLDER . SOURCES ${FLIGHT_SOURCES})
-# The same for ESCs in mode 5, whose set-points span another range.
-fw_image(flight_st FLASH 128 RAM 32 FOLDER . SOURCES ${FLIGHT_SOURCES})
-target_compile_definitions(flight_st PRIVATE FW_ESC_MODE=thrust_by_power)
+# The same for ESCs in mode 5, whose set-points span another range: the files that know the range anew, of all others
+# flight's objects, which are compiled without it. They are linked in flight's order.
+set(FLIGHT_BY_MODE control/mixer.cpp control/rotor_response.cpp flight/flight.cpp flight/flight_control.cpp
+    flight/flight_restart.cpp)
+set(flight_shared ${FLIGHT_SOURCES})
+list(REMOVE_ITEM flight_shared ${FLIGHT_BY_MODE})
+set_source_files_properties(${flight_shared} PROPERTIES COMPILE_DEFINITIONS FW_ANY_ESC_MODE)
+add_library(flight_st_mode OBJECT ${FLIGHT_BY_MODE})
+target_link_libraries(flight_st_mode PRIVATE fw_options)
+target_compile_definitions(flight_st_mode PRIVATE FW_ESC_MODE=thrust_by_power)
+set(flight_st_objects "")
+foreach(source ${FLIGHT_SOURCES} hal/startup.cpp hal/fault_handler.cpp)
+  set(compiled_in flight)
+  if(source IN_LIST FLIGHT_BY_MODE)
+    set(compiled_in flight_st_mode)
+  endif()
+  string(REPLACE "." "[.]" object "/${source}.obj$")
+  list(APPEND flight_st_objects $<FILTER:$<TARGET_OBJECTS:${compiled_in}>,INCLUDE,${object}>)
+endforeach()
+fw_image(flight_st FLASH 128 RAM 32 FOLDER . OBJECTS ${flight_st_objects})
 # On a bare board with a crystal of 8 MHz; the parts that it plays are the virtual boards'.
 include(${PROJECT_SOURCE_DIR}/io_bridges/devices/core/sources.cmake)
 list(TRANSFORM WHIRL_CORE_SOURCES PREPEND ${PROJECT_SOURCE_DIR}/io_bridges/devices/core/)

@@ -40,12 +40,15 @@ inline constexpr float kSilhouette_m2 = 2 * 0.200f * 0.015f + 3 * 0.028f * 0.036
 inline constexpr float kFrameDrag_s2pm2 =
     0.5f * 1.2f * 1.1f * kSilhouette_m2 / (kMass_kg * kGravity_mps2);
 
-// The mode that the ESCs are set to: v = 1..2047 spans its range, v = 0 stops the motor.
+// The mode that the ESCs are set to: v = 1..2047 spans its range, v = 0 stops the motor. What two images of
+// different modes share is compiled without (firmware/images.cmake).
 #ifndef FW_ESC_MODE  // the image flight_st is built with thrust_by_power
 #define FW_ESC_MODE thrust_by_speed
 #endif
+#ifndef FW_ANY_ESC_MODE
 inline constexpr float kThrustMin_N = esc::range_of(esc::Mode::FW_ESC_MODE).min;
 inline constexpr float kThrustMax_N = esc::range_of(esc::Mode::FW_ESC_MODE).max;
+#endif
 inline constexpr float kThrustUsable_N = 6.0f;  // per rotor, with the battery sagging
 
 // Attitude: torque = -Kw (rate + Kq angle). Crossover 18 rad/s: half a set-point period (10 ms), the
