@@ -17,7 +17,7 @@ namespace whirl::sweep {
 
 struct NumberSpread {
   const plant::PartNumber* number;
-  plant::Bounds allowed;
+  plant::DrawRange allowed;
   results::Sums sums = {};
   double least = std::numeric_limits<double>::infinity(),
          most = -std::numeric_limits<double>::infinity();

@@ -56,7 +56,7 @@ double draw(const Spread& s, ToleranceClass tolerance, std::uint64_t seed,
   return random.uniform() < 0.5 ? s.middle - s.limit : s.middle + s.limit;
 }
 
-Bounds bounds(const Spread& s, ToleranceClass tolerance) {
+DrawRange bounds(const Spread& s, ToleranceClass tolerance) {
   WHIRL_CHECK(tolerance != ToleranceClass::none);
   if (s.law != Spread::Law::level) return {s.middle - s.limit, s.middle + s.limit};
   if (tolerance == ToleranceClass::typical) return {s.middle - s.sigma, s.middle + s.sigma};

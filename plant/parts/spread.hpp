@@ -35,9 +35,9 @@ double draw(const Spread& spread, ToleranceClass tolerance, std::uint64_t seed,
             const std::string& stream);
 
 // Between what every draw lies. Pre: tolerance is not none.
-struct Bounds {
+struct DrawRange {
   double low, high;
 };
-Bounds bounds(const Spread& spread, ToleranceClass tolerance);
+DrawRange bounds(const Spread& spread, ToleranceClass tolerance);
 
 }  // namespace whirl::plant

@@ -90,7 +90,7 @@ TEST(Spread, EveryDrawLiesWithinItsBoundsAndComesNearThem) {
     for (const auto tolerance : {ToleranceClass::typical, ToleranceClass::worst}) {
       const Spread spread{law, 10.0, 1.0, 2.0};
       const Moments m = moments(spread, tolerance);
-      const Bounds b = bounds(spread, tolerance);
+      const DrawRange b = bounds(spread, tolerance);
       EXPECT_GE(m.least, b.low);
       EXPECT_LE(m.most, b.high);
       EXPECT_TRUE(
