@@ -11,6 +11,9 @@ namespace whirl::rack {
 
 class PodLineEnd {
  public:
+  // What a line whose bytes may go together waits for.
+  static constexpr Nanoseconds kGather_ns = 1'000'000;
+
   // What is for the pod goes to `send`, packed; each byte and each change of its rate are told besides.
   struct Ears {
     std::function<void(const std::vector<std::uint8_t>&)> send;

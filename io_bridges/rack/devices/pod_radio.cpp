@@ -6,8 +6,7 @@
 namespace whirl::rack {
 namespace {
 
-constexpr Nanoseconds kMs = 1'000'000;
-constexpr double kBaud = io::MavlinkLink::Params{}.baud;
+constexpr double kRadioBaud = io::MavlinkLink::Params{}.baud;
 
 }  // namespace
 
@@ -20,11 +19,12 @@ std::vector<DeviceKey> pod_radio_keys() {
 PodRadio::PodRadio(DeviceSlot& slot, io::PodLinkReader& reader, Send send) {
   if (!slot.flag("params.radio")) return;
   io::EventQueue& queue = slot.rack().events();
-  link_ = std::make_unique<io::MavlinkLink>(queue, radio_of(slot, kBaud), slot.rack().finding());
+  link_ =
+      std::make_unique<io::MavlinkLink>(queue, radio_of(slot, kRadioBaud), slot.rack().finding());
   tell_frames(*link_, slot.rack().happened(), kPodRadioPort);
   said_ = std::make_unique<PodLineEnd>(
-      queue, io::PodEnd::radio, *link_, [] { return kBaud; }, reader,
-      PodLineEnd::Ears{std::move(send)}, kMs);
+      queue, io::PodEnd::radio, *link_, [] { return kRadioBaud; }, reader,
+      PodLineEnd::Ears{std::move(send)}, PodLineEnd::kGather_ns);
 }
 
 void PodRadio::start() {

@@ -9,8 +9,6 @@
 namespace whirl::rack {
 namespace {
 
-constexpr Nanoseconds kMs = 1'000'000;
-
 io::Ublox::Params gps_of(DeviceSlot& slot) {
   io::Ublox::Params params;
   params.name = slot.name() + ".gps";
@@ -55,7 +53,7 @@ PodReceivers::PodReceivers(DeviceSlot& slot, io::PodLinkReader& reader, Send sen
       &slot.rack().faults(), slot.rack().finding());
   said_ = std::make_unique<PodLineEnd>(
       queue_, io::PodEnd::gps, *gps_, [this] { return gps_->baud(); }, reader,
-      PodLineEnd::Ears{send_}, kMs);
+      PodLineEnd::Ears{send_}, PodLineEnd::kGather_ns);
 }
 
 void PodReceivers::start() {
