@@ -14,6 +14,7 @@
 
 #include "base/near.hpp"
 #include "base/rpm.hpp"
+#include "harness/flight/tests/milliseconds.hpp"
 #include "io_bridges/protocols/esc_codec.hpp"
 #include "plant/motor/averaged_motor.hpp"
 
@@ -22,8 +23,6 @@ namespace {
 
 using io::EscFlag;
 using io::EscMode;
-
-constexpr std::int64_t kMs = 1'000'000;
 
 EscParams in_mode(fw::esc::Mode mode) {
   EscParams params;

@@ -9,14 +9,13 @@
 
 #include "harness/catalogue/vehicle_file.hpp"
 #include "harness/flight/flight_world.hpp"
+#include "harness/flight/tests/milliseconds.hpp"
 #include "harness/flight/tests/paths.hpp"
 #include "harness/lua/table.hpp"
 #include "harness/plan/requests.hpp"
 #include "io_bridges/protocols/esc_codec.hpp"
 
 namespace whirl::flight {
-
-inline constexpr std::int64_t kMs = 1'000'000;
 
 inline FlightParams hp_quad_file() {
   auto params =

@@ -6,10 +6,9 @@
 #include <vector>
 
 #include "harness/flight/station.hpp"
+#include "harness/flight/tests/milliseconds.hpp"
 
 namespace whirl::flight {
-
-inline constexpr std::int64_t kMs = 1'000'000;
 
 struct Air {
   Station station;

@@ -8,13 +8,12 @@
 #include "harness/catalogue/vehicle_file.hpp"
 #include "harness/flight/controllers.hpp"
 #include "harness/flight/flight_world.hpp"
+#include "harness/flight/tests/milliseconds.hpp"
 #include "harness/flight/tests/paths.hpp"
 #include "harness/flight/tests/toy_controller.hpp"
 
 namespace whirl::flight {
 namespace {
-
-constexpr std::int64_t kMs = 1'000'000;
 
 ControllerTypes with_toy() {
   ControllerTypes types = controller_types();

@@ -5,13 +5,12 @@
 #include <vector>
 
 #include "base/near.hpp"
+#include "harness/flight/tests/milliseconds.hpp"
 #include "harness/lua/table.hpp"
 #include "harness/plan/requests.hpp"
 
 namespace whirl::flight {
 namespace {
-
-constexpr std::int64_t kMs = 1'000'000;
 
 struct Pilot {
   // What a plan writes behind `rc =`; its complaint, or "none".

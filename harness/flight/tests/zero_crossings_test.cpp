@@ -5,11 +5,10 @@
 
 #include "base/near.hpp"
 #include "base/rpm.hpp"
+#include "harness/flight/tests/milliseconds.hpp"
 
 namespace whirl::flight {
 namespace {
-
-constexpr std::int64_t kMs = 1'000'000;
 
 struct Shaft {
   ZeroCrossings crossings{7};
