@@ -1,8 +1,9 @@
 # How targets are declared in this house.
-#   whirl_library(name SOURCES ... LINK ... [HEAVY] [APART])   static, position independent (the board is a
+#   whirl_library(name SOURCES ... LINK ... [HEAVY] [APART ...])   static, position independent (the board is a
 #                                               plug-in); HEAVY: optimized even where only the tests count;
-#                                               APART: two of its files call different things by one name
-#   whirl_test(name SOURCES ... LINK ... LABELS ... [HEAVY] [APART] [COST s])   a GoogleTest executable; label
+#                                               APART: the files that are compiled on their own, for they and
+#                                               another one call different things by one name; no file: all
+#   whirl_test(name SOURCES ... LINK ... LABELS ... [HEAVY] [APART ...] [COST s])   a GoogleTest executable; label
 #                                               host: needs the images, QEMU or a fast build, so no sanitizers;
 #                                               guest: needs the guest's kernel, fails outside (./whirl test --guest);
 #                                               COST: the longest ones start first
@@ -57,22 +58,33 @@ if(WHIRL_PRECOMPILE)
   target_precompile_headers(whirl_precompiled_tests PRIVATE <gtest/gtest.h>)
 endif()
 
+# Whether APART was given without files.
+function(whirl_all_apart result without_files)
+  set(${result} OFF PARENT_SCOPE)
+  if("APART" IN_LIST without_files)
+    set(${result} ON PARENT_SCOPE)
+  endif()
+endfunction()
+
 # Where it is the whole build that counts, four files of a target are compiled as one: most of a file's time goes
 # into the headers that all of them include. What each includes for itself, ./whirl lint sees, file by file.
-function(whirl_together name apart)
-  if(WHIRL_TOGETHER AND NOT apart)
+# whirl_together(TARGET ALL_APART FILE...)
+function(whirl_together name all_apart)
+  if(WHIRL_TOGETHER AND NOT all_apart)
     set_target_properties(${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 4)
+    set_source_files_properties(${ARGN} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
   endif()
 endfunction()
 
 function(whirl_library name)
-  cmake_parse_arguments(ARG "HEAVY;APART" "" "SOURCES;LINK" ${ARGN})
+  cmake_parse_arguments(ARG "HEAVY" "" "SOURCES;LINK;APART" ${ARGN})
+  whirl_all_apart(all_apart "${ARG_KEYWORDS_MISSING_VALUES}")
   if(ARG_SOURCES)
     whirl_mutated_sources(${name} sources ${ARG_SOURCES})
     add_library(${name} STATIC ${sources})
     target_link_libraries(${name} PUBLIC whirl_options ${ARG_LINK})
     set_target_properties(${name} PROPERTIES POSITION_INDEPENDENT_CODE ON)
-    whirl_together(${name} "${ARG_APART}")
+    whirl_together(${name} "${all_apart}" ${ARG_APART})
     set(suffix _heavy)
     if(NOT ARG_HEAVY)
       set(suffix "")
@@ -95,7 +107,8 @@ add_custom_target(whirl_unit_tests)
 add_custom_target(whirl_guest_tests)  # built by the host preset, run by ./whirl test --guest only
 
 function(whirl_test name)
-  cmake_parse_arguments(ARG "HEAVY;APART" "TIMEOUT;COST" "SOURCES;LINK;LABELS" ${ARGN})
+  cmake_parse_arguments(ARG "HEAVY" "TIMEOUT;COST" "SOURCES;LINK;LABELS;APART" ${ARGN})
+  whirl_all_apart(all_apart "${ARG_KEYWORDS_MISSING_VALUES}")
   if(NOT ARG_TIMEOUT)
     set(ARG_TIMEOUT 300)
   endif()
@@ -106,7 +119,7 @@ function(whirl_test name)
   else()
     target_link_libraries(${name} PRIVATE GTest::gtest_main)
   endif()
-  whirl_together(${name} "${ARG_APART}")
+  whirl_together(${name} "${all_apart}" ${ARG_APART})
   if(NOT ARG_HEAVY)
     target_compile_options(${name} PRIVATE ${WHIRL_LIGHT})
     if(WHIRL_PRECOMPILE)

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <array>
 
+#include "harness/flight/vehicle_system.hpp"
 #include "io_bridges/protocols/mavlink_messages.hpp"
 
 namespace whirl::flight {
 namespace {
 
-constexpr std::uint8_t kVehicle = 1;
 constexpr std::array<std::uint16_t, 3> kMoving{400, 22, 21};  // MAV_CMD: arm, take off, land
 
 bool moves_the_vehicle(const io::MavlinkFrame& frame) {

@@ -1,12 +1,8 @@
 #include "harness/flight/parameter_requests.hpp"
 
+#include "harness/flight/vehicle_system.hpp"
+
 namespace whirl::flight {
-namespace {
-
-constexpr std::uint8_t kVehicle = 1;
-
-}  // namespace
-
 void ParameterRequests::add(const std::string& name, std::optional<float> value) {
   requests_.push_back({name, value});
   last_result_ = kWaiting;

@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "harness/flight/vehicle_system.hpp"
+
 namespace whirl::flight {
 namespace {
 
-constexpr std::uint8_t kVehicle = 1;
 constexpr std::int64_t kRetry_ns = 300'000'000;
 constexpr int kTries = 20;
 constexpr std::int64_t kTargetPeriod_ns = 100'000'000, kAttitudePeriod_ns = 50'000'000;

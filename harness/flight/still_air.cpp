@@ -12,7 +12,7 @@
 namespace whirl::flight {
 namespace {
 
-constexpr std::int64_t kTick_ns = 1'000'000;
+constexpr std::int64_t kStillTick_ns = 1'000'000;
 constexpr double kTick_s = 1e-3;
 constexpr int kZeros_ms = 600, kSet_point_ms = 20;
 
@@ -54,7 +54,7 @@ class Rig {
         plant::shaft_load(rotor_(conditions_, kTick_s), conditions_.omega_radps);
     powertrain_.set_loads({&load, 1});
     powertrain_.step(kTick_s, state_);
-    now_ns_ += kTick_ns;
+    now_ns_ += kStillTick_ns;
   }
 
  private:
@@ -80,7 +80,7 @@ Result<Done> tell_still_air(FlightParams& params, std::uint64_t seed) {
   for (std::size_t i = 0; i < params.vehicle.airframe.rotors.size(); ++i) {
     Rig rig(params, i, seed);
     rig.hold(0, kZeros_ms);
-    rig.hold(setpoint, params.still_air->warm_up_ns / kTick_ns);
+    rig.hold(setpoint, params.still_air->warm_up_ns / kStillTick_ns);
     const auto share = rig.esc().take_still_air([&] { rig.hold(setpoint, 1); });
     const std::string motor = "motor " + std::to_string(i + 1);
     if (!share) {

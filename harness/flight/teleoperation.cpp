@@ -7,7 +7,7 @@
 namespace whirl::flight {
 namespace {
 
-constexpr std::int64_t kPeriod_ns = 20'000'000;
+constexpr std::int64_t kSticksPeriod_ns = 20'000'000;
 constexpr double kPeriod_s = 0.02, kHand_s = 0.1;
 
 }  // namespace
@@ -44,7 +44,7 @@ void Teleoperation::read_stick() {
 }
 
 SetPoint Teleoperation::at(std::int64_t t_ns) {
-  for (; next_ns_ <= t_ns; next_ns_ += kPeriod_ns) read_stick();
+  for (; next_ns_ <= t_ns; next_ns_ += kSticksPeriod_ns) read_stick();
   return {{{0.0, 0.0, -hand_height_m_}, yaw_rad_}, hand_W_mps_};
 }
 

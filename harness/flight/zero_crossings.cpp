@@ -9,11 +9,11 @@
 namespace whirl::flight {
 namespace {
 
-constexpr double kTick_ns = 500.0;
+constexpr double kTimerTick_ns = 500.0;
 constexpr std::int64_t kLongest_ticks = 0xFFFF;  // of a sector: the timer has 16 bits
 
 std::int64_t tick_at(std::int64_t t_ns) {
-  return std::llround(static_cast<double>(t_ns) / kTick_ns);
+  return std::llround(static_cast<double>(t_ns) / kTimerTick_ns);
 }
 
 }  // namespace

@@ -10,11 +10,11 @@ namespace {
 
 constexpr std::size_t kMost_waypoints = 1000;
 
-struct Bounds {
+struct WaypointBounds {
   const char* what;
   double low, high;
 };
-constexpr Bounds kBounds[] = {
+constexpr WaypointBounds kBounds[] = {
     {"x", -1000.0, 1000.0}, {"y", -1000.0, 1000.0}, {"z", -1000.0, -0.01},
     {"yaw", -360.0, 360.0}, {"hold", 0.0, 3600.0},
 };
@@ -30,7 +30,7 @@ std::string read_numbers(const std::string& line, std::vector<double>& values) {
   std::istringstream words(line);
   for (std::string word; words >> word;) {
     if (values.size() == std::size(kBounds)) return "more than x y z yaw hold";
-    const Bounds& bounds = kBounds[values.size()];
+    const WaypointBounds& bounds = kBounds[values.size()];
     double value = 0.0;
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
     if (error != std::errc{} || end != word.data() + word.size() || !std::isfinite(value)) {

@@ -4,11 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/angles.hpp"
+
 namespace whirl::plant {
 namespace {
 
 using Eigen::Vector3d;
-constexpr double kPi = 3.14159265358979323846;
 
 double smooth(double x) {
   return 0.5 * (1.0 - std::cos(kPi * std::clamp(x, 0.0, 1.0)));

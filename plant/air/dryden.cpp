@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/angles.hpp"
+
 namespace whirl::plant {
 namespace {
 
 constexpr double kFoot_m = 0.3048;
-constexpr double kPi = 3.14159265358979323846;
 
 // Increase per step of `now`, through a lag of `share` of a step's time; exact for a ramp.
 double slope(double now, double share, double& lag) {

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/angles.hpp"
+
 namespace whirl::plant {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 // Back-EMF of the third phase against the mean of the other two, as shares of the pair's mean E: when
 // it goes out, the most it reaches against the current while open, and how fast it falls from the

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/angles.hpp"
 #include "base/check.hpp"
 
 namespace whirl::plant {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kMostTurn_rad = 2.0 * kPi / 180.0;
 constexpr double kMostStep_s = 1e-5;
 // Sinusoidal phases: amplitude that gives the same mean line-to-line EMF over a 60 degree sector.

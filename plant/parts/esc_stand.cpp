@@ -9,8 +9,8 @@ using Law = Spread::Law;
 
 constexpr double kCount_V = 3.3 / 4096.0;
 
-constexpr const char* kGroups[] = {"converter", "dividers", "shunt", "motor",
-                                   "heat",      "bus",      "clock", "instruments"};
+constexpr const char* kStandGroups[] = {"converter", "dividers", "shunt", "motor",
+                                        "heat",      "bus",      "clock", "instruments"};
 
 constexpr const char* kOffset = "[F103] EO 1.5 counts typical, 2.5 at most";
 constexpr const char* kGain = "[F103] EG 1.5 counts of full scale typical, 3 at most";
@@ -192,7 +192,7 @@ std::span<const PartNumber> esc_stand_numbers() {
 }
 
 std::span<const char* const> esc_stand_groups() {
-  return kGroups;
+  return kStandGroups;
 }
 
 double divider_error(double upper_error, double lower_error) {

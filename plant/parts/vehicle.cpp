@@ -9,7 +9,7 @@ using Law = Spread::Law;
 
 constexpr double kG_mps2 = 9.80665, kDeg_rad = 3.14159265358979323846 / 180.0;
 
-constexpr const char* kGroups[] = {"motors", "rotors", "body", "imu", "clock"};
+constexpr const char* kVehicleGroups[] = {"motors", "rotors", "body", "imu", "clock"};
 
 constexpr PartNumber kEach[] = {
     parts::torque_constant("motors"),
@@ -111,7 +111,7 @@ std::span<const PartNumber> vehicles_numbers() {
 }
 
 std::span<const char* const> vehicle_groups() {
-  return kGroups;
+  return kVehicleGroups;
 }
 
 }  // namespace whirl::plant

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/angles.hpp"
 #include "plant/rotor/ring_balance.hpp"
 
 namespace whirl::plant {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kDensity_kgpm3 = 1.225;
 constexpr double kViscosity_Pas = 1.81e-5;
 

@@ -6,15 +6,13 @@
 #include <optional>
 #include <vector>
 
+#include "base/angles.hpp"
 #include "plant/rotor/blade_fit.hpp"
 #include "plant/rotor/blade_rings.hpp"
 #include "plant/rotor/torsion.hpp"
 
 namespace whirl::plant {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
-constexpr double kDeg = kPi / 180.0;
 
 std::optional<Error> fault_of(const PropellerDescription& d) {
   const auto bad = [&](std::string what, std::string cure) {

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/angles.hpp"
+
 namespace whirl::plant {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-constexpr double kDeg = kPi / 180.0;
 constexpr double kBend = 0.4;  // of the lift curve into its maximum
 // Below it the flow that leaves the nose does not come back: seen as jumps of thrust over J that move with speed
 // (docs/unseen_propellers.md). Of an attached lift.

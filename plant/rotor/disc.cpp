@@ -7,13 +7,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/angles.hpp"
 #include "plant/rotor/momentum.hpp"
 #include "plant/rotor/rotor_state.hpp"
 
 namespace whirl::plant {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kMost_speed_mps = 120.0;
 constexpr double kMost_tip_speed_mps = 300.0;
 

@@ -2,11 +2,12 @@
 
 #include <utility>
 
+#include "base/angles.hpp"
+
 namespace whirl::plant {
 
 PropellerDescription hobbyking_10x4_5(std::shared_ptr<const PolarFamily> bw3,
                                       std::shared_ptr<const PolarFamily> e63) {
-  constexpr double kDeg = 3.14159265358979323846 / 180.0;
   PropellerDescription d;
   d.place = "hk_10x4.5";
   d.name = "Hobbyking 10x4.5 slow fly";

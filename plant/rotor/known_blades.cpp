@@ -4,10 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/angles.hpp"
+
 namespace whirl::plant {
 namespace {
 
-constexpr double kDeg = 3.14159265358979323846 / 180.0;
 constexpr double kCommon = 1.0;
 constexpr double kOwn = 0.1;
 constexpr double kLength = 2.5;

@@ -3,13 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/angles.hpp"
 #include "base/check.hpp"
 
 namespace whirl::plant {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-constexpr double kDeg = kPi / 180.0;
 constexpr double kDrag_at_90 = 1.11 + 0.018 * 8.0;  // slow-fly blades: aspect ratio near 8
 constexpr double kSkin_friction = 0.02;
 

@@ -3,12 +3,12 @@
 #include <cmath>
 #include <optional>
 
+#include "base/angles.hpp"
+
 #include "plant/rotor/polar.hpp"
 
 namespace whirl::plant {
 namespace {
-
-constexpr double kDeg = 3.14159265358979323846 / 180.0;
 
 std::vector<std::string_view> words_of(std::string_view line) {
   line = line.substr(0, line.find('#'));

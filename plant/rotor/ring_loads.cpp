@@ -2,6 +2,7 @@
 // operations whatever the machine (wider registers, no contraction), so the bits do not depend on
 // which clone of the function runs.
 #include "plant/rotor/ring_loads.hpp"
+#include "base/angles.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -17,7 +18,6 @@
 namespace whirl::plant {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr int kLanes = 4;
 constexpr int kGroups = kAzimuths / kLanes;
 using Vec = double __attribute__((vector_size(sizeof(double) * kLanes)));

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/angles.hpp"
 #include "base/check.hpp"
 #include "plant/rotor/rotor_state.hpp"
 #include "plant/rotor/torsion.hpp"
@@ -11,7 +12,6 @@
 namespace whirl::plant {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 // Apparent mass of a ring of air, as share of rho R dA [PittPeters, uniform part].
 constexpr double kApparent_mass = 8.0 / (3.0 * kPi);
 

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/angles.hpp"
 #include "plant/rotor/rotor_state.hpp"
 
 namespace whirl::plant {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-constexpr double kMost_rad = 8.0 * kPi / 180.0;
+constexpr double kMostTwist_rad = 8.0 * kPi / 180.0;
 constexpr double kTorsion_constant = 0.152;  // over c t^3
 constexpr double kFlat_inertia = 0.033;  // section's second moment in the chord's sense, over c^3 t
 constexpr double kLift_arm = 0.45 - 0.25;  // over chord: elastic axis behind the quarter point
@@ -85,7 +85,7 @@ double wanted_tip_twist_rad(const Blade& blade, const DiscFlow& f, const DiscLoa
     moment += torsion.lift_arm_m[i] * disc.rings[i].thrust_N +
               0.5 * f.density_kgpm3 * (w2 * r * r + head) * torsion.camber_m3[i];
   }
-  return std::clamp(torsion.compliance_rad_per_Nm * moment, -kMost_rad, kMost_rad);
+  return std::clamp(torsion.compliance_rad_per_Nm * moment, -kMostTwist_rad, kMostTwist_rad);
 }
 
 }  // namespace whirl::plant

@@ -2,13 +2,13 @@
 
 #include <cmath>
 
+#include "base/angles.hpp"
 #include "plant/rotor/blade_rings.hpp"
 #include "plant/rotor/rotor.hpp"
 
 namespace whirl::plant {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kMost_rad = 8.0 * kPi / 180.0;
 
 constexpr double kScan_rad = 0.5 * kPi / 180.0;

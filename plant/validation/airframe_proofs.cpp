@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kStep_s = 1e-3;
+constexpr double kFlightStep_s = 1e-3;
 
 struct Jacobi {
   double sn, cn, dn;
@@ -45,16 +45,16 @@ Proof tumbling() {
   Curve model{"w_y", {}, {}}, exact{"w_y, Jacobi", {}, {}};
   double off = 0.0, energy = 0.0, momentum = 0.0;
   for (int k = 1; k <= 10000; ++k) {
-    s = step_free(s, m, {}, kStep_s);
-    const Jacobi f = jacobi(rate * k * kStep_s, k2);
+    s = step_free(s, m, {}, kFlightStep_s);
+    const Jacobi f = jacobi(rate * k * kFlightStep_s, k2);
     const Vector3d want(w0.x() * f.cn, size2 * f.sn, w0.z() * f.dn);
     off = std::max(off, (s.w_WB_B_radps - want).norm() / w0.norm());
     energy = std::max(energy, std::abs(I.dot(s.w_WB_B_radps.cwiseAbs2()) / E2 - 1.0));
     momentum =
         std::max(momentum, (angular_momentum_W(s, m, Vector3d::Zero()) - L0).norm() / L0.norm());
     if (k % 10 || k > 3000) continue;
-    model.x.push_back(k * kStep_s), model.y.push_back(s.w_WB_B_radps.y());
-    exact.x.push_back(k * kStep_s), exact.y.push_back(want.y());
+    model.x.push_back(k * kFlightStep_s), model.y.push_back(s.w_WB_B_radps.y());
+    exact.x.push_back(k * kFlightStep_s), exact.y.push_back(want.y());
   }
   return {.title = "Torque-free tumbling of an asymmetric body, 10 s at 1 ms",
           .x_label = "time / s",
@@ -78,13 +78,14 @@ Proof dropping() {
   double top = 0.0, fastest = 0.0;
   bool touched = false;
   for (int k = 1; k <= 4000; ++k) {
-    const double impulse = ground.in_reach(s, kStep_s) ? ground.step(s, {}, kStep_s).sum_Ns : 0.0;
-    if (impulse == 0.0) s = step_free(s, m, {}, kStep_s);
+    const double impulse =
+        ground.in_reach(s, kFlightStep_s) ? ground.step(s, {}, kFlightStep_s).sum_Ns : 0.0;
+    if (impulse == 0.0) s = step_free(s, m, {}, kFlightStep_s);
     touched |= impulse > 0.0;
     if (touched) top = std::max(top, -kGear_m - s.p_WB_W_m.z());
     if (k > 3000) fastest = std::max(fastest, s.v_WB_W_mps.norm() + s.w_WB_B_radps.norm());
     if (k % 10 == 0) {
-      model.x.push_back(k * kStep_s);
+      model.x.push_back(k * kFlightStep_s);
       model.y.push_back(-kGear_m - s.p_WB_W_m.z());
     }
   }

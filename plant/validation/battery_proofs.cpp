@@ -10,7 +10,7 @@
 namespace whirl::plant {
 namespace {
 
-constexpr double kStep_s = 0.01, kSubStep_s = 2.5e-4, kHover_N = 0.9 * 9.80665 / 4.0;
+constexpr double kDischargeStep_s = 0.01, kFastStep_s = 2.5e-4, kHover_N = 0.9 * 9.80665 / 4.0;
 
 double hover_speed(const Rotor& rotor, RotorLoads& loads) {
   double low = 200.0, high = 700.0;
@@ -39,23 +39,23 @@ std::vector<Proof> battery_proofs(const std::shared_ptr<const Blade>& blade) {
   Curve curve{"bus voltage", {}, {}};
   double duty = 0.3, least_A = 1e9, most_A = 0.0, bus_V = 0.0;
   for (int k = 0; k < 60000; ++k) {
-    duty += 2e-4 * (omega - motors[0].speed_radps()) * kStep_s;  // holds hover's speed
+    duty += 2e-4 * (omega - motors[0].speed_radps()) * kDischargeStep_s;  // holds hover's speed
     for (auto& drive : drives) drive.duty = std::clamp(duty, 0.0, 1.0);
     double charge = 0.0;
     // Quasi-steady: a few electrical time constants stand for the whole step.
     for (int i = 0; i < 4; ++i) {
-      bus_V =
-          step_bus(motors, drives, load, vehicle.avionics_current_A, pack, kSubStep_s, books).bus_V;
+      bus_V = step_bus(motors, drives, load, vehicle.avionics_current_A, pack, kFastStep_s, books)
+                  .bus_V;
       charge += books[0].bus_charge_C;
     }
     double drawn_A = vehicle.avionics_current_A;
-    for (const auto& b : books) drawn_A += b.bus_charge_C / kSubStep_s;
-    pack.draw(drawn_A * (kStep_s - 4 * kSubStep_s), kStep_s - 4 * kSubStep_s);
+    for (const auto& b : books) drawn_A += b.bus_charge_C / kFastStep_s;
+    pack.draw(drawn_A * (kDischargeStep_s - 4 * kFastStep_s), kDischargeStep_s - 4 * kFastStep_s);
     if (k > 1000) {
-      least_A = std::min(least_A, charge / (4 * kSubStep_s));
-      most_A = std::max(most_A, charge / (4 * kSubStep_s));
+      least_A = std::min(least_A, charge / (4 * kFastStep_s));
+      most_A = std::max(most_A, charge / (4 * kFastStep_s));
     }
-    if (k % 500 == 100) curve.x.push_back(k * kStep_s), curve.y.push_back(bus_V);
+    if (k % 500 == 100) curve.x.push_back(k * kDischargeStep_s), curve.y.push_back(bus_V);
   }
   const double start_V = curve.y.front();
   return {

@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "base/angles.hpp"
 #include "plant/validation/akima.hpp"
 #include "plant/validation/axial_blade.hpp"
 #include "plant/validation/blade_element_references.hpp"
@@ -7,8 +8,6 @@
 namespace whirl::plant {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-constexpr double kDeg = kPi / 180.0;
 constexpr double kInch = 0.0254;
 constexpr const char* kSource = "CCBlade.jl test suite [CCBlade]";
 

@@ -3,14 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/angles.hpp"
 #include "plant/rotor/hobbyking_10x4_5.hpp"
 #include "plant/rotor/rotor.hpp"
 #include "plant/rotor/twist_fit.hpp"
 
 namespace whirl::plant {
 namespace {
-
-constexpr double kRadps_per_rpm = 3.14159265358979323846 / 30.0;
 
 RotorLoads loads_at(const std::shared_ptr<const Blade>& blade, double rpm, double inflow_mps) {
   RotorConditions c;

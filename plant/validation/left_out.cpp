@@ -7,6 +7,7 @@
 #include <optional>
 #include <sstream>
 
+#include "base/angles.hpp"
 #include "base/check.hpp"
 #include "plant/rotor/blade_rings.hpp"
 #include "plant/rotor/fitted_blade.hpp"
@@ -14,9 +15,6 @@
 
 namespace whirl::plant {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
-constexpr double kRadps_per_rpm = kPi / 30.0;
 
 // Enough for a belief; judged is always every point.
 std::vector<MeasuredPoint> thinned(const std::vector<MeasuredPoint>& all, std::size_t most) {

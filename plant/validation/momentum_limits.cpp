@@ -2,12 +2,11 @@
 
 #include <cmath>
 
+#include "base/angles.hpp"
 #include "plant/validation/axial_blade.hpp"
 
 namespace whirl::plant {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 // Induced velocity over its hover value for a given thrust, at climb V/vh and in-plane Vxy/vh.
 double induced_ratio(double climb, double in_plane) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/angles.hpp"
 #include "plant/motor/switched_motor.hpp"
 #include "plant/rotor/rotor.hpp"
 #include "plant/validation/kde2814.hpp"
@@ -12,8 +13,7 @@
 namespace whirl::plant {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-constexpr double kSubStep_s = 1.25e-4;
+constexpr double kMotorStep_s = 1.25e-4;
 constexpr double kSupply_V = 16.4;
 
 double radps(double rpm) {
@@ -77,10 +77,10 @@ Steady hold(const MotorParams& params, const ShaftLoad& load, double omega_radps
     AveragedMotor motor(params);
     motor.set_speed(omega_radps);
     MotorBooks books;
-    for (int k = 0; k < 400; ++k) books = motor.step({kSupply_V, duty, false}, load, kSubStep_s);
+    for (int k = 0; k < 400; ++k) books = motor.step({kSupply_V, duty, false}, load, kMotorStep_s);
     (books.kinetic_J < 0.0 ? low : high) = duty;
-    found = {duty * kSupply_V, books.bus_charge_C / kSubStep_s,
-             books.winding_charge_C / kSubStep_s};
+    found = {duty * kSupply_V, books.bus_charge_C / kMotorStep_s,
+             books.winding_charge_C / kMotorStep_s};
   }
   return found;
 }
@@ -142,9 +142,9 @@ double bound_s(const StaticRotor& rotor, const MotorParams& p, double from, doub
 template <typename Step>
 double rise_s(double from, double to, const Step& step) {
   double left = std::nan(""), before = 0.0;
-  for (double t = 0.0; t < 0.2; t += kSubStep_s) {
-    const double now = step(kSubStep_s);
-    auto crossed = [&](double at) { return t + kSubStep_s * (at - before) / (now - before); };
+  for (double t = 0.0; t < 0.2; t += kMotorStep_s) {
+    const double now = step(kMotorStep_s);
+    auto crossed = [&](double at) { return t + kMotorStep_s * (at - before) / (now - before); };
     if (std::isnan(left) && now >= from) left = crossed(from);
     if (now >= to) return crossed(to) - left;
     before = now;
@@ -206,16 +206,16 @@ Proof open_loop_step(const StaticRotor& rotor) {
   AveragedMotor motor(params);
   motor.set_speed(from);
   for (int k = 0; k < 8000; ++k) {
-    motor.step({kSupply_V, start, false}, rotor.load(motor.speed_radps()), kSubStep_s);
+    motor.step({kSupply_V, start, false}, rotor.load(motor.speed_radps()), kMotorStep_s);
   }
   Curve curve{"thrust", {}, {}};
   double t10 = std::nan(""), t90 = std::nan("");
   const double low = thesis_thrust_N(motor.speed_radps());
   const double span = thesis_thrust_N(to) - low;
   for (int k = 0; k < 4000; ++k) {
-    motor.step({kSupply_V, duty, false}, rotor.load(motor.speed_radps()), kSubStep_s);
+    motor.step({kSupply_V, duty, false}, rotor.load(motor.speed_radps()), kMotorStep_s);
     const double share = (thesis_thrust_N(motor.speed_radps()) - low) / span;
-    const double t = (k + 1) * kSubStep_s;
+    const double t = (k + 1) * kMotorStep_s;
     if (std::isnan(t10) && share >= 0.1) t10 = t;
     if (std::isnan(t90) && share >= 0.9) t90 = t;
     curve.x.push_back(t);

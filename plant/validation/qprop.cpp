@@ -1,12 +1,11 @@
 #include <cmath>
 
+#include "base/angles.hpp"
 #include "plant/validation/axial_blade.hpp"
 #include "plant/validation/blade_element_references.hpp"
 
 namespace whirl::plant {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 struct LiftDrag {
   double cl;

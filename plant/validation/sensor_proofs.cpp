@@ -7,7 +7,7 @@
 namespace whirl::plant {
 namespace {
 
-constexpr double kStep_s = 0.01, kFloor = 0.664;  // of bias instability [IEEE952, annex C]
+constexpr double kSampling_s = 0.01, kFloor = 0.664;  // of bias instability [IEEE952, annex C]
 
 double allan_deviation(const std::vector<double>& x, std::size_t n) {
   double before = 0.0, sum = 0.0;
@@ -26,7 +26,7 @@ Proof allan(const std::string& what, const std::string& unit, const std::vector<
   Curve model{what, {}, {}}, want{"configured", {}, {}};
   double worst = 0.0;
   for (std::size_t n : {2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000}) {
-    const double tau = static_cast<double>(n) * kStep_s;
+    const double tau = static_cast<double>(n) * kSampling_s;
     const double configured =
         std::hypot(p.noise_density / std::sqrt(tau), kFloor * p.bias_instability);
     const double got = allan_deviation(x, n);
@@ -52,7 +52,7 @@ std::vector<Proof> sensor_proofs() {
   ImuMotion rest;
   rest.specific_force_B_mps2.z() = -9.80665;
   for (int k = 1; k <= 2'000'000; ++k) {
-    const ImuSample s = imu.sample(k * kStep_s, rest);
+    const ImuSample s = imu.sample(k * kSampling_s, rest);
     accel.push_back(s.specific_force_S_mps2.x());
     gyro.push_back(s.rate_S_radps.y());
   }

@@ -14,7 +14,6 @@ namespace {
 
 constexpr Nanoseconds kPeriod_ns = 100'000'000, kPhase_ns = 37'000'000;
 constexpr std::uint8_t kPriority = 20;
-constexpr int kNode = 54;
 
 class BatteryNodeDevice final : public RackDevice {
  public:
@@ -47,6 +46,8 @@ class BatteryNodeDevice final : public RackDevice {
     node_.send(info, kPriority);
     due_.in(kPeriod_ns);
   }
+
+  static constexpr int kNode = 54;
 
   io::DroneCanNode node_;
   RandomStream noise_;

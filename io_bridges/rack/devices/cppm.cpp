@@ -9,7 +9,7 @@
 namespace whirl::rack {
 namespace {
 
-io::CppmReceiver::Params params_of(DeviceSlot& slot) {
+io::CppmReceiver::Params cppm_params(DeviceSlot& slot) {
   io::CppmReceiver::Params params;
   params.name = slot.name();
   params.channels = slot.whole("params.channels");
@@ -26,7 +26,8 @@ io::CppmReceiver::Params params_of(DeviceSlot& slot) {
 class CppmDevice final : public RackDevice {
  public:
   explicit CppmDevice(DeviceSlot& slot)
-      : receiver_(slot.rack().events(), slot.pin("bus"), params_of(slot), &slot.rack().faults()) {}
+      : receiver_(slot.rack().events(), slot.pin("bus"), cppm_params(slot), &slot.rack().faults()) {
+  }
 
   std::vector<Intake> intakes() const override { return {{io::Kind::rc_channels}}; }
   void on_message(const io::Reader& message) override { receiver_.on_sticks(sticks_of(message)); }

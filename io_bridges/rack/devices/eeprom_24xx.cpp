@@ -18,7 +18,7 @@ Result<Done> check_sizes(const DeviceSlot& slot, std::uint64_t size, std::uint64
                "a 24xx128 has 16 KiB and 64 B, a 24xx64 8 KiB and 32 B"};
 }
 
-Result<io::MemoryFile> contents_of(DeviceSlot& slot) {
+Result<io::MemoryFile> eeprom_contents(DeviceSlot& slot) {
   const auto size = static_cast<std::uint64_t>(std::llround(slot.quantity("size")));
   const auto page = static_cast<std::uint64_t>(std::llround(slot.quantity("page")));
   if (const auto good = check_sizes(slot, size, page); !good) return good.error();
@@ -32,7 +32,7 @@ Result<io::MemoryFile> contents_of(DeviceSlot& slot) {
   return contents;
 }
 
-io::Eeprom24xx::Params part_of(DeviceSlot& slot) {
+io::Eeprom24xx::Params eeprom_params(DeviceSlot& slot) {
   io::Eeprom24xx::Params params;
   params.name = slot.name();
   params.i2c_address = static_cast<std::uint8_t>(slot.whole("address"));
@@ -46,7 +46,7 @@ io::Eeprom24xx::Params part_of(DeviceSlot& slot) {
 class Eeprom24xxDevice final : public RackDevice {
  public:
   Eeprom24xxDevice(DeviceSlot& slot, io::MemoryFile contents)
-      : part_(slot.rack().events(), part_of(slot), std::move(contents),
+      : part_(slot.rack().events(), eeprom_params(slot), std::move(contents),
               slot.given("wp") ? &slot.pin("wp") : nullptr, &slot.rack().faults(),
               slot.rack().finding()) {
     slot.join_i2c(part_);
@@ -56,8 +56,8 @@ class Eeprom24xxDevice final : public RackDevice {
   io::Eeprom24xx part_;
 };
 
-std::unique_ptr<RackDevice> make(DeviceSlot& slot) {
-  auto contents = contents_of(slot);
+std::unique_ptr<RackDevice> make_eeprom(DeviceSlot& slot) {
+  auto contents = eeprom_contents(slot);
   if (contents) return std::make_unique<Eeprom24xxDevice>(slot, std::move(contents.value()));
   slot.failed(contents.error());
   return nullptr;
@@ -79,7 +79,7 @@ DeviceType eeprom_24xx_type() {
            file_key("image", "what it starts as; where none is given, all 0xFF"),
            quantity_key("params.write_time", Dimension::time, "ms", {0.0, 0.1}, "of a page")
                .with(static_cast<double>(usual.write_ns) * 1e-9)},
-          make};
+          make_eeprom};
 }
 
 }  // namespace whirl::rack

@@ -20,8 +20,8 @@ namespace whirl::rack {
 namespace {
 
 constexpr Nanoseconds kStatusPeriod_ns = 50'000'000;
-constexpr double kPhase_ns = 11'300'000;  // of each further motor: not all at once
-constexpr std::uint8_t kPriority = 16;
+constexpr double kPhasePerMotor_ns = 11'300'000;  // of each further motor: not all at once
+constexpr std::uint8_t kStatusPriority = 16;
 constexpr int kRawSteps = 4;
 constexpr int kFirstNode = 40;  // 0x28 + motor, as its address on I2C
 
@@ -52,7 +52,7 @@ class CanEscDevice final : public RackDevice {
       const int speed_rpm = own_of(command.speeds_rpm);
       follow(by_speed || speed_rpm == 0 ? setpoint_of_speed(speed_rpm) : std::nullopt, begun, now);
     });
-    due_.in(std::llround(kPhase_ns * motor_));
+    due_.in(std::llround(kPhasePerMotor_ns * motor_));
   }
 
   std::vector<Intake> intakes() const override {
@@ -91,12 +91,12 @@ class CanEscDevice final : public RackDevice {
     status.temperature_K = std::nanf("");
     status.speed_rpm = static_cast<std::int32_t>(std::lround(state_.speed_rpm));
     status.index = index;
-    node_.send(status, kPriority);
+    node_.send(status, kStatusPriority);
     io::dronecan::EscStatusExtended extended;
     extended.flags = state_.flags | (rejected_ ? kWriteRejected : 0u);
     extended.index = index;
     rejected_ = false;
-    node_.send(extended, kPriority);
+    node_.send(extended, kStatusPriority);
     due_.in(kStatusPeriod_ns);
   }
 

@@ -20,7 +20,7 @@ void add_world(std::vector<DeviceKey>& keys) {
   keys.push_back(metres("params.geoid", "sea level over the ellipsoid").with(usual.geoid_m));
 }
 
-void add_physics(std::vector<DeviceKey>& keys) {
+void add_error_keys(std::vector<DeviceKey>& keys) {
   const plant::GpsParams usual;
   const auto metres = [](const char* path, const char* about) {
     return quantity_key(path, Dimension::length, "m", {0.0, 1000.0}, about);
@@ -43,7 +43,7 @@ void add_physics(std::vector<DeviceKey>& keys) {
 
 void add_place_keys(std::vector<DeviceKey>& keys) {
   add_world(keys);
-  add_physics(keys);
+  add_error_keys(keys);
 }
 
 GnssPlace place_of(const DeviceSlot& slot) {

@@ -27,7 +27,7 @@ DeviceKey per_ampere_key(const std::string& path, const Eigen::Vector3d& usual_T
       .with(std::vector<double>(usual_T.begin(), usual_T.end()));
 }
 
-io::Hmc5883l::Params part_of(DeviceSlot& slot) {
+io::Hmc5883l::Params magnetometer_params(DeviceSlot& slot) {
   io::Hmc5883l::Params params;
   params.name = slot.name();
   params.seed = slot.rack().seed();
@@ -64,7 +64,7 @@ class Hmc5883lDevice final : public RackDevice {
   explicit Hmc5883lDevice(DeviceSlot& slot)
       : field_(field_of(slot)),
         part_(
-            slot.rack().events(), part_of(slot),
+            slot.rack().events(), magnetometer_params(slot),
             [this](Nanoseconds) { return field_.along_part_T(); },
             slot.given("drdy") ? &slot.pin("drdy") : nullptr, &slot.rack().faults(),
             slot.rack().finding()) {
@@ -91,7 +91,7 @@ class FieldNodeDevice final : public RackDevice {
         node_(
             slot.rack().events(), slot.can(),
             {.node = can_node_of(slot, "org.whirlstand.field", kNode),
-             .part = part_of(slot),
+             .part = magnetometer_params(slot),
              .to_body =
                  [this](const auto& in_part) { return turned_back(field_.mounting(), in_part); }},
             [this](Nanoseconds) { return field_.along_part_T(); }, &slot.rack().faults(),
@@ -106,7 +106,7 @@ class FieldNodeDevice final : public RackDevice {
   io::FieldNode node_;
 };
 
-void add_physics(std::vector<DeviceKey>& keys) {
+void add_field_keys(std::vector<DeviceKey>& keys) {
   keys.push_back(axes_key("axes", "where its x, y, z point in the body").need());
   keys.push_back(quantity_key("params.noise", Dimension::magnetic_field, "uT", {0.0, kMost_T},
                               "RMS of one measurement")
@@ -138,7 +138,7 @@ DeviceType hmc5883l_type() {
   address.limits = {io::Hmc5883l::kI2c_address, io::Hmc5883l::kI2c_address};
   std::vector<DeviceKey> keys = {bus_key("i2c", "the bus").need(), address.need(),
                                  pin_key("drdy", "data ready output, low for 5 us")};
-  add_physics(keys);
+  add_field_keys(keys);
   return {"hmc5883l",
           "magnetometer on I2C",
           std::move(keys),
@@ -149,7 +149,7 @@ DeviceType hmc5883l_type() {
 
 DeviceType hmc5883l_dronecan_type() {
   std::vector<DeviceKey> keys = can_node_keys("52");
-  add_physics(keys);
+  add_field_keys(keys);
   return {"hmc5883l_dronecan",
           "magnetometer on CAN, by DroneCAN",
           std::move(keys),

@@ -9,7 +9,7 @@
 namespace whirl::rack {
 namespace {
 
-io::Mpu6000::Params part_of(const DeviceSlot& slot) {
+io::Mpu6000::Params imu_params(const DeviceSlot& slot) {
   io::Mpu6000::Params params;
   params.name = slot.name();
   params.bus = slot.bus_number();
@@ -22,7 +22,7 @@ class Mpu6000Device final : public RackDevice {
   Mpu6000Device(DeviceSlot& slot, const plant::ImuParams& physics)
       : sensor_(physics, mounting_of(slot.axes("axes")), slot.rack().seed(), slot.name()),
         part_(
-            slot.rack().events(), part_of(slot),
+            slot.rack().events(), imu_params(slot),
             [this](Nanoseconds now) { return sensor_.sample(now); },
             slot.given("int") ? &slot.pin("int") : nullptr, &slot.rack().faults(),
             slot.rack().finding()) {
@@ -44,7 +44,7 @@ class Mpu6000Device final : public RackDevice {
   io::Mpu6000 part_;
 };
 
-constexpr int kNode = 50;
+constexpr int kImuNode = 50;
 
 class ImuNodeDevice final : public RackDevice {
  public:
@@ -53,8 +53,8 @@ class ImuNodeDevice final : public RackDevice {
         sensor_(physics, mounting_, slot.rack().seed(), slot.name()),
         node_(
             slot.rack().events(), slot.can(),
-            {.node = can_node_of(slot, "org.whirlstand.imu", kNode),
-             .part = part_of(slot),
+            {.node = can_node_of(slot, "org.whirlstand.imu", kImuNode),
+             .part = imu_params(slot),
              .full_width = slot.text("params.message") == "imu16",
              .to_body = [this](const auto& in_part) { return turned_back(mounting_, in_part); },
              .on_ready =
@@ -76,14 +76,14 @@ class ImuNodeDevice final : public RackDevice {
 };
 
 template <typename Device>
-std::unique_ptr<RackDevice> make(DeviceSlot& slot) {
+std::unique_ptr<RackDevice> make_imu(DeviceSlot& slot) {
   const plant::ImuParams physics = imu_physics_of(slot);
   if (slot.failed(plant::validate(physics, slot.place()))) return nullptr;
   return std::make_unique<Device>(slot, physics);
 }
 
-const std::vector<std::string> kSenses = {"accel_x", "accel_y", "accel_z",
-                                          "gyro_x",  "gyro_y",  "gyro_z"};
+const std::vector<std::string> kImuSenses = {"accel_x", "accel_y", "accel_z",
+                                             "gyro_x",  "gyro_y",  "gyro_z"};
 
 }  // namespace
 
@@ -92,8 +92,9 @@ DeviceType mpu6000_type() {
                                  pin_key("cs", "chip select, active low").need(),
                                  pin_key("int", "interrupt output")};
   add_imu_keys(keys);
-  return {"mpu6000", "accelerometer and gyroscope on SPI", std::move(keys), make<Mpu6000Device>, {},
-          kSenses};
+  return {
+      "mpu6000", "accelerometer and gyroscope on SPI", std::move(keys), make_imu<Mpu6000Device>, {},
+      kImuSenses};
 }
 
 DeviceType mpu6000_dronecan_type() {
@@ -104,9 +105,9 @@ DeviceType mpu6000_dronecan_type() {
   return {"mpu6000_dronecan",
           "accelerometer and gyroscope on CAN, by DroneCAN",
           std::move(keys),
-          make<ImuNodeDevice>,
+          make_imu<ImuNodeDevice>,
           {},
-          kSenses};
+          kImuSenses};
 }
 
 }  // namespace whirl::rack

@@ -43,7 +43,7 @@ io::ms5611::Prom prom_of(DeviceSlot& slot) {
   return io::ms5611::make_prom(coefficients, factory, serial);
 }
 
-io::Ms5611::Params part_of(DeviceSlot& slot) {
+io::Ms5611::Params barometer_params(DeviceSlot& slot) {
   io::Ms5611::Params params;
   params.name = slot.name();
   params.seed = slot.rack().seed();
@@ -65,7 +65,7 @@ class Ms5611Device final : public RackDevice {
   explicit Ms5611Device(DeviceSlot& slot)
       : air_(physics_of(slot), slot.rack().seed(), slot.name()),
         part_(
-            slot.rack().events(), part_of(slot),
+            slot.rack().events(), barometer_params(slot),
             [this](Nanoseconds now) { return air_.sense(now); }, &slot.rack().faults(),
             slot.rack().finding()) {
     if (on_i2c(slot)) {
@@ -89,7 +89,7 @@ class AirNodeDevice final : public RackDevice {
       : air_(physics_of(slot), slot.rack().seed(), slot.name()),
         node_(
             slot.rack().events(), slot.can(), can_node_of(slot, "org.whirlstand.air", kNode),
-            part_of(slot), [this](Nanoseconds now) { return air_.sense(now); },
+            barometer_params(slot), [this](Nanoseconds now) { return air_.sense(now); },
             &slot.rack().faults(), slot.rack().finding()) {}
 
   std::vector<Intake> intakes() const override { return {{io::Kind::body_motion}}; }
@@ -105,7 +105,7 @@ DeviceKey number_key(const char* path, Limits limits, const char* about) {
   return quantity_key(path, Dimension::none, "", limits, about);
 }
 
-void add_part(std::vector<DeviceKey>& keys) {
+void add_barometer_keys(std::vector<DeviceKey>& keys) {
   for (int i = 1; i <= 6; ++i) {
     DeviceKey key = quantity_key("params.c" + std::to_string(i), Dimension::none, "",
                                  {1.0, 65535.0}, "coefficient of its PROM");
@@ -121,7 +121,7 @@ void add_part(std::vector<DeviceKey>& keys) {
   keys.push_back(number_key("params.noise", {0.0, 100.0}, "times the sheet's").with(1.0));
 }
 
-void add_physics(std::vector<DeviceKey>& keys) {
+void add_air_keys(std::vector<DeviceKey>& keys) {
   const plant::BarometerParams usual;
   const auto pressure = [](const char* path, const char* about) {
     return quantity_key(path, Dimension::pressure, "Pa", {0.0, 10000.0}, about);
@@ -153,16 +153,16 @@ DeviceType ms5611_type() {
       address.need().on("i2c"),
       pin_key("cs", "chip select, active low").need().on("spi"),
   };
-  add_part(keys);
-  add_physics(keys);
+  add_barometer_keys(keys);
+  add_air_keys(keys);
   return {"ms5611", "barometer on I2C or SPI",  std::move(keys), make_device<Ms5611Device>,
           {},       {"pressure", "temperature"}};
 }
 
 DeviceType ms5611_dronecan_type() {
   std::vector<DeviceKey> keys = can_node_keys("51");
-  add_part(keys);
-  add_physics(keys);
+  add_barometer_keys(keys);
+  add_air_keys(keys);
   return {"ms5611_dronecan",
           "barometer on CAN, by DroneCAN",
           std::move(keys),

@@ -28,7 +28,6 @@ struct Patience {
   Nanoseconds ready_ns, status_ns;
 };
 constexpr Patience kOver_uart{500'000, 25'000'000}, kOver_can{800'000, 75'000'000};
-constexpr std::uint8_t kBurst = 0xBB;
 
 // Of the answers of one kind.
 struct Answers {
@@ -213,7 +212,7 @@ class PodReplayDevice final : public RackDevice {
   bool ended_ = false, asked_ = false, done_asked_ = false;
 };
 
-std::unique_ptr<RackDevice> make(DeviceSlot& slot) {
+std::unique_ptr<RackDevice> make_replay(DeviceSlot& slot) {
   auto traffic = read_traffic(slot.text("params.traffic"));
   if (!traffic) {
     std::ignore = slot.failed(traffic.error());
@@ -242,7 +241,7 @@ DeviceType pod_replay_type() {
   for (const DeviceKey& key : pod_link_keys()) keys.push_back(key);
   return {"pod_replay",
           "the flight controller and the host of a pod, by a recording: for its proof",
-          std::move(keys), make};
+          std::move(keys), make_replay};
 }
 
 }  // namespace whirl::rack

@@ -45,7 +45,7 @@ void read_pins(const DeviceSlot& slot, PowerStageParams& p) {
   }
 }
 
-PowerStageParams params_of(const DeviceSlot& slot) {
+PowerStageParams stage_params(const DeviceSlot& slot) {
   PowerStageParams p;
   read_copy(slot, p.motor);
   read_pins(slot, p);
@@ -129,8 +129,8 @@ class PowerStageDevice final : public RackDevice {
   PowerStage stage_;
 };
 
-std::unique_ptr<RackDevice> make(DeviceSlot& slot) {
-  const PowerStageParams params = params_of(slot);
+std::unique_ptr<RackDevice> make_stage(DeviceSlot& slot) {
+  const PowerStageParams params = stage_params(slot);
   if (slot.failed(plant::validate(params.motor, slot.place()))) return nullptr;
   return std::make_unique<PowerStageDevice>(slot, params);
 }
@@ -258,7 +258,7 @@ DeviceType power_stage_type() {
   add_pin_keys(keys);
   add_shunt_keys(keys);
   return {"power_stage", "switches, motor and current sense, wired as on the ESC32v2",
-          std::move(keys), make, all_pins()};
+          std::move(keys), make_stage, all_pins()};
 }
 
 }  // namespace whirl::rack

@@ -6,7 +6,7 @@
 namespace whirl::rack {
 namespace {
 
-Nanoseconds time_ns(const DeviceSlot& slot, const char* path) {
+Nanoseconds link_time_ns(const DeviceSlot& slot, const char* path) {
   return std::llround(slot.quantity(path) * 1e9);
 }
 
@@ -30,9 +30,9 @@ void add_link_keys(std::vector<DeviceKey>& keys) {
 
 io::RadioLink::Params link_of(const DeviceSlot& slot) {
   io::RadioLink::Params link;
-  link.latency_ns = time_ns(slot, "params.latency");
-  link.lost_after_ns = time_ns(slot, "params.lost_after");
-  link.failsafe_after_ns = time_ns(slot, "params.failsafe_after");
+  link.latency_ns = link_time_ns(slot, "params.latency");
+  link.lost_after_ns = link_time_ns(slot, "params.lost_after");
+  link.failsafe_after_ns = link_time_ns(slot, "params.failsafe_after");
   const std::string style = slot.text("params.failsafe");
   link.failsafe = style == "stop"   ? io::Failsafe::stop
                   : style == "hold" ? io::Failsafe::hold

@@ -9,7 +9,7 @@
 namespace whirl::rack {
 namespace {
 
-io::SbusReceiver::Params params_of(DeviceSlot& slot) {
+io::SbusReceiver::Params sbus_params(DeviceSlot& slot) {
   io::SbusReceiver::Params params;
   params.name = slot.name();
   params.period_ns = std::llround(slot.quantity("params.period") * 1e9);
@@ -22,7 +22,7 @@ io::SbusReceiver::Params params_of(DeviceSlot& slot) {
 class SbusDevice final : public RackDevice {
  public:
   explicit SbusDevice(DeviceSlot& slot)
-      : receiver_(slot.rack().events(), params_of(slot), &slot.rack().faults()) {
+      : receiver_(slot.rack().events(), sbus_params(slot), &slot.rack().faults()) {
     slot.join_uart(receiver_);
   }
 

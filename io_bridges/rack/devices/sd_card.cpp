@@ -13,7 +13,7 @@ namespace {
 constexpr double kMiB = 1048576.0;
 constexpr double kLeast_bytes = static_cast<double>(io::kLeast_volume_bytes);
 
-io::SdCard::Params part_of(DeviceSlot& slot) {
+io::SdCard::Params card_params(DeviceSlot& slot) {
   const auto ns = [&slot](const char* path) { return std::llround(slot.quantity(path) * 1e9); };
   io::SdCard::Params params;
   params.name = slot.name();
@@ -56,7 +56,7 @@ Result<std::int64_t> size_bytes(const DeviceSlot& slot) {
   return size;
 }
 
-Result<io::MemoryFile> contents_of(DeviceSlot& slot) {
+Result<io::MemoryFile> card_contents(DeviceSlot& slot) {
   const auto size = size_bytes(slot);
   if (!size) return size.error();
   auto contents = io::MemoryFile::create(slot.rack().file_to_leave(slot.name()), size.value());
@@ -77,7 +77,7 @@ Result<io::MemoryFile> contents_of(DeviceSlot& slot) {
 class SdCardDevice final : public RackDevice {
  public:
   SdCardDevice(DeviceSlot& slot, io::MemoryFile contents)
-      : part_(slot.rack().events(), part_of(slot), std::move(contents), &slot.rack().faults(),
+      : part_(slot.rack().events(), card_params(slot), std::move(contents), &slot.rack().faults(),
               slot.rack().finding()) {
     slot.join_spi(part_);
   }
@@ -86,8 +86,8 @@ class SdCardDevice final : public RackDevice {
   io::SdCard part_;
 };
 
-std::unique_ptr<RackDevice> make(DeviceSlot& slot) {
-  auto contents = contents_of(slot);
+std::unique_ptr<RackDevice> make_card(DeviceSlot& slot) {
+  auto contents = card_contents(slot);
   if (contents) return std::make_unique<SdCardDevice>(slot, std::move(contents.value()));
   slot.failed(contents.error());
   return nullptr;
@@ -118,7 +118,7 @@ DeviceType sd_card_type() {
            quantity_key("params.stall_every", Dimension::none, "blocks", {0.0, 1e9},
                         "mean between stalls of 20 ms to the longest; 0: never")
                .with(usual.stall_every)},
-          make};
+          make_card};
 }
 
 }  // namespace whirl::rack

@@ -8,9 +8,6 @@
 namespace whirl::rack {
 namespace {
 
-constexpr std::uint8_t kBurst =
-    0xBB;  // the read from ACCEL_XOUT_H on, by which a sample is fetched
-
 bool read_pairs(const std::string& hex, RecordedTransfer& transfer) {
   if (hex.empty() || hex.size() % 4 != 0) return false;
   for (std::size_t at = 0; at < hex.size(); at += 2) {

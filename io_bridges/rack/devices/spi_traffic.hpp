@@ -16,6 +16,9 @@
 
 namespace whirl::rack {
 
+// The read from ACCEL_XOUT_H on, by which a sample is fetched.
+inline constexpr std::uint8_t kBurst = 0xBB;
+
 struct RecordedTransfer {
   std::int64_t start_ns = 0;
   std::int64_t lead_ns = 0, byte_ns = 0, tail_ns = 0;

@@ -14,7 +14,7 @@ Nanoseconds time_ns(const DeviceSlot& slot, const char* path) {
   return std::llround(slot.quantity(path) * 1e9);
 }
 
-io::Ublox::Params part_of(DeviceSlot& slot, io::UbloxModel model, double baud) {
+io::Ublox::Params ublox_params(DeviceSlot& slot, io::UbloxModel model, double baud) {
   io::Ublox::Params params;
   params.name = slot.name();
   params.model = model;
@@ -35,7 +35,7 @@ class UbloxDevice final : public RackDevice {
   explicit UbloxDevice(DeviceSlot& slot)
       : place_(slot, place_of(slot)),
         part_(
-            slot.rack().events(), part_of(slot, kModel, slot.quantity("baud")),
+            slot.rack().events(), ublox_params(slot, kModel, slot.quantity("baud")),
             [this](const io::Ublox::Query& query) { return place_.fix(query); },
             &slot.rack().faults(), slot.rack().finding()) {
     slot.join_uart(part_);
@@ -55,7 +55,7 @@ class GnssNodeDevice final : public RackDevice {
       : place_(slot, place_of(slot)),
         node_(
             slot.rack().events(), slot.can(), can_node_of(slot, "org.whirlstand.gnss", kNode),
-            part_of(slot, io::UbloxModel::m8, io::GnssNode::kBaud),
+            ublox_params(slot, io::UbloxModel::m8, io::GnssNode::kBaud),
             [this](const io::Ublox::Query& query) { return place_.fix(query); },
             &slot.rack().faults(), slot.rack().finding()) {}
 
@@ -68,7 +68,7 @@ class GnssNodeDevice final : public RackDevice {
   io::GnssNode node_;
 };
 
-void add_part(std::vector<DeviceKey>& keys) {
+void add_ublox_keys(std::vector<DeviceKey>& keys) {
   const io::Ublox::Params usual;
   DeviceKey satellites = quantity_key("params.satellites", Dimension::none, "", {4.0, 12.0},
                                       "that it tracks once it has settled");
@@ -88,8 +88,8 @@ void add_part(std::vector<DeviceKey>& keys) {
   add_place_keys(keys);
 }
 
-const std::vector<std::string> kSenses = {"north",          "east",          "down",
-                                          "velocity_north", "velocity_east", "velocity_down"};
+const std::vector<std::string> kUbloxSenses = {"north",          "east",          "down",
+                                               "velocity_north", "velocity_east", "velocity_down"};
 
 template <io::UbloxModel kModel>
 DeviceType type_of(const char* name, const char* about) {
@@ -97,8 +97,8 @@ DeviceType type_of(const char* name, const char* about) {
       bus_key("usart", "the UART").need().own(),
       quantity_key("baud", Dimension::baud, "baud", {4800.0, 460800.0}, "as saved in the part")
           .with(static_cast<double>(io::Ublox::Params{}.baud))};
-  add_part(keys);
-  return {name, about, std::move(keys), make_device<UbloxDevice<kModel>>, {}, kSenses};
+  add_ublox_keys(keys);
+  return {name, about, std::move(keys), make_device<UbloxDevice<kModel>>, {}, kUbloxSenses};
 }
 
 }  // namespace
@@ -113,13 +113,13 @@ DeviceType ublox_m8_type() {
 
 DeviceType ublox_m8_dronecan_type() {
   std::vector<DeviceKey> keys = can_node_keys("53");
-  add_part(keys);
+  add_ublox_keys(keys);
   return {"ublox_m8_dronecan",
           "GPS receiver NEO-M8 on CAN, by DroneCAN",
           std::move(keys),
           make_device<GnssNodeDevice>,
           {},
-          kSenses};
+          kUbloxSenses};
 }
 
 }  // namespace whirl::rack
