@@ -52,7 +52,9 @@ void read_link(const lua::Table& t, bench::BenchDescription& bench) {
         t.quantity_or("rate", Dimension::frequency, link.rate_Hz, lua::between(10e3, 400e3));
     bench.bridges.push_back(std::move(link));
   } else if (number && is_uart(bus)) {
-    bench.serials.push_back({name, t.text("path"), port, read_baud(t)});
+    bench::SerialLink link{name, t.text("path"), port, read_baud(t)};
+    link.mavlink = t.has("kind") && t.choice("kind", {"mavlink"}) == "mavlink";
+    bench.serials.push_back(std::move(link));
   } else if (number && bus.starts_with("can")) {
     bench::CanBusLink link;
     read_can(t, link);

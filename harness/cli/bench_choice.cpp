@@ -62,12 +62,18 @@ bool serial_joins(const BoardDevice& device, const bench::BenchDescription& benc
 
 // Parts that are played on a line of their own as well.
 bool has_own_line(const BoardDevice& device) {
-  return is_receiver(device) || is_gps(device) || device.type == "mavlink_link";
+  return is_receiver(device) || is_gps(device) || is_radio(device);
 }
 
 bool pod_plays(const BoardDevice& device, const bench::BenchDescription& bench) {
   return std::any_of(bench.pods.begin(), bench.pods.end(), [&](const bench::PodLink& link) {
     return pod_parts(link.parts).count(device.type) != 0;
+  });
+}
+
+bool is_radio_at(const BoardDescription& board, const bench::SerialLink& link) {
+  return std::any_of(board.devices.begin(), board.devices.end(), [&](const BoardDevice& device) {
+    return is_radio(device) && is_at_uart(device, link.uart);
   });
 }
 
@@ -111,6 +117,21 @@ Result<Done> check_flight_links(const BoardDescription& board,
   return Done{};
 }
 
+// A line that is said to carry MAVLink is that of a telemetry radio of the board's.
+Result<Done> check_radios(const BoardDescription& board, const bench::BenchDescription& bench) {
+  for (const bench::SerialLink& link : bench.serials) {
+    if (!link.mavlink || is_radio_at(board, link)) continue;
+    const auto radio = std::find_if(board.devices.begin(), board.devices.end(), is_radio);
+    const std::string bus = "usart" + std::to_string(link.uart);
+    return refused(
+        bench.file,
+        link.name + ": kind = \"mavlink\", and " + board.name + " has no telemetry radio on " + bus,
+        radio == board.devices.end() ? "a board with a mavlink_link"
+                                     : "bus = \"" + radio->bus + "\"");
+  }
+  return Done{};
+}
+
 // The boards of its pods.
 Result<Done> read_pods(bench::BenchDescription& bench, const std::string& root) {
   for (bench::PodLink& link : bench.pods) {
@@ -138,7 +159,13 @@ Result<bench::BenchDescription> bench_named(const std::string& name, const char*
                                             const std::string& root) {
   const auto file = find_file(name, {".", command}, {root + "/test_plans/benches"}, ".lua");
   if (!file) return file.error();
-  return read_bench(shown_path(file.value()));
+  auto bench = read_bench(shown_path(file.value()));
+  if (!bench) return bench;
+  const auto board = find_board(bench.value().board, {file.value(), "board"}, root);
+  for (bench::SerialLink& link : bench.value().serials) {
+    link.mavlink = link.mavlink || (board && is_radio_at(board.value(), link));
+  }
+  return bench;
 }
 
 Result<Done> check_copper_options(const RunOptions& options) {
@@ -178,6 +205,7 @@ Result<bench::BenchDescription> bench_for(const plan::Plan& plan, const std::vec
     return refused(plan.place, "the plan is for " + board.name + ", and on bench " +
                                    bench.value().name + " there is " + bench.value().board);
   }
+  if (const auto there = check_radios(board, bench.value()); !there) return there.error();
   const auto joined = plan.stand ? check_links(plan, board, bench.value(), root)
                                  : check_flight_links(board, bench.value());
   if (!joined) return joined.error();

@@ -15,7 +15,8 @@ namespace whirl::cli {
 // that kind; --gdb, --twice, several seeds or several runs at once
 Result<Done> check_bench_options(const RunOptions& options);
 
-// Of test_plans/benches, or a path. `command`: who asks, for the message.
+// Of test_plans/benches, or a path. `command`: who asks, for the message. A line to a telemetry radio of its board, where
+// that is found, is one that carries MAVLink.
 Result<bench::BenchDescription> bench_named(const std::string& name, const char* command,
                                             const std::string& root);
 

@@ -13,6 +13,7 @@
 #include "harness/pacing/real_time.hpp"
 #include "harness/target/bench/analyser_link.hpp"
 #include "harness/target/bench/can_check.hpp"
+#include "harness/target/bench/mavlink_check.hpp"
 #include "harness/target/bench/serial_links.hpp"
 #include "harness/target/bench/spread.hpp"
 #include "io_bridges/openocd/core_probe.hpp"
@@ -42,12 +43,7 @@ class Check {
   int all() {
     for (const auto& link : bench_.bridges) check(link);
     for (const auto& link : bench_.cans) check(link);
-    for (const auto& link : bench_.serials) {
-      bench::BoardSerial line(link);
-      const auto opened = line.open();
-      opened ? say(link.name, link.path + " opens at " + std::to_string(link.baud) + " baud")
-             : missing(link.name, opened.error());
-    }
+    for (const auto& link : bench_.serials) check(link);
     for (const auto& instrument : bench_.instruments) check(instrument);
     if (bench_.analyser) check(*bench_.analyser);
     if (bench_.probe) check(*bench_.probe);
@@ -106,6 +102,22 @@ class Check {
     const auto told = bench::check_can_bus(
         *port.value(), clock_,
         {.interface = link.interface, .bit_rate_bps = link.bit_rate_bps, .seconds = seconds_});
+    if (!told) return missing(link.name, told.error());
+    for (const std::string& line : told.value()) say(link.name, line);
+  }
+
+  void check(const bench::SerialLink& link) {
+    if (link.mavlink) return check_mavlink(link);
+    bench::BoardSerial line(link);
+    const auto opened = line.open();
+    opened ? say(link.name, link.path + " opens at " + std::to_string(link.baud) + " baud")
+           : missing(link.name, opened.error());
+  }
+
+  // HEARTBEAT comes once a second: five of them, or more.
+  void check_mavlink(const bench::SerialLink& link) {
+    const auto told = bench::check_mavlink(
+        {.link = link, .seconds = std::max(5.0 / bench_.pace, seconds_)}, clock_);
     if (!told) return missing(link.name, told.error());
     for (const std::string& line : told.value()) say(link.name, line);
   }

@@ -14,6 +14,7 @@
 #include "harness/target/bench/bench_target.hpp"
 #include "harness/target/bench/bridge_link.hpp"
 #include "harness/target/bench/gps_line.hpp"
+#include "harness/target/bench/mavlink_line.hpp"
 #include "harness/target/bench/node_link.hpp"
 #include "harness/target/bench/pod_line.hpp"
 #include "harness/target/bench/receiver_line.hpp"
@@ -119,7 +120,7 @@ Result<Done> add_nodes(const cli::Setup& setup, const bench::CanMaker& can, Link
   return add_pods(setup, can, links);
 }
 
-// Of a vehicle, a line may be the receiver's, or the GPS's.
+// Of a vehicle, a line may be the receiver's, the GPS's, or its telemetry.
 std::unique_ptr<bench::Link> serial_link(const cli::Setup& setup, const bench::SerialLink& link) {
   const auto plays = [&](bench::LinePart kind) {
     return !setup.plan.stand && bench::part_at(setup.board, link, kind) != nullptr;
@@ -130,6 +131,9 @@ std::unique_ptr<bench::Link> serial_link(const cli::Setup& setup, const bench::S
   };
   if (plays(is_receiver)) return std::make_unique<bench::ReceiverLine>(options());
   if (plays(is_gps)) return std::make_unique<bench::GpsLine>(options());
+  if (link.mavlink || plays(is_radio)) {
+    return std::make_unique<bench::MavlinkLine>(link, setup.bench->pace);
+  }
   return std::make_unique<bench::BoardSerial>(link);
 }
 

@@ -4,7 +4,9 @@
 
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
+#include <map>
 
 #include "base/near.hpp"
 #include "base/scratch_folder.hpp"
@@ -60,7 +62,7 @@ std::string bench_file(const Metal& metal, const std::string& board) {
          "\", pace = " + std::to_string(kPace) + R"(, late = "5 ms", late_share = "2 %",
   links = { { name = "bus", bus = "can2", interface = "memory" }, )" +
          (board == kBoardWithSticks ? sticks : "") + R"(
-            { name = "radio", bus = "usart2", path = ")" +
+            { name = "radio", kind = "mavlink", bus = "usart2", path = ")" +
          metal.radio + R"(", baud = "57600 baud" } },
   safety = { phrase = "clear", longest = "60 s", heartbeat = "1 s" } })";
 }
@@ -94,6 +96,8 @@ TEST(BenchFlight, TheRealImageHoversOverItsWiresAsItDoesInLockstep) {
   ASSERT_EQ(flown.code, 0) << std::string(flown.file["reason"]);
   const ComposedRun lockstep = fly_in_lockstep(plan, folder);
   ASSERT_EQ(lockstep.code, 0) << std::string(lockstep.file["reason"]);
+  expect_telemetry_of_lockstep(folder.file("bench/runs/latest"),
+                               folder.file("lockstep/runs/latest"));
   const auto want = lockstep.figures();
   // Frames are heard 0.13 ms later than in lockstep: what an error of some millimetres makes of it wanders by 5 %.
   for (const auto& [name, got] : flown.figures()) {
@@ -104,6 +108,39 @@ TEST(BenchFlight, TheRealImageHoversOverItsWiresAsItDoesInLockstep) {
     const auto parity = stated((current ? 0.01 : 0.1) * want.at(name), "parity");
     EXPECT_TRUE(near(got, want.at(name), parity)) << name;
   }
+}
+
+// How often each message is in a log of telemetry: framed by eight bytes of time each.
+std::map<std::uint32_t, int> messages_in(const std::string& tlog) {
+  std::ifstream file(tlog, std::ios::binary);
+  const std::string bytes((std::istreambuf_iterator<char>(file)), {});
+  std::map<std::uint32_t, int> count;
+  constexpr std::size_t kTime = 8, kHeader = 10, kCrc = 2;
+  for (std::size_t at = 0; at + kTime + kHeader <= bytes.size();) {
+    const auto byte = [&](std::size_t i) {
+      return static_cast<std::uint32_t>(static_cast<std::uint8_t>(bytes[at + kTime + i]));
+    };
+    EXPECT_EQ(byte(0), 0xFDu) << tlog << " at " << at;
+    if (byte(0) != 0xFD) break;
+    ++count[byte(7) | byte(8) << 8 | byte(9) << 16];
+    at += kTime + kHeader + byte(1) + kCrc;
+  }
+  return count;
+}
+
+// Its parameters were asked for and set, it was armed and flown over the line: what it has said is there as in lockstep.
+void expect_telemetry_of_lockstep(const std::string& bench, const std::string& lockstep) {
+  EXPECT_FALSE(std::filesystem::exists(bench + "/serial.txt"));
+  const auto got = messages_in(bench + "/telemetry.tlog");
+  const auto want = messages_in(lockstep + "/telemetry.tlog");
+  ASSERT_GT(want.size(), 5u);
+  for (const auto& [id, count] : want) {
+    const auto found = got.find(id);
+    ASSERT_NE(found, got.end()) << id;
+    // The flight ends up to 0.2 s earlier or later, of some 20 s, for a step waits for what it is told.
+    EXPECT_TRUE(near(found->second, count, stated(2.0 + 0.03 * count, "rates of one image"))) << id;
+  }
+  EXPECT_EQ(got.size(), want.size());
 }
 
 constexpr const char* kCut = R"(plan "cut" {

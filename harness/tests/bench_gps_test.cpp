@@ -84,7 +84,7 @@ struct Told {  // of GPS_RAW_INT
   double latitude_deg, longitude_deg;
 };
 
-// A bench's line gives bytes as they come, so that what the radio said is a file of all of them.
+// The times between the frames are no frames, and are passed over.
 std::vector<Told> told_by_gps(const std::string& said) {
   std::ifstream file(said, std::ios::binary);
   const std::string bytes((std::istreambuf_iterator<char>(file)), {});
@@ -142,7 +142,7 @@ TEST(BenchGps, TheRealImageSetsTheReceiverUpAndSaysThatItHasAFix) {
   clock.leave();
   metal.stand_in->stop();
   EXPECT_EQ(run.code, 0) << run.file["reason"];
-  const auto told = told_by_gps(folder.file("out") + "/runs/latest/serial.txt");
+  const auto told = told_by_gps(folder.file("out") + "/runs/latest/telemetry.tlog");
   ASSERT_EQ(fixes(told), (std::vector<int>{0, 3, 0, 3}));
   const auto place = stated(20e-5, "20 m: the fix is seconds old");
   EXPECT_TRUE(near(told.back().latitude_deg, 47.4, place));

@@ -207,6 +207,16 @@ struct HighresImu {  // pressures in hPa, magnetic field in Gauss, temperature i
   }
 };
 
+struct Timesync {  // tc1: 0 in a request, in an answer the answering side's time; ns
+  static constexpr std::uint32_t kId = 111;
+  std::int64_t tc1 = 0, ts1 = 0;
+  std::uint8_t target_system = 0, target_component = 0;
+  template <typename V>
+  void fields(V& v) {
+    v(tc1, ts1, target_system, target_component);
+  }
+};
+
 struct Statustext {
   static constexpr std::uint32_t kId = 253;
   std::uint8_t severity = 0;

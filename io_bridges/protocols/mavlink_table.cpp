@@ -52,6 +52,7 @@ constexpr MavlinkInfo kMessages[] = {
     {105, "HIGHRES_IMU", 63, 62, 93},
     {106, "OPTICAL_FLOW_RAD", 44, 44, 138},
     {107, "HIL_SENSOR", 65, 64, 108},
+    {109, "RADIO_STATUS", 9, 9, 185},
     {111, "TIMESYNC", 18, 16, 34},
     {113, "HIL_GPS", 39, 36, 124},
     {115, "HIL_STATE_QUATERNION", 64, 64, 4},

@@ -20,6 +20,7 @@ struct SerialLink {
   std::string name, path;
   std::uint16_t uart = 1;
   int baud = 115200;
+  bool mavlink = false;  // said to be a telemetry radio's, or a cable's in its place
 };
 
 struct BridgeLink {  // USB to I2C

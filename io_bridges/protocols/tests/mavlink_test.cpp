@@ -171,6 +171,7 @@ TEST(Mavlink, StructsAreAsLongAsThePublishedMessages) {
   expect_full_length<ParamRequestList>(2);
   expect_full_length<ParamValue>(25);
   expect_full_length<ParamSet>(23);
+  expect_full_length<Timesync>(18);
 }
 
 TEST(Mavlink, FieldsSitAtThePublishedOffsets) {

@@ -1,0 +1,279 @@
+// MAVLink on a serial line whose far end, the flight controller's, the test plays on a pseudo-terminal. Its frames are by other
+// hands: made with node-mavlink 2.3.0 (mavlink-mappings 1.0.22).
+#include "harness/target/bench/mavlink_line.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "harness/target/bench/mavlink_check.hpp"
+#include "io_bridges/serial/pseudo_terminal.hpp"
+
+namespace whirl::bench {
+namespace {
+
+using Bytes = std::vector<std::uint8_t>;
+
+constexpr std::int64_t kMs = 1'000'000;
+constexpr double kBaud = 57600.0;
+
+// HEARTBEAT of 1/1, numbers 7, 8 and 10; RADIO_STATUS of a radio, 51/68, number 200.
+const Bytes kBeat_7{0xFD, 0x09, 0, 0, 0x07, 1, 1, 0, 0, 0, 3, 0, 0, 0, 2, 0, 1, 3, 3, 0x12, 0x9C};
+const Bytes kBeat_8{0xFD, 0x09, 0, 0, 0x08, 1, 1, 0, 0, 0, 3, 0, 0, 0, 2, 0, 1, 3, 3, 0x95, 0x7E};
+const Bytes kBeat_10{0xFD, 0x09, 0, 0, 0x0A, 1, 1, 0, 0, 0, 3, 0, 0, 0, 2, 0, 1, 3, 3, 0xA4, 0x6A};
+const Bytes kRadio_200{0xFD, 0x09, 0, 0,    0xC8, 0x33, 0x44, 0x6D, 0,    0,   2,
+                       0,    1,    0, 0xB4, 0xAA, 0x63, 0x28, 0x29, 0xBC, 0x2A};
+
+Bytes joined(std::initializer_list<Bytes> parts) {
+  Bytes all;
+  for (const Bytes& part : parts) all.insert(all.end(), part.begin(), part.end());
+  return all;
+}
+
+struct Rig {
+  explicit Rig(double pace = 1.0) : link({"radio", far->path(), 2, 57600}, pace) {
+    EXPECT_TRUE(link.open().ok());
+    link.keep_time(
+        {[](std::int64_t host_ns) { return host_ns; }, [](std::int64_t t_ns) { return t_ns; }});
+  }
+  Result<Done> serve(std::int64_t now_ns) { return link.serve(now_ns, arrivals); }
+  bool send(const Bytes& frame, std::int64_t due_ns, std::uint16_t port = 2) {
+    io::Batch batch;
+    batch.add(io::Kind::uart_frame, port, 0, frame.data(),
+              static_cast<std::uint32_t>(frame.size()));
+    io::Reader order(batch.bytes());
+    order.next();
+    return link.take(order, due_ns);
+  }
+  Bytes read() {
+    Bytes got(65536);
+    got.resize(far->read(got));
+    return got;
+  }
+  std::string found() {
+    std::string all;
+    for (const std::string& finding : link.findings()) all += finding + "\n";
+    return all;
+  }
+
+  std::optional<io::PseudoTerminal> far = std::move(io::PseudoTerminal::open().value());
+  MavlinkLine link;
+  Arrivals arrivals;
+};
+
+TEST(MavlinkLine, EachWholeFrameIsAMessageOfTheTimeOfItsLastByte) {
+  Rig rig;
+  rig.far->write(joined({kBeat_7, kBeat_8, Bytes(kBeat_10.begin(), kBeat_10.begin() + 5)}));
+  ASSERT_TRUE(rig.serve(1000).ok());
+  ASSERT_EQ(rig.arrivals.size(), 2u);
+  EXPECT_EQ(rig.arrivals[0].payload, kBeat_7);
+  EXPECT_EQ(rig.arrivals[1].payload, kBeat_8);
+  rig.far->write(std::span(kBeat_10).subspan(5));
+  ASSERT_TRUE(rig.serve(2000).ok());
+  ASSERT_EQ(rig.arrivals.size(), 3u);
+  EXPECT_EQ(rig.arrivals[2].payload, kBeat_10);
+  EXPECT_EQ(rig.arrivals[2].host_ns, 2000);
+  EXPECT_EQ(rig.arrivals[2].kind, io::Kind::uart_received);
+  EXPECT_EQ(rig.arrivals[2].port, 2);
+}
+
+TEST(MavlinkLine, WhatIsBrokenIsToldOnceAndTheNextFrameIsWhole) {
+  Rig rig;
+  const Bytes end_of_one(kBeat_7.begin() + 9, kBeat_7.end());
+  Bytes spoilt = kBeat_8;
+  spoilt[12] ^= 0x10;
+  rig.far->write(joined({end_of_one, kBeat_7, spoilt, kBeat_10}));
+  ASSERT_TRUE(rig.serve(1000).ok());
+  ASSERT_EQ(rig.arrivals.size(), 2u);
+  EXPECT_EQ(rig.arrivals[1].payload, kBeat_10);
+  EXPECT_EQ(rig.link.counts().outside_B, 21u);  // all of the spoilt one, none of the first's end
+  EXPECT_EQ(rig.link.counts().missing, 2u);     // 8 and 9
+  EXPECT_EQ(rig.found(),
+            "21 bytes outside of MAVLink frames (2 frames came whole)\n"
+            "2 frames of the board missing by their numbers (2 frames came whole)\n");
+}
+
+TEST(MavlinkLine, ARadioThatSpeaksOfItselfIsNoGapInTheBoardsNumbers) {
+  Rig rig;
+  rig.far->write(joined({kBeat_7, kRadio_200, kBeat_8}));
+  ASSERT_TRUE(rig.serve(1000).ok());
+  EXPECT_EQ(rig.arrivals.size(), 3u);
+  EXPECT_EQ(rig.found(), "");
+}
+
+TEST(MavlinkLine, FramesLeaveInOrderOfTimeAndAreDeliveredWhenTheirLastStopBitIsOver) {
+  Rig rig;
+  EXPECT_TRUE(rig.send(kBeat_8, 2 * kMs));
+  EXPECT_TRUE(rig.send(kBeat_7, 1 * kMs));
+  EXPECT_FALSE(rig.send(kBeat_7, 1 * kMs, 3));
+  EXPECT_EQ(rig.link.next_due_host_ns(), 1 * kMs);
+  ASSERT_TRUE(rig.serve(1 * kMs - 1).ok());
+  EXPECT_EQ(rig.read(), Bytes{});
+  ASSERT_TRUE(rig.serve(1 * kMs).ok());
+  EXPECT_EQ(rig.read(), kBeat_7);
+  ASSERT_TRUE(rig.serve(2 * kMs).ok());
+  EXPECT_EQ(rig.read(), kBeat_8);
+  EXPECT_TRUE(rig.arrivals.empty());
+  // 21 characters of ten bits each.
+  const auto frame_ns = static_cast<std::int64_t>(210.0 / kBaud * 1e9);
+  EXPECT_NEAR(static_cast<double>(rig.link.next_due_host_ns()),
+              static_cast<double>(1 * kMs + frame_ns), 2.0);
+  ASSERT_TRUE(rig.serve(20 * kMs).ok());
+  ASSERT_EQ(rig.arrivals.size(), 2u);
+  EXPECT_EQ(rig.arrivals[0].kind, io::Kind::uart_delivered);
+  EXPECT_EQ(rig.arrivals[0].payload, kBeat_7);
+  EXPECT_NEAR(static_cast<double>(rig.arrivals[1].host_ns),
+              static_cast<double>(1 * kMs + 2 * frame_ns), 2.0);
+}
+
+TEST(MavlinkLine, AFrameThatWouldWaitLongerThanARadiosBufferIsDroppedAndTold) {
+  for (const double pace : {1.0, 0.5}) {
+    Rig rig(pace);
+    for (int i = 0; i < 60; ++i) rig.send(kBeat_7, 0);
+    ASSERT_TRUE(rig.serve(0).ok());
+    // 200 ms carry 1152 bytes, 54.9 frames, at any pace: the 56th is the last that begins in time.
+    EXPECT_EQ(rig.read().size(), 55u * 21u) << pace;
+    EXPECT_EQ(rig.link.counts().dropped, 5u) << pace;
+    EXPECT_NE(rig.found().find("5 frames for the board found the line full"), std::string::npos);
+  }
+}
+
+TEST(MavlinkLine, OneThatIsMadeSafeSendsNothingMore) {
+  Rig rig;
+  rig.send(kBeat_7, 0);
+  rig.link.make_safe();
+  EXPECT_TRUE(rig.send(kBeat_8, 0));
+  ASSERT_TRUE(rig.serve(kMs).ok());
+  EXPECT_EQ(rig.read(), Bytes{});
+}
+
+TEST(MavlinkLine, BytesWithoutAFrameForFiveSecondsAreAWrongRate) {
+  Rig rig;
+  rig.far->write(Bytes(281, 0x55));
+  EXPECT_TRUE(rig.serve(4999 * kMs).ok());
+  const auto deaf = rig.serve(5000 * kMs);
+  ASSERT_FALSE(deaf.ok());
+  EXPECT_EQ(deaf.error().kind, ErrorKind::bad_input);
+  EXPECT_EQ(deaf.error().what, "281 bytes at 57600 baud in 5 s, and no MAVLink frame among them");
+  EXPECT_EQ(deaf.error().place, rig.far->path());
+}
+
+TEST(MavlinkLine, ASilentLineEndsNothingAndIsTold) {
+  Rig rig;
+  rig.far->write(Bytes(280, 0x55));  // may be the end of a frame
+  EXPECT_TRUE(rig.serve(60'000 * kMs).ok());
+  EXPECT_NE(rig.found().find("no MAVLink frame was heard, 280 bytes at 57600 baud"),
+            std::string::npos);
+}
+
+TEST(MavlinkLine, OneFrameIsEnoughNotToBeDeaf) {
+  Rig rig;
+  rig.far->write(joined({kBeat_7, Bytes(1000, 0x55)}));
+  EXPECT_TRUE(rig.serve(60'000 * kMs).ok());
+}
+
+TEST(MavlinkLine, UnpluggedInTheMidstOfAFrameIsSaid) {
+  Rig rig;
+  rig.far->write(std::span(kBeat_7).first(9));
+  ASSERT_TRUE(rig.serve(kMs).ok());
+  rig.far.reset();
+  const auto served = rig.serve(2 * kMs);
+  ASSERT_FALSE(served.ok());
+  EXPECT_EQ(served.error().kind, ErrorKind::host);
+  EXPECT_EQ(served.error().what, "the serial line was unplugged");
+  EXPECT_TRUE(rig.arrivals.empty());
+}
+
+// With its sum behind it: CRC-16/MCRF4XX, bit by bit.
+Bytes summed(Bytes frame, std::uint8_t extra) {
+  std::uint16_t crc = 0xFFFF;
+  const auto add = [&crc](std::uint8_t byte) {
+    crc = static_cast<std::uint16_t>(crc ^ byte);
+    for (int bit = 0; bit < 8; ++bit) {
+      crc = static_cast<std::uint16_t>((crc & 1) != 0 ? (crc >> 1) ^ 0x8408 : crc >> 1);
+    }
+  };
+  for (std::size_t i = 1; i < frame.size(); ++i) add(frame[i]);
+  add(extra);
+  frame.push_back(static_cast<std::uint8_t>(crc));
+  frame.push_back(static_cast<std::uint8_t>(crc >> 8));
+  return frame;
+}
+
+// A clock on which the far end acts: HEARTBEAT at 0.3 s of each second, each other one 4 ms late, and answers to what is asked.
+class FarClock final : public pacing::HostClock {
+ public:
+  FarClock(io::PseudoTerminal& far, bool beats, std::int64_t answer_ns, std::size_t noise_B)
+      : far_(far), beats_(beats), answer_ns_(answer_ns), noise_B_(noise_B) {}
+  std::int64_t now_ns() const override { return now_ns_; }
+  void sleep_until(std::int64_t t_ns) override { now_ns_ = std::max(now_ns_, t_ns); }
+  void wait_for(std::span<pollfd> /*files*/, std::int64_t t_ns) override {
+    now_ns_ = std::min(t_ns, now_ns_ + kMs);
+    if (beats_ && now_ns_ % (2000 * kMs) == 300 * kMs) beat();
+    if (beats_ && now_ns_ % (2000 * kMs) == 1304 * kMs) beat();
+    far_.write(Bytes(noise_B_, 0x55));
+    Bytes asked(1024);
+    asked.resize(far_.read(asked));
+    if (asked.size() == 30) {
+      question_ = asked;
+      asked_ns_ = now_ns_;
+    }
+    if (!question_.empty() && answer_ns_ >= 0 && now_ns_ - asked_ns_ >= answer_ns_) answer();
+  }
+
+ private:
+  void beat() {
+    Bytes frame(kBeat_7.begin(), kBeat_7.end() - 2);
+    frame[4] = number_++;
+    far_.write(summed(frame, 50));
+  }
+  // TIMESYNC of 1/1: its time, and the one that was asked with.
+  void answer() {
+    Bytes frame{0xFD, 0x12, 0, 0, number_++, 1, 1, 0x6F, 0, 0, 0xF2, 0x05, 0x2A, 0x01, 0, 0, 0, 0};
+    for (std::size_t i = 18; i < 26; ++i) frame.push_back(question_.at(i));
+    for (const std::uint8_t byte : {0xFF, 0xBE}) frame.push_back(byte);
+    far_.write(summed(frame, 34));
+    question_.clear();
+  }
+
+  io::PseudoTerminal& far_;
+  bool beats_;
+  std::int64_t answer_ns_, now_ns_ = 124'000 * kMs, asked_ns_ = 0;
+  std::size_t noise_B_;
+  std::uint8_t number_ = 250;
+  Bytes question_;
+};
+
+Result<std::vector<std::string>> checked(bool beats, std::int64_t answer_ns,
+                                         std::size_t noise_B = 0) {
+  io::PseudoTerminal far = std::move(io::PseudoTerminal::open().value());
+  FarClock clock(far, beats, answer_ns, noise_B);
+  return check_mavlink({.link = {"radio", far.path(), 2, 57600}}, clock);
+}
+
+TEST(MavlinkCheck, TellsWhoBeatsHowSteadyAndWhatAnAnswerTakes) {
+  const auto told = checked(true, 40 * kMs);
+  ASSERT_TRUE(told.ok()) << told.error().message();
+  ASSERT_EQ(told.value().size(), 3u);
+  EXPECT_EQ(told.value()[0],
+            "MAVLink of 1/1 at 57600 baud: 1.0 frames and 21 B a second; 0 missing by their "
+            "numbers, 0 B outside of frames");
+  EXPECT_EQ(told.value()[1], "HEARTBEAT heard 5 times, period 1004.0 ms, 8.0 ms off it at most");
+  // Asked and answered in turns of a millisecond each.
+  EXPECT_EQ(told.value()[2],
+            "TIMESYNC answered 20 of 20 times; both ways p50 41.0, p99 41.0, most 41.0 ms");
+}
+
+TEST(MavlinkCheck, SaysWhatIsWrongInOneLine) {
+  EXPECT_EQ(checked(false, -1).error().what, "says nothing in 5 s");
+  const std::string deaf = checked(false, -1, 2).error().what;
+  EXPECT_NE(deaf.find(" bytes at 57600 baud in 5 s, and no MAVLink frame among them"),
+            std::string::npos)
+      << deaf;
+  const auto mute = checked(true, -1);
+  ASSERT_TRUE(mute.ok());
+  EXPECT_NE(mute.value()[2].find("answered 0 of 20 times"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace whirl::bench
