@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "harness/cli/bench_choice.hpp"
 #include "harness/cli/console.hpp"
 #include "harness/cli/find_plans.hpp"
 #include "harness/cli/run_one.hpp"
@@ -101,6 +102,7 @@ void show(const std::string& line) {
 int fly_command(const FlyOptions& options, const RunOptions& run, const Composition& composition) {
   RunOptions chosen = run;
   chosen.settings = settings_of(options);
+  if (const auto good = check_bench_options(chosen); !good) return complain(good.error());
   const auto plan = choose(options, chosen, composition);
   if (!plan) return complain(plan.error());
   auto port = live::UdpPort::open(options.udp, options.listen);
@@ -112,14 +114,18 @@ int fly_command(const FlyOptions& options, const RunOptions& run, const Composit
     stick.emplace(std::move(plugged.value()));
   }
   catch_end();
-  std::printf("flying %s at %g x real time; MAVLink to UDP %s, and from any at port %u. %s ends.\n",
-              plan.value().name.c_str(), options.pace, options.udp.c_str(),
-              static_cast<unsigned>(port.value().own_port()),
+  const bool on_bench = !run.target.empty();
+  char at[60];
+  std::snprintf(at, sizeof at, "at %g x real time", options.pace);
+  std::printf("flying %s %s; MAVLink to UDP %s, and from any at port %u. %s ends.\n",
+              plan.value().name.c_str(), on_bench ? ("on " + run.target).c_str() : at,
+              options.udp.c_str(), static_cast<unsigned>(port.value().own_port()),
               options.seconds > 0.0 ? "Its time, or Ctrl-C," : "Ctrl-C");
   std::fflush(stdout);
   pacing::MonotonicClock clock;
   live::LiveOptions live;
   live.pace = options.pace;
+  live.waits = !on_bench;
   if (options.seconds > 0.0) live.end_ns = std::llround(options.seconds * 1e9);
   live.wants_end = [] { return end_wanted.load(); };
   live.show = show;
@@ -141,8 +147,9 @@ int fly_command(const FlyOptions& options, const RunOptions& run, const Composit
   for (const std::string& line : flight.summary()) std::printf("       %s\n", line.c_str());
   if (finished.report.verdict == results::Verdict::none) {
     std::printf(
-        "       no verdict: what was commanded is not in the plan. The same flight again:\n"
+        "       no verdict: what was commanded is not in the plan. %s\n"
         "       whirl run %s\n",
+        on_bench ? "The same commands on the virtual board:" : "The same flight again:",
         shown_path(finished.folder + "/commands.lua").c_str());
   }
   return results::exit_code(finished.report);

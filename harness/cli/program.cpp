@@ -66,7 +66,7 @@ Results: results/runs/latest/index.html, run.json, junit.xml, messages.whirl (al
 of it truth.csv, bus.csv, telemetry.tlog (serial.txt on a stand), bus_NODE.csv of boards with names;
 of --seeds results/seeds/PLAN.html and PLAN.csv)";
 
-// Its seed and --out are parsed as those of `whirl run`.
+// Its seed, --out and --target are parsed as those of `whirl run`.
 CLI::App* add_fly(CLI::App& app, FlyOptions& options, RunCommand& run) {
   auto* fly = app.add_subcommand(
       "fly", "a flight paced to real time, for a MAVLink client on UDP; gives no verdict");
@@ -80,9 +80,13 @@ CLI::App* add_fly(CLI::App& app, FlyOptions& options, RunCommand& run) {
   fly->add_option("--only", run.options.only, "the plan of this name");
   fly->add_option("--udp", options.udp, "HOST:PORT where the client listens (127.0.0.1:14550)");
   fly->add_option("--listen", options.listen, "our own port (default: one that is free)");
-  fly->add_option("--pace", options.pace, "virtual seconds to one of the host (1)")
-      ->check(CLI::Range(0.001, 1000.0))
-      ->check(finite);
+  auto* pace = fly->add_option("--pace", options.pace, "virtual seconds to one of the host (1)")
+                   ->check(CLI::Range(0.001, 1000.0))
+                   ->check(finite);
+  auto* target = fly->add_option("--target", run.options.target,
+                                 "bench/NAME: a physical board, at its bench's own pace")
+                     ->excludes(pace);
+  fly->add_option("--arm", run.options.arm, "the phrase of the bench's safety")->needs(target);
   fly->add_option("--seconds", options.seconds, "of virtual time (default: until Ctrl-C)")
       ->check(CLI::Range(0.001, 1e6))
       ->check(finite);

@@ -50,7 +50,7 @@ LiveFlight::LiveFlight(pacing::HostClock& clock, UdpPort port, LiveOptions optio
 Result<bool> LiveFlight::turn(std::int64_t t_ns, World& world) {
   ended_ns_ = t_ns;
   if (options_.end_ns && t_ns >= *options_.end_ns) return false;
-  pacer_.wait_for(t_ns);
+  if (options_.waits) pacer_.wait_for(t_ns);
   if (options_.wants_end()) return false;
   if (const auto taken = take_in(t_ns, world); !taken) return taken.error();
   if (const auto looked = look_at_sticks(t_ns, world); !looked) return looked.error();
@@ -119,14 +119,15 @@ double LiveFlight::last(const std::string& signal) const {
 }
 
 std::string LiveFlight::state_line(std::int64_t t_ns) const {
-  char text[200];
+  char text[160], late[60];
   std::snprintf(text, sizeof text,
-                "%8.3f s  %-8s  %-8s  north %6.2f m  east %6.2f m  height %5.2f m  late %.1f ms, "
-                "slipped %.2f s",
+                "%8.3f s  %-8s  %-8s  north %6.2f m  east %6.2f m  height %5.2f m",
                 static_cast<double>(t_ns) * 1e-9, last("told_armed") == 1.0 ? "armed" : "unarmed",
-                mode_name(last("told_state")).c_str(), last("north"), last("east"), last("height"),
-                ms(lateness().latest_ns), ms(lateness().slipped_ns) * 1e-3);
-  return text;
+                mode_name(last("told_state")).c_str(), last("north"), last("east"), last("height"));
+  if (!options_.waits) return text;
+  std::snprintf(late, sizeof late, "  late %.1f ms, slipped %.2f s", ms(lateness().latest_ns),
+                ms(lateness().slipped_ns) * 1e-3);
+  return std::string(text) + late;
 }
 
 std::vector<std::string> LiveFlight::summary() const {
@@ -147,6 +148,7 @@ std::vector<std::string> LiveFlight::summary() const {
       static_cast<unsigned long long>(port_.not_sent()),
       static_cast<unsigned long long>(datagrams_), recording_.pieces(),
       static_cast<unsigned long long>(dropped_B_));
+  if (!options_.waits) return {udp};
   return {pace, udp};
 }
 

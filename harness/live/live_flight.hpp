@@ -1,4 +1,5 @@
-// A flight that a MAVLink client watches and commands: paced to the host's clock, its radio bridged to UDP.
+// A flight that a MAVLink client watches and commands: paced to the host's clock, its radio bridged to UDP. Of a bench, which
+// keeps its own pace, the radio is that of a physical board.
 //
 //   Down     each frame that the radio has received goes out as one datagram
 //   Up       datagrams are looked for before each step: what has come is cut into pieces
@@ -22,6 +23,7 @@ namespace whirl::live {
 
 struct LiveOptions {
   double pace = 1.0;                             // virtual seconds to one of the host
+  bool waits = true;                             // false: the target keeps its own pace
   std::optional<std::int64_t> end_ns;            // virtual; none: until wants_end
   std::function<bool()> wants_end;               // asked before each step
   std::function<void(const std::string&)> show;  // the line of state

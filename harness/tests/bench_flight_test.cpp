@@ -2,22 +2,26 @@
 // on a pseudo-terminal, its CAN on a bus in memory; the bench plays vehicle, sensors and ESCs to it.
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <thread>
 
 #include "base/near.hpp"
 #include "base/scratch_folder.hpp"
 #include "harness/catalogue/board_file.hpp"
 #include "harness/composition/boards.hpp"
+#include "harness/live/udp_port.hpp"
 #include "harness/standin/bare_board.hpp"
 #include "harness/standin/no_world.hpp"
 #include "harness/tests/common_clock.hpp"
 #include "harness/tests/composed_run.hpp"
 #include "harness/tests/flight_steps.hpp"
 #include "harness/tests/running_stand_in.hpp"
+#include "io_bridges/protocols/mavlink_messages.hpp"
 #include "io_bridges/socketcan/tests/memory_can.hpp"
 
 namespace whirl {
@@ -67,8 +71,9 @@ std::string bench_file(const Metal& metal, const std::string& board) {
   safety = { phrase = "clear", longest = "60 s", heartbeat = "1 s" } })";
 }
 
-ComposedRun fly_on_bench(const std::string& plan, const ScratchFolder& folder,
-                         const std::string& board = kBoard) {
+// words: of whirl, behind which come those of the bench.
+int on_bench(std::vector<std::string> words, const ScratchFolder& folder,
+             const std::string& board = kBoard) {
   CommonClock clock;
   io::MemoryCan bus([&] { return clock.now_ns(); });
   Metal metal(folder, bus.join(), clock, board);
@@ -78,36 +83,21 @@ ComposedRun fly_on_bench(const std::string& plan, const ScratchFolder& folder,
       kRoot, folder.file("bench"), nullptr,
       [&](const bench::CanBusLink&) -> Result<std::unique_ptr<io::CanPort>> { return bus.join(); },
       &clock);
-  const ComposedRun flown =
-      run_composed(composition, {plan, "--target", "bench/" + file, "--arm", "clear"});
+  words.insert(words.end(), {"--target", "bench/" + file, "--arm", "clear"});
+  const int code = run_words(composition, std::move(words));
   clock.leave();
   metal.stop();
-  return flown;
+  return code;
+}
+
+ComposedRun fly_on_bench(const std::string& plan, const ScratchFolder& folder,
+                         const std::string& board = kBoard) {
+  const int code = on_bench({"whirl", "run", plan}, folder, board);
+  return {code, run_file(folder.file("bench"))};
 }
 
 ComposedRun fly_in_lockstep(const std::string& plan, const ScratchFolder& folder) {
   return run_composed(boards_and_worlds(kRoot, folder.file("lockstep"), nullptr), {plan});
-}
-
-TEST(BenchFlight, TheRealImageHoversOverItsWiresAsItDoesInLockstep) {
-  const std::string plan = kRoot + "/test_plans/flight/bench_hover.lua";
-  const ScratchFolder folder;
-  const ComposedRun flown = fly_on_bench(plan, folder);
-  ASSERT_EQ(flown.code, 0) << std::string(flown.file["reason"]);
-  const ComposedRun lockstep = fly_in_lockstep(plan, folder);
-  ASSERT_EQ(lockstep.code, 0) << std::string(lockstep.file["reason"]);
-  expect_telemetry_of_lockstep(folder.file("bench/runs/latest"),
-                               folder.file("lockstep/runs/latest"));
-  const auto want = lockstep.figures();
-  // Frames are heard 0.13 ms later than in lockstep: what an error of some millimetres makes of it wanders by 5 %.
-  for (const auto& [name, got] : flown.figures()) {
-    std::printf("%s: bench %.4g, lockstep %.4g\n", name.c_str(), got, want.at(name));
-    const bool current = name.find("current") != std::string::npos;
-    const bool error = name.find("RMS") != std::string::npos;
-    if (!current && !error) continue;
-    const auto parity = stated((current ? 0.01 : 0.1) * want.at(name), "parity");
-    EXPECT_TRUE(near(got, want.at(name), parity)) << name;
-  }
 }
 
 // How often each message is in a log of telemetry: framed by eight bytes of time each.
@@ -141,6 +131,27 @@ void expect_telemetry_of_lockstep(const std::string& bench, const std::string& l
     EXPECT_TRUE(near(found->second, count, stated(2.0 + 0.03 * count, "rates of one image"))) << id;
   }
   EXPECT_EQ(got.size(), want.size());
+}
+
+TEST(BenchFlight, TheRealImageHoversOverItsWiresAsItDoesInLockstep) {
+  const std::string plan = kRoot + "/test_plans/flight/bench_hover.lua";
+  const ScratchFolder folder;
+  const ComposedRun flown = fly_on_bench(plan, folder);
+  ASSERT_EQ(flown.code, 0) << std::string(flown.file["reason"]);
+  const ComposedRun lockstep = fly_in_lockstep(plan, folder);
+  ASSERT_EQ(lockstep.code, 0) << std::string(lockstep.file["reason"]);
+  expect_telemetry_of_lockstep(folder.file("bench/runs/latest"),
+                               folder.file("lockstep/runs/latest"));
+  const auto want = lockstep.figures();
+  // Frames are heard 0.13 ms later than in lockstep: what an error of some millimetres makes of it wanders by 5 %.
+  for (const auto& [name, got] : flown.figures()) {
+    std::printf("%s: bench %.4g, lockstep %.4g\n", name.c_str(), got, want.at(name));
+    const bool current = name.find("current") != std::string::npos;
+    const bool error = name.find("RMS") != std::string::npos;
+    if (!current && !error) continue;
+    const auto parity = stated((current ? 0.01 : 0.1) * want.at(name), "parity");
+    EXPECT_TRUE(near(got, want.at(name), parity)) << name;
+  }
 }
 
 constexpr const char* kCut = R"(plan "cut" {
@@ -189,6 +200,68 @@ TEST(BenchFlight, FliesByTheSticksOfAReceiverOnALine) {
   std::ofstream(plan) << kFlightSteps << kBySticks;
   const ComposedRun flown = fly_on_bench(plan, folder, kBoardWithSticks);
   EXPECT_EQ(flown.code, 0) << std::string(flown.file["reason"]);
+}
+
+constexpr const char* kWatched = R"(plan "watched" {
+  image = "flight", board = "px4fmu_v1_all_can", vehicle = "hp_quad", timeout = "30 s",
+  run = function(t)
+    t:within("8 s", function(s) return s.heartbeat_age_s < 1.5 end, "the first heartbeat")
+  end,
+})";
+
+// A ground station on UDP beside it: each tenth of a second of the host it reads a parameter.
+class Client {
+ public:
+  Client() : port_(std::move(live::UdpPort::open("127.0.0.1:9", 0).value())) {}
+  std::string place() const { return "127.0.0.1:" + std::to_string(port_.own_port()); }
+  void ask(std::uint16_t flight) {
+    auto to_flight = live::UdpPort::open("127.0.0.1:" + std::to_string(flight), 0);
+    io::MavlinkSender sender{254, 190, 0};
+    const io::ParamRequestRead read{
+        .target_system = 1, .target_component = 1, .param_id = io::to_param_id("ESC_BUS")};
+    for (; !done_; std::this_thread::sleep_for(std::chrono::milliseconds(100))) {
+      to_flight.value().send(io::encode(io::pack(read, sender)));
+    }
+  }
+  void end() { done_ = true; }
+  // What has come for it: how often each message, and each in a datagram of its own.
+  std::map<std::uint32_t, int> heard() {
+    std::map<std::uint32_t, int> count;
+    io::MavlinkParser parser([&](const io::MavlinkFrame& frame, std::span<const std::uint8_t>) {
+      const auto value = io::unpack<io::ParamValue>(frame);
+      if (!value || io::param_name(value->param_id) == "ESC_BUS") ++count[frame.msgid];
+    });
+    while (const auto datagram = port_.receive()) {
+      for (const std::uint8_t byte : *datagram) parser.add(byte);
+      EXPECT_FALSE(parser.in_frame());
+    }
+    EXPECT_EQ(parser.counts().stray, 0u);
+    return count;
+  }
+
+ private:
+  live::UdpPort port_;
+  std::atomic<bool> done_ = false;
+};
+
+TEST(BenchFlight, AMavlinkClientOnUdpIsOnTheBoardsLine) {
+  const ScratchFolder folder;
+  const std::string plan = folder.file("watched.lua");
+  std::ofstream(plan) << kWatched;
+  Client client;
+  const std::uint16_t free_port = live::UdpPort::open("127.0.0.1:9", 0).value().own_port();
+  std::thread asking([&] { client.ask(free_port); });
+  const int code = on_bench({"whirl", "fly", plan, "--udp", client.place(), "--listen",
+                             std::to_string(free_port), "--seconds", "6"},
+                            folder);
+  client.end();
+  asking.join();
+  const auto file = run_file(folder.file("bench"));
+  EXPECT_EQ(code, 0) << file["reason"];
+  EXPECT_EQ(file["verdict"], "none");
+  auto heard = client.heard();
+  EXPECT_GE(heard[io::Heartbeat::kId], 3);
+  EXPECT_GE(heard[io::ParamValue::kId], 1);
 }
 
 }  // namespace

@@ -20,18 +20,25 @@ struct ComposedRun {
   }
 };
 
+// The program's exit code. words: "whirl" is the first.
+inline int run_words(const cli::Composition& composition, std::vector<std::string> words) {
+  std::vector<char*> argv;
+  argv.reserve(words.size());
+  for (std::string& word : words) argv.push_back(word.data());
+  return cli::run_program(static_cast<int>(argv.size()), argv.data(), composition);
+}
+
+inline nlohmann::json run_file(const std::string& results) {
+  std::ifstream file(results + "/runs/latest/run.json");
+  return nlohmann::json::parse(file);
+}
+
 // words: behind `whirl run`, one plan among them.
 inline ComposedRun run_composed(const cli::Composition& composition,
                                 std::vector<std::string> words) {
   words.insert(words.begin(), {"whirl", "run"});
-  std::vector<char*> argv;
-  argv.reserve(words.size());
-  for (std::string& word : words) argv.push_back(word.data());
-  ComposedRun run;
-  run.code = cli::run_program(static_cast<int>(argv.size()), argv.data(), composition);
-  std::ifstream file(composition.results + "/runs/latest/run.json");
-  run.file = nlohmann::json::parse(file);
-  return run;
+  const int code = run_words(composition, std::move(words));
+  return {code, run_file(composition.results)};
 }
 
 }  // namespace whirl

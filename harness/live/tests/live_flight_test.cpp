@@ -159,5 +159,20 @@ TEST_F(Bridge, ShowsItsStateOnceASecondOfTheHost) {
   EXPECT_NE(shown_[1].find("height  1.50 m"), std::string::npos) << shown_[1];
 }
 
+TEST_F(Bridge, OfABenchWaitsForNobodyAndSaysNothingOfItsPace) {
+  LiveOptions options;
+  options.waits = false;
+  open(options);
+  const std::int64_t begin_ns = clock_.now_ns();
+  turn(1);
+  turn(2000);
+  happen(io::Kind::uart_delivered, 2, {}, 2000);
+  EXPECT_EQ(clock_.now_ns(), begin_ns);
+  ASSERT_EQ(shown_.size(), 1u);
+  EXPECT_EQ(shown_[0].find("late"), std::string::npos) << shown_[0];
+  ASSERT_EQ(flight_->summary().size(), 1u);
+  EXPECT_EQ(flight_->summary()[0].rfind("UDP: ", 0), 0u);
+}
+
 }  // namespace
 }  // namespace whirl::live
