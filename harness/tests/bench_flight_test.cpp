@@ -17,6 +17,7 @@
 #include "harness/live/udp_port.hpp"
 #include "harness/standin/bare_board.hpp"
 #include "harness/standin/no_world.hpp"
+#include "harness/target/bench/mavlink_check.hpp"
 #include "harness/tests/common_clock.hpp"
 #include "harness/tests/composed_run.hpp"
 #include "harness/tests/flight_steps.hpp"
@@ -152,6 +153,26 @@ TEST(BenchFlight, TheRealImageHoversOverItsWiresAsItDoesInLockstep) {
     const auto parity = stated((current ? 0.01 : 0.1) * want.at(name), "parity");
     EXPECT_TRUE(near(got, want.at(name), parity)) << name;
   }
+}
+
+// At half of the host's time: HEARTBEAT each 2 s.
+TEST(BenchFlight, ACheckOfItsLineHearsTheImageAndIsAnswered) {
+  const ScratchFolder folder;
+  CommonClock clock;
+  io::MemoryCan bus([&] { return clock.now_ns(); });
+  Metal metal(folder, bus.join(), clock, kBoard);
+  const auto told = bench::check_mavlink(
+      {.link = {"radio", metal.radio, 2, 57600}, .seconds = 5.0 / kPace}, clock);
+  clock.leave();
+  metal.stop();
+  ASSERT_TRUE(told.ok()) << told.error().message();
+  for (const std::string& line : told.value()) std::printf("%s\n", line.c_str());
+  ASSERT_EQ(told.value().size(), 3u);
+  EXPECT_EQ(told.value()[0].rfind("MAVLink of 1/1 at 57600 baud: ", 0), 0u);
+  EXPECT_NE(told.value()[0].find("; 0 missing by their numbers, 0 B outside of frames"),
+            std::string::npos);
+  EXPECT_NE(told.value()[1].find("heard 5 times, period 2000.0 ms"), std::string::npos);
+  EXPECT_NE(told.value()[2].find("answered 20 of 20 times"), std::string::npos);
 }
 
 constexpr const char* kCut = R"(plan "cut" {

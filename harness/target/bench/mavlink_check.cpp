@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 
 #include "harness/target/bench/mavlink_line.hpp"
 #include "harness/target/bench/spread.hpp"
@@ -10,6 +11,8 @@
 
 namespace whirl::bench {
 namespace {
+
+constexpr std::int64_t kTurn_ns = 1'000'000;
 
 double ms(std::int64_t ns) {
   return static_cast<double>(ns) * 1e-6;
@@ -54,7 +57,7 @@ class MavlinkCheck {
         for (const std::uint8_t byte : arrival.payload) parser_.add(byte);
       }
       pollfd file{line_.file(), POLLIN, 0};
-      if (!done()) clock_.wait_for({&file, 1}, end_ns);
+      if (!done()) clock_.wait_for({&file, 1}, std::min(end_ns, heard_host_ns_ + kTurn_ns));
     }
     return Done{};
   }

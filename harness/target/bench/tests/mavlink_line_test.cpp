@@ -15,7 +15,6 @@ namespace {
 using Bytes = std::vector<std::uint8_t>;
 
 constexpr std::int64_t kMs = 1'000'000;
-constexpr double kBaud = 57600.0;
 
 // HEARTBEAT of 1/1, numbers 7, 8 and 10; RADIO_STATUS of a radio, 51/68, number 200.
 const Bytes kBeat_7{0xFD, 0x09, 0, 0, 0x07, 1, 1, 0, 0, 0, 3, 0, 0, 0, 2, 0, 1, 3, 3, 0x12, 0x9C};
@@ -114,16 +113,13 @@ TEST(MavlinkLine, FramesLeaveInOrderOfTimeAndAreDeliveredWhenTheirLastStopBitIsO
   ASSERT_TRUE(rig.serve(2 * kMs).ok());
   EXPECT_EQ(rig.read(), kBeat_8);
   EXPECT_TRUE(rig.arrivals.empty());
-  // 21 characters of ten bits each.
-  const auto frame_ns = static_cast<std::int64_t>(210.0 / kBaud * 1e9);
-  EXPECT_NEAR(static_cast<double>(rig.link.next_due_host_ns()),
-              static_cast<double>(1 * kMs + frame_ns), 2.0);
+  constexpr std::int64_t kFrame_ns = 3'645'833;  // 21 characters of ten bits each
+  EXPECT_EQ(rig.link.next_due_host_ns(), 1 * kMs + kFrame_ns);
   ASSERT_TRUE(rig.serve(20 * kMs).ok());
   ASSERT_EQ(rig.arrivals.size(), 2u);
   EXPECT_EQ(rig.arrivals[0].kind, io::Kind::uart_delivered);
   EXPECT_EQ(rig.arrivals[0].payload, kBeat_7);
-  EXPECT_NEAR(static_cast<double>(rig.arrivals[1].host_ns),
-              static_cast<double>(1 * kMs + 2 * frame_ns), 2.0);
+  EXPECT_EQ(rig.arrivals[1].host_ns, 1 * kMs + 2 * kFrame_ns);
 }
 
 TEST(MavlinkLine, AFrameThatWouldWaitLongerThanARadiosBufferIsDroppedAndTold) {
