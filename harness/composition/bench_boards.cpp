@@ -107,7 +107,7 @@ Result<Done> add_nodes(const cli::Setup& setup, const bench::CanMaker& can, Link
   const auto params = vehicle_of(setup);
   if (!params) return params.error();
   BoardDescription board = setup.board;
-  flight::set_esc_mode(board, params.value());
+  flight::set_parts(board, params.value());
   for (const bench::CanBusLink& link : setup.bench->cans) {
     links.push_back(
         std::make_unique<bench::NodeLink>(bench::NodeOptions{.link = link,

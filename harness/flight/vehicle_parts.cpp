@@ -49,6 +49,14 @@ void move_centre(plant::AirframeParams& airframe, const Eigen::Vector3d& to_B_m)
   for (Eigen::Vector3d& foot : airframe.contact.gear_B_m) foot -= to_B_m;
 }
 
+// Whether the board's ESCs on CAN take speeds is the file's, and no copy's.
+void set_esc_mode(BoardDescription& board, const FlightParams& params) {
+  if (params.esc.calibration.mode != fw::esc::Mode::speed) return;
+  for (BoardDevice& device : board.devices) {
+    if (device.type == "esc_dronecan") device.set("params.speeds", true);
+  }
+}
+
 }  // namespace
 
 void draw_parts(FlightParams& params, std::uint64_t seed) {
@@ -77,13 +85,6 @@ void draw_parts(FlightParams& params, std::uint64_t seed) {
        });
   move_centre(airframe, centre_B_m);
   params.imu_place_m -= centre_B_m;
-}
-
-void set_esc_mode(BoardDescription& board, const FlightParams& params) {
-  if (params.esc.calibration.mode != fw::esc::Mode::speed) return;
-  for (BoardDevice& device : board.devices) {
-    if (device.type == "esc_dronecan") device.set("params.speeds", true);
-  }
 }
 
 void set_parts(BoardDescription& board, const FlightParams& params) {

@@ -15,7 +15,5 @@ namespace whirl::flight {
 
 void draw_parts(FlightParams& params, std::uint64_t seed);
 void set_parts(BoardDescription& board, const FlightParams& params);
-// Of it, whether the board's ESCs on CAN take speeds: the file's, and no copy's.
-void set_esc_mode(BoardDescription& board, const FlightParams& params);
 
 }  // namespace whirl::flight

@@ -13,7 +13,9 @@
 #include "base/near.hpp"
 #include "base/scratch_folder.hpp"
 #include "harness/catalogue/board_file.hpp"
+#include "harness/catalogue/vehicle_file.hpp"
 #include "harness/composition/boards.hpp"
+#include "harness/flight/vehicle_parts.hpp"
 #include "harness/live/udp_port.hpp"
 #include "harness/standin/bare_board.hpp"
 #include "harness/standin/no_world.hpp"
@@ -33,12 +35,20 @@ constexpr double kPace = 0.5;  // of a clock that nobody is late by
 
 constexpr const char *kBoard = "px4fmu_v1_all_can", *kBoardWithSticks = "px4fmu_v1_all_can_sbus";
 
+// What lockstep's plans fly by their seed. Of it, the crystal is on the stand-in's board.
+flight::FlightParams copy_of_seed_1() {
+  auto params = catalogue::read_vehicle(kRoot + "/test_plans/vehicles/hp_quad.lua", {});
+  flight::draw_parts(params.value(), 1);
+  return params.value();
+}
+
 // The real image, alone: nothing around it but its wires.
 struct Metal {
   Metal(const ScratchFolder& folder, std::unique_ptr<io::CanPort> can, CommonClock& clock,
         const std::string& name)
       : radio(folder.file("radio")), sticks(folder.file("sticks")) {
-    const auto board = read_board(kRoot + "/test_plans/boards/" + name + ".lua");
+    auto board = read_board(kRoot + "/test_plans/boards/" + name + ".lua");
+    flight::set_parts(board.value(), copy_of_seed_1());
     StandInOptions wires;
     wires.pace = kPace;
     wires.can_bus = 2;
@@ -97,8 +107,10 @@ ComposedRun fly_on_bench(const std::string& plan, const ScratchFolder& folder,
   return {code, run_file(folder.file("bench"))};
 }
 
+// With a cable in the radio's place, as the bench has.
 ComposedRun fly_in_lockstep(const std::string& plan, const ScratchFolder& folder) {
-  return run_composed(boards_and_worlds(kRoot, folder.file("lockstep"), nullptr), {plan});
+  return run_composed(boards_and_worlds(kRoot, folder.file("lockstep"), nullptr),
+                      {plan, "--set", "plan.board=px4fmu_v1_all_can_cable"});
 }
 
 // How often each message is in a log of telemetry: framed by eight bytes of time each.
