@@ -44,10 +44,13 @@ struct Rig {
     order.next();
     return link.take(order, due_ns);
   }
+  // Until nothing is there: what was written in pieces may come in pieces.
   Bytes read() {
-    Bytes got(65536);
-    got.resize(far->read(got));
-    return got;
+    Bytes all, piece(4096);
+    while (const std::size_t size = far->read(piece)) {
+      all.insert(all.end(), piece.begin(), piece.begin() + static_cast<std::ptrdiff_t>(size));
+    }
+    return all;
   }
   std::string found() {
     std::string all;
