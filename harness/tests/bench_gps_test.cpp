@@ -197,6 +197,10 @@ TEST(BenchGps, WhatNoBareLineCanBeIsRefusedInOneLineWithItsPlace) {
   EXPECT_NE(reason_of(kPod, "gnss_jammed").find("nothing plays gps"), std::string::npos);
   EXPECT_NE(reason_of(std::string(kGps) + kGpsAgain, "gnss_jammed").find("'usart6' is there twice"),
             std::string::npos);
+  const std::string elsewhere = reason_of(
+      R"({ name = "tm", kind = "mavlink", bus = "usart6", path = "/nowhere/tm" },)", "gnss_jammed");
+  EXPECT_NE(elsewhere.find("px4fmu_v1 has no telemetry radio on usart6"), std::string::npos)
+      << elsewhere;
   // What a receiver's line can have goes on, to the wires that are not there.
   EXPECT_NE(reason_of(std::string(kPod) + kGps, "gnss_jammed").find("no such serial line"),
             std::string::npos);

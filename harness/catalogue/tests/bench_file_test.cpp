@@ -85,6 +85,23 @@ TEST(BenchFile, RefusesWhatNoBenchCanBe) {
   }
 }
 
+TEST(BenchFile, ALineIsSaidToCarryMavlink) {
+  const auto of_kind = [](const std::string& kind) {
+    return bench_of(
+        with("{ name = \"terminal\"", "{ name = \"radio\", kind = \"" + kind +
+                                          "\", bus = \"usart2\", path = \"/dev/ttyUSB3\" },\n"
+                                          "    { name = \"terminal\""));
+  };
+  const auto got = of_kind("mavlink");
+  ASSERT_TRUE(got) << got.error().message();
+  ASSERT_EQ(got.value().serials.size(), 2u);
+  EXPECT_TRUE(got.value().serials[0].mavlink);
+  EXPECT_FALSE(got.value().serials[1].mavlink);
+  const auto other = of_kind("telnet");
+  ASSERT_FALSE(other);
+  EXPECT_NE(other.error().message().find("kind"), std::string::npos) << other.error().message();
+}
+
 TEST(BenchFile, APodsHostIsOnALineOrOnCan) {
   const auto line = bench_of(
       with("{ name = \"terminal\"",
