@@ -117,7 +117,10 @@ class Check {
   // HEARTBEAT comes once a second: five of them, or more.
   void check_mavlink(const bench::SerialLink& link) {
     const auto told = bench::check_mavlink(
-        {.link = link, .seconds = std::max(5.0 / bench_.pace, seconds_)}, clock_);
+        {.link = link,
+         .seconds = std::max(5.0 / bench_.pace, seconds_),
+         .answer_s = bench::MavlinkCheckOptions{}.answer_s / std::min(bench_.pace, 1.0)},
+        clock_);
     if (!told) return missing(link.name, told.error());
     for (const std::string& line : told.value()) say(link.name, line);
   }

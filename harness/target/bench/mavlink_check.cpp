@@ -25,7 +25,7 @@ class MavlinkCheck {
         clock_(clock),
         line_(options.link),
         parser_([this](const io::MavlinkFrame& frame, std::span<const std::uint8_t>) {
-          hear(frame);
+          on_frame(frame);
         }) {}
 
   Result<std::vector<std::string>> all() {
@@ -62,13 +62,19 @@ class MavlinkCheck {
     return Done{};
   }
 
-  void hear(const io::MavlinkFrame& frame) {
-    if (frame.msgid == io::Heartbeat::kId) {
-      beats_host_ns_.push_back(heard_host_ns_);
-      sender_ = frame;
-    }
+  void on_frame(const io::MavlinkFrame& frame) {
+    if (const auto beat = io::unpack<io::Heartbeat>(frame)) on_beat(frame, *beat);
     const auto sync = io::unpack<io::Timesync>(frame);
     if (sync && sync->tc1 != 0 && sync->ts1 == asked_host_ns_) answered_ = true;
+  }
+
+  // Of the first autopilot: who else is on a radio's air, a ground station or a gimbal, says that it is none.
+  void on_beat(const io::MavlinkFrame& frame, const io::Heartbeat& beat) {
+    constexpr std::uint8_t kMav_autopilot_invalid = 8;
+    if (beat.autopilot == kMav_autopilot_invalid) return;
+    if (!sender_) sender_ = frame;
+    if (frame.sysid != sender_->sysid || frame.compid != sender_->compid) return;
+    beats_host_ns_.push_back(heard_host_ns_);
   }
 
   Result<Done> somebody() const {
@@ -81,8 +87,8 @@ class MavlinkCheck {
     if (counts.bytes == 0) {
       return refused("says nothing", "is the board on, its TX on this RX, a radio paired?");
     }
-    if (counts.frames == 0) return line_.deaf(within);
-    if (!sender_) return refused("sends no HEARTBEAT", "is an autopilot behind it?");
+    if (counts.frames == 0) return line_.no_frames(within);
+    if (!sender_) return refused("sends no HEARTBEAT of an autopilot", "is one behind it?");
     return Done{};
   }
 
@@ -151,7 +157,7 @@ class MavlinkCheck {
   MavlinkLine line_;
   io::MavlinkParser parser_;
   io::MavlinkSender ours_;
-  std::optional<io::MavlinkFrame> sender_;  // of the last HEARTBEAT
+  std::optional<io::MavlinkFrame> sender_;  // of the first HEARTBEAT
   std::vector<std::int64_t> beats_host_ns_;
   std::vector<double> took_ms_;
   std::int64_t heard_host_ns_ = 0, asked_host_ns_ = 0;

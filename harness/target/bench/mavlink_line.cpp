@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 
 namespace whirl::bench {
 namespace {
@@ -14,13 +15,19 @@ std::string number(std::uint64_t n, const std::string& what) {
   return std::to_string(n) + " " + what + (n == 1 ? "" : "s");
 }
 
+std::string seconds(std::int64_t t_ns) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.1f s", static_cast<double>(t_ns) * 1e-9);
+  return text;
+}
+
 }  // namespace
 
 MavlinkLine::MavlinkLine(SerialLink link, double pace)
     : link_(std::move(link)),
       pace_(pace),
       parser_([this](const io::MavlinkFrame& frame, std::span<const std::uint8_t> raw) {
-        hear(frame);
+        on_frame(frame);
         frames_.emplace_back(raw.begin(), raw.end());
       }) {}
 
@@ -43,13 +50,16 @@ bool MavlinkLine::take(const io::Reader& order, std::int64_t due_host_ns) {
 }
 
 Result<Done> MavlinkLine::serve(std::int64_t now_host_ns, Arrivals& arrivals) {
+  if (time_.virtual_ns) now_ns_ = time_.virtual_ns(now_host_ns);
   if (const auto sent = send_due(now_host_ns); !sent) return sent;
-  tell_delivered(now_host_ns, arrivals);
-  if (const auto taken = take_in(now_host_ns, arrivals); !taken) return taken;
-  return check_heard(now_host_ns);
+  publish_delivered(now_host_ns, arrivals);
+  const auto read = read_bytes();
+  publish_frames(now_host_ns, arrivals);  // those before it was unplugged, too
+  return read ? check_rate() : read;
 }
 
 Result<Done> MavlinkLine::send_due(std::int64_t now_host_ns) {
+  if (safe_) return Done{};
   for (; !waiting_.empty() && waiting_.front().host_ns <= now_host_ns; waiting_.pop_front()) {
     std::vector<std::uint8_t>& bytes = waiting_.front().bytes;
     const std::int64_t begin_ns = std::max(now_host_ns, free_host_ns_);
@@ -65,7 +75,7 @@ Result<Done> MavlinkLine::send_due(std::int64_t now_host_ns) {
   return tty_->flush();
 }
 
-void MavlinkLine::tell_delivered(std::int64_t now_host_ns, Arrivals& arrivals) {
+void MavlinkLine::publish_delivered(std::int64_t now_host_ns, Arrivals& arrivals) {
   for (; !delivering_.empty() && delivering_.front().host_ns <= now_host_ns;
        delivering_.pop_front()) {
     arrivals.push_back({delivering_.front().host_ns, io::Kind::uart_delivered, link_.uart,
@@ -73,7 +83,7 @@ void MavlinkLine::tell_delivered(std::int64_t now_host_ns, Arrivals& arrivals) {
   }
 }
 
-Result<Done> MavlinkLine::take_in(std::int64_t now_host_ns, Arrivals& arrivals) {
+Result<Done> MavlinkLine::read_bytes() {
   std::array<std::uint8_t, 1024> piece;
   for (int i = 0; i < kMost_pieces; ++i) {
     const auto got = tty_->read(piece);
@@ -82,32 +92,45 @@ Result<Done> MavlinkLine::take_in(std::int64_t now_host_ns, Arrivals& arrivals) 
     counts_.bytes += got.value();
     for (const std::uint8_t byte : std::span(piece).first(got.value())) parser_.add(byte);
   }
+  if (!enough_ns_ && counts_.bytes > kLongest_frame_B) enough_ns_ = now_ns_;
+  return Done{};
+}
+
+void MavlinkLine::publish_frames(std::int64_t now_host_ns, Arrivals& arrivals) {
   for (std::vector<std::uint8_t>& frame : frames_) {
     arrivals.push_back({now_host_ns, io::Kind::uart_received, link_.uart, std::move(frame)});
   }
   frames_.clear();
-  return Done{};
 }
 
-void MavlinkLine::hear(const io::MavlinkFrame& frame) {
-  if (counts_.frames++ == 0) before_first_B_ = parser_.counts().stray;
+void MavlinkLine::on_frame(const io::MavlinkFrame& frame) {
+  if (counts_.frames++ == 0) {
+    before_first_B_ = parser_.counts().stray;
+  } else if (const Stretch stretch = since_last_frame(); stretch.bytes > longest_.bytes) {
+    longest_ = stretch;
+  }
+  before_last_B_ = parser_.counts().stray;
+  last_frame_ns_ = now_ns_;
   const auto [last, first] = numbers_.try_emplace({frame.sysid, frame.compid}, frame.seq);
   if (!first) counts_.missing += static_cast<std::uint8_t>(frame.seq - last->second - 1);
   last->second = frame.seq;
 }
 
-Error MavlinkLine::deaf(const std::string& within) const {
-  const std::string rate = std::to_string(link_.baud) + " baud";
-  return {ErrorKind::bad_input, link_.path,
-          std::to_string(counts_.bytes) + " bytes at " + rate + within +
-              ", and no MAVLink frame among them",
-          "is that the board's rate, and this the line of its telemetry?"};
+MavlinkLine::Stretch MavlinkLine::since_last_frame() const {
+  return {last_frame_ns_, now_ns_, parser_.counts().stray - before_last_B_};
 }
 
-Result<Done> MavlinkLine::check_heard(std::int64_t now_host_ns) {
-  const bool soon = !time_.virtual_ns || time_.virtual_ns(now_host_ns) < kDeaf_ns;
-  if (soon || counts_.frames > 0 || counts_.bytes <= kLongest_frame_B) return Done{};
-  return deaf(" in " + std::to_string(kDeaf_ns / 1'000'000'000) + " s");
+Error MavlinkLine::no_frames(const std::string& within) const {
+  const std::string rate = std::to_string(link_.baud) + " baud";
+  return {
+      ErrorKind::bad_input, link_.path,
+      number(counts_.bytes, "byte") + " at " + rate + within + ", and no MAVLink frame among them",
+      "is that the board's rate, and this the line of its telemetry?"};
+}
+
+Result<Done> MavlinkLine::check_rate() const {
+  if (counts_.frames > 0 || !enough_ns_ || now_ns_ - *enough_ns_ < kNo_frame_ns) return Done{};
+  return no_frames("");
 }
 
 std::int64_t MavlinkLine::next_due_host_ns() const {
@@ -142,6 +165,14 @@ std::vector<std::string> MavlinkLine::findings() const {
   }
   if (all.outside_B > 0) {
     found.push_back(number(all.outside_B, "byte") + " outside of MAVLink frames" + of_all);
+  }
+  const Stretch last = since_last_frame();
+  const bool to_the_end = last.bytes > longest_.bytes;
+  const Stretch& most = to_the_end ? last : longest_;
+  if (all.frames > 0 && most.bytes > kLongest_frame_B) {
+    found.push_back("no frame from " + seconds(most.from_ns) + " to " +
+                    (to_the_end ? "the end" : seconds(most.to_ns)) + ", and " +
+                    number(most.bytes, "byte") + ": did the board change its rate?");
   }
   if (all.missing > 0) {
     found.push_back(number(all.missing, "frame") + " of the board missing by their numbers" +

@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "harness/target/bench/mavlink_check.hpp"
+#include "io_bridges/devices/uart_sampling.hpp"
 #include "io_bridges/serial/pseudo_terminal.hpp"
 
 namespace whirl::bench {
@@ -30,7 +31,7 @@ Bytes joined(std::initializer_list<Bytes> parts) {
 }
 
 struct Rig {
-  explicit Rig(double pace = 1.0) : link({"radio", far->path(), 2, 57600}, pace) {
+  explicit Rig(double pace = 1.0, int baud = 57600) : link({"radio", far->path(), 2, baud}, pace) {
     EXPECT_TRUE(link.open().ok());
     link.keep_time(
         {[](std::int64_t host_ns) { return host_ns; }, [](std::int64_t t_ns) { return t_ns; }});
@@ -146,28 +147,104 @@ TEST(MavlinkLine, OneThatIsMadeSafeSendsNothingMore) {
   EXPECT_EQ(rig.read(), Bytes{});
 }
 
-TEST(MavlinkLine, BytesWithoutAFrameForFiveSecondsAreAWrongRate) {
+// What the kernel did not take waits here: a command among it would arm a vehicle behind the emergency.
+TEST(MavlinkLine, OneThatIsMadeSafeKeepsBackWhatTheKernelDidNotTake) {
+  Rig rig(1.0, 12'000'000);
+  constexpr int kFrames = 2500;
+  for (int i = 0; i < kFrames; ++i) rig.send(kBeat_7, 0);
+  ASSERT_TRUE(rig.serve(0).ok());
+  ASSERT_EQ(rig.link.counts().dropped, 0u);
+  rig.link.make_safe();
+  const std::size_t of_kernel_B = rig.read().size();
+  ASSERT_LT(of_kernel_B, kFrames * kBeat_7.size());
+  ASSERT_TRUE(rig.serve(kMs).ok());
+  EXPECT_EQ(rig.read(), Bytes{});
+}
+
+TEST(MavlinkLine, FiveSecondsAfterMoreBytesThanAFrameHasNoFrameIsAWrongRate) {
   Rig rig;
-  rig.far->write(Bytes(281, 0x55));
-  EXPECT_TRUE(rig.serve(4999 * kMs).ok());
-  const auto deaf = rig.serve(5000 * kMs);
+  EXPECT_TRUE(rig.serve(60'000 * kMs).ok());  // the board is powered a minute later
+  rig.far->write(Bytes(280, 0x55));
+  EXPECT_TRUE(rig.serve(61'000 * kMs).ok());
+  rig.far->write(Bytes(1, 0x55));
+  EXPECT_TRUE(rig.serve(70'000 * kMs).ok());
+  EXPECT_TRUE(rig.serve(74'999 * kMs).ok());
+  const auto deaf = rig.serve(75'000 * kMs);
   ASSERT_FALSE(deaf.ok());
   EXPECT_EQ(deaf.error().kind, ErrorKind::bad_input);
-  EXPECT_EQ(deaf.error().what, "281 bytes at 57600 baud in 5 s, and no MAVLink frame among them");
+  EXPECT_EQ(deaf.error().what, "281 bytes at 57600 baud, and no MAVLink frame among them");
   EXPECT_EQ(deaf.error().place, rig.far->path());
 }
 
 TEST(MavlinkLine, ASilentLineEndsNothingAndIsTold) {
   Rig rig;
   rig.far->write(Bytes(280, 0x55));  // may be the end of a frame
+  EXPECT_TRUE(rig.serve(1000 * kMs).ok());
   EXPECT_TRUE(rig.serve(60'000 * kMs).ok());
   EXPECT_NE(rig.found().find("no MAVLink frame was heard, 280 bytes at 57600 baud"),
             std::string::npos);
 }
 
-TEST(MavlinkLine, OneFrameIsEnoughNotToBeDeaf) {
+// As the line reads, at 57600 baud, what the board sends at its new rate.
+Bytes garbled(const Bytes& sent, double baud) {
+  Bytes read;
+  for (const std::uint8_t byte : sent) {
+    const auto sample = io::sample_uart({.value = byte}, {.baud = baud}, 8, 57600.0);
+    if (!sample.stop_missing) read.push_back(static_cast<std::uint8_t>(sample.bits));
+  }
+  return read;
+}
+
+TEST(MavlinkLine, ABoardThatChangesItsRateAndChangesBackIsHeardAgainAndToldOf) {
+  Rig rig;
+  rig.far->write(kBeat_7);
+  ASSERT_TRUE(rig.serve(1000 * kMs).ok());
+  Bytes at_38400;
+  for (int i = 0; i < 160; ++i) {
+    const Bytes beat = garbled(kBeat_8, 38400.0);
+    at_38400.insert(at_38400.end(), beat.begin(), beat.end());
+  }
+  ASSERT_GT(at_38400.size(), 280u);
+  rig.far->write(at_38400);
+  ASSERT_TRUE(rig.serve(2000 * kMs).ok());
+  ASSERT_TRUE(rig.serve(11'500 * kMs).ok());  // the plan judges
+  EXPECT_EQ(rig.arrivals.size(), 1u);
+  EXPECT_NE(rig.found().find("no frame from 1.0 s to the end, and "), std::string::npos)
+      << rig.found();
+  // What has looked like the begin of a frame takes from the next ones; its length is spent after 280 bytes.
+  for (int i = 0; i < 14; ++i) rig.far->write(kBeat_8);
+  ASSERT_TRUE(rig.serve(12'000 * kMs).ok());
+  rig.far->write(kBeat_10);
+  ASSERT_TRUE(rig.serve(13'000 * kMs).ok());
+  ASSERT_GT(rig.arrivals.size(), 2u);
+  EXPECT_EQ(rig.arrivals.back().payload, kBeat_10);
+  EXPECT_NE(rig.found().find("no frame from 1.0 s to 12.0 s, and "), std::string::npos)
+      << rig.found();
+  EXPECT_NE(rig.found().find(" bytes: did the board change its rate?"), std::string::npos);
+}
+
+TEST(MavlinkLine, OfAFrameWhoseEndIsLostTheNextOneIsNotPartOfTheLoss) {
+  Rig rig;
+  rig.far->write(joined({kBeat_7, Bytes(kBeat_8.begin(), kBeat_8.begin() + 12), kBeat_10}));
+  ASSERT_TRUE(rig.serve(kMs).ok());
+  ASSERT_EQ(rig.arrivals.size(), 2u);
+  EXPECT_EQ(rig.arrivals[1].payload, kBeat_10);
+  EXPECT_EQ(rig.link.counts().outside_B, 12u);
+}
+
+// A line that is flooded is read in turns, that others are served too.
+TEST(MavlinkLine, OfAFloodATurnReadsEightKibibytes) {
+  Rig rig;
+  for (int i = 0; i < 3000; ++i) rig.far->write(kBeat_7);
+  ASSERT_TRUE(rig.serve(kMs).ok());
+  EXPECT_LE(rig.link.counts().bytes, 8u * 1024u);
+  EXPECT_GT(rig.link.counts().frames, 100u);
+}
+
+TEST(MavlinkLine, OneFrameIsEnoughToGoOn) {
   Rig rig;
   rig.far->write(joined({kBeat_7, Bytes(1000, 0x55)}));
+  EXPECT_TRUE(rig.serve(1000 * kMs).ok());
   EXPECT_TRUE(rig.serve(60'000 * kMs).ok());
 }
 
@@ -181,6 +258,21 @@ TEST(MavlinkLine, UnpluggedInTheMidstOfAFrameIsSaid) {
   EXPECT_EQ(served.error().kind, ErrorKind::host);
   EXPECT_EQ(served.error().what, "the serial line was unplugged");
   EXPECT_TRUE(rig.arrivals.empty());
+}
+
+TEST(MavlinkLine, WhatCannotBeOpenedIsSaidWithItsPlace) {
+  const Rig rig;
+  const auto refused = [](const std::string& path) {
+    MavlinkLine line({"radio", path, 2, 57600});
+    const auto opened = line.open();
+    EXPECT_FALSE(opened.ok()) << path;
+    if (opened) return std::string();
+    EXPECT_EQ(opened.error().kind, ErrorKind::bad_input);
+    EXPECT_EQ(opened.error().place, path);
+    return opened.error().what;
+  };
+  EXPECT_EQ(refused("/nowhere/radio"), "no such serial line");
+  EXPECT_EQ(refused("/dev/null"), "is no serial line");
 }
 
 // With its sum behind it: CRC-16/MCRF4XX, bit by bit.
@@ -199,6 +291,11 @@ Bytes summed(Bytes frame, std::uint8_t extra) {
   return frame;
 }
 
+// HEARTBEAT of a ground station, 255/190, that is on a radio's air as well: MAV_TYPE_GCS, no autopilot.
+Bytes station_beat(std::uint8_t number) {
+  return summed({0xFD, 0x09, 0, 0, number, 0xFF, 0xBE, 0, 0, 0, 0, 0, 0, 0, 6, 8, 0, 4, 3}, 50);
+}
+
 // A clock on which the far end acts: HEARTBEAT at 0.3 s of each second, each other one 4 ms late, and answers to what is asked.
 class FarClock final : public pacing::HostClock {
  public:
@@ -210,6 +307,7 @@ class FarClock final : public pacing::HostClock {
     now_ns_ = std::min(t_ns, now_ns_ + kMs);
     if (beats_ && now_ns_ % (2000 * kMs) == 300 * kMs) beat();
     if (beats_ && now_ns_ % (2000 * kMs) == 1304 * kMs) beat();
+    if (beats_ && now_ns_ % (1000 * kMs) == 100 * kMs) far_.write(station_beat(of_station_++));
     far_.write(Bytes(noise_B_, 0x55));
     Bytes asked(1024);
     asked.resize(far_.read(asked));
@@ -239,7 +337,7 @@ class FarClock final : public pacing::HostClock {
   bool beats_;
   std::int64_t answer_ns_, now_ns_ = 124'000 * kMs, asked_ns_ = 0;
   std::size_t noise_B_;
-  std::uint8_t number_ = 250;
+  std::uint8_t number_ = 250, of_station_ = 254;
   Bytes question_;
 };
 
@@ -255,7 +353,7 @@ TEST(MavlinkCheck, TellsWhoBeatsHowSteadyAndWhatAnAnswerTakes) {
   ASSERT_TRUE(told.ok()) << told.error().message();
   ASSERT_EQ(told.value().size(), 3u);
   EXPECT_EQ(told.value()[0],
-            "MAVLink of 1/1 at 57600 baud: 1.0 frames and 21 B a second; 0 missing by their "
+            "MAVLink of 1/1 at 57600 baud: 2.0 frames and 42 B a second; 0 missing by their "
             "numbers, 0 B outside of frames");
   EXPECT_EQ(told.value()[1], "HEARTBEAT heard 5 times, period 1004.0 ms, 8.0 ms off it at most");
   // Asked and answered in turns of a millisecond each.
