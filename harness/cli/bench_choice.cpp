@@ -184,7 +184,7 @@ Result<Done> check_bench_options(const RunOptions& options) {
   }
   if (options.gdb) return refused("--gdb", "a bench does not wait for a debugger");
   if (options.twice) return refused("--twice", "no two runs of metal are equal to the bit");
-  if (!options.seeds.empty()) return refused("--seeds", "a bench draws nothing by a seed");
+  if (!options.seeds.empty()) return refused("--seeds", "a bench runs a plan once", "--seed N");
   if (options.jobs > 1) return refused("--jobs", "a bench runs one plan at a time");
   return Done{};
 }
