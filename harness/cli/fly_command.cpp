@@ -117,15 +117,17 @@ int fly_command(const FlyOptions& options, const RunOptions& run, const Composit
   const bool on_bench = !run.target.empty();
   char at[60];
   std::snprintf(at, sizeof at, "at %g x real time", options.pace);
-  std::printf("flying %s %s; MAVLink to UDP %s, and from any at port %u. %s ends.\n",
+  std::printf("flying %s %s; MAVLink to UDP %s, and from %s at port %u. %s ends.\n",
               plan.value().name.c_str(), on_bench ? ("on " + run.target).c_str() : at,
-              options.udp.c_str(), static_cast<unsigned>(port.value().own_port()),
+              options.udp.c_str(), on_bench ? "its host" : "any",
+              static_cast<unsigned>(port.value().own_port()),
               options.seconds > 0.0 ? "Its time, or Ctrl-C," : "Ctrl-C");
   std::fflush(stdout);
   pacing::MonotonicClock clock;
   live::LiveOptions live;
   live.pace = options.pace;
   live.waits = !on_bench;
+  live.client_only = on_bench;
   if (options.seconds > 0.0) live.end_ns = std::llround(options.seconds * 1e9);
   live.wants_end = [] { return end_wanted.load(); };
   live.show = show;

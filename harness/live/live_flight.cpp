@@ -73,6 +73,10 @@ Result<Done> LiveFlight::take_in(std::int64_t t_ns, World& world) {
     const auto datagram = port_.receive();
     if (!datagram) break;
     ++datagrams_;
+    if (options_.client_only && !port_.from_peer()) {
+      ++of_others_;
+      continue;
+    }
     if (datagram->size() > kLongestDatagram_B) {
       dropped_B_ += datagram->size();
       continue;
@@ -93,10 +97,9 @@ Result<Done> LiveFlight::take_in(std::int64_t t_ns, World& world) {
 }
 
 void LiveFlight::on_happened(std::int64_t t_ns, const io::Batch& happened, const World& world) {
-  constexpr std::uint8_t kV2 = 0xFD;
   for (io::Reader r(happened.bytes()); r.next();) {
     const bool frame = r.header().board == 0 && r.header().kind == io::Kind::uart_received &&
-                       !r.payload().empty() && r.payload()[0] == kV2;
+                       !r.payload().empty() && is_frame(r.payload());
     if (frame) port_.send(r.payload());
   }
   show_state(t_ns, world);
@@ -148,8 +151,13 @@ std::vector<std::string> LiveFlight::summary() const {
       static_cast<unsigned long long>(port_.not_sent()),
       static_cast<unsigned long long>(datagrams_), recording_.pieces(),
       static_cast<unsigned long long>(dropped_B_));
-  if (!options_.waits) return {udp};
-  return {pace, udp};
+  std::vector<std::string> all{udp};
+  if (options_.waits) all.insert(all.begin(), pace);
+  if (of_others_ > 0) {
+    all.push_back("UDP: " + std::to_string(of_others_) +
+                  " datagrams of another host than the client's were left out");
+  }
+  return all;
 }
 
 }  // namespace whirl::live

@@ -1,11 +1,12 @@
 // A flight that a MAVLink client watches and commands: paced to the host's clock, its radio bridged to UDP. Of a bench, which
 // keeps its own pace, the radio is that of a physical board.
 //
-//   Down     each frame that the radio has received goes out as one datagram
+//   Down     each frame that the radio has received, of MAVLink 2 or 1, goes out as one datagram
 //   Up       datagrams are looked for before each step: what has come is cut into pieces
 //            (datagram_pieces.hpp), recorded, and goes into the radio with that step. The serial line to the
 //            radio takes 5760 B/s and holds 1024 B, half of it for frames only: a flood loses what is beyond,
-//            and so is a datagram of more than 1500 B; the loss is told of
+//            and so is a datagram of more than 1500 B; the loss is told of. Of a bench,
+//            whose vehicle is at hand, datagrams of another host than the client's are left out and told of
 //   Sticks   of a person's game controller, where there is one (pilot_stick.hpp): looked at each 20 ms, as a transmitter
 //            does; what has changed goes to the vehicle's receiver and is recorded
 //   Shown    once a second of the host: time, armed, mode, place, lateness
@@ -24,6 +25,7 @@ namespace whirl::live {
 struct LiveOptions {
   double pace = 1.0;                             // virtual seconds to one of the host
   bool waits = true;                             // false: the target keeps its own pace
+  bool client_only = false;                      // what other hosts send is left out
   std::optional<std::int64_t> end_ns;            // virtual; none: until wants_end
   std::function<bool()> wants_end;               // asked before each step
   std::function<void(const std::string&)> show;  // the line of state
@@ -61,7 +63,7 @@ class LiveFlight final : public Companion {
   std::int64_t ended_ns_ = 0, next_shown_ns_ = 0, next_sticks_ns_ = 0;
   std::optional<request::Sticks> sticks_;  // as they were told last
   double line_free_B_;
-  std::uint64_t datagrams_ = 0, dropped_B_ = 0;
+  std::uint64_t datagrams_ = 0, of_others_ = 0, dropped_B_ = 0;
 };
 
 }  // namespace whirl::live

@@ -73,6 +73,21 @@ const sockaddr* as_address(const std::vector<std::uint8_t>& bytes) {
   return reinterpret_cast<const sockaddr*>(bytes.data());  // NOLINT: what the sockets API wants
 }
 
+// Of one family, that of the socket.
+bool one_host(const sockaddr* a, const sockaddr* b) {
+  if (a->sa_family != b->sa_family) return false;
+  if (a->sa_family == AF_INET6) {
+    sockaddr_in6 first{}, second{};
+    std::memcpy(&first, a, sizeof first);
+    std::memcpy(&second, b, sizeof second);
+    return IN6_ARE_ADDR_EQUAL(&first.sin6_addr, &second.sin6_addr);
+  }
+  sockaddr_in first{}, second{};
+  std::memcpy(&first, a, sizeof first);
+  std::memcpy(&second, b, sizeof second);
+  return first.sin_addr.s_addr == second.sin_addr.s_addr;
+}
+
 std::uint16_t port_of(int fd) {
   sockaddr_storage own{};
   socklen_t size = sizeof own;
@@ -111,7 +126,8 @@ UdpPort::UdpPort(UdpPort&& other) noexcept
       buffer_(std::move(other.buffer_)),
       own_port_(other.own_port_),
       sent_(other.sent_),
-      not_sent_(other.not_sent_) {}
+      not_sent_(other.not_sent_),
+      from_peer_(other.from_peer_) {}
 
 void UdpPort::send(std::span<const std::uint8_t> datagram) {
   const ssize_t n = sendto(fd_, datagram.data(), datagram.size(), 0, as_address(peer_),
@@ -120,8 +136,12 @@ void UdpPort::send(std::span<const std::uint8_t> datagram) {
 }
 
 std::optional<std::span<const std::uint8_t>> UdpPort::receive() {
-  const ssize_t n = recv(fd_, buffer_.data(), buffer_.size(), 0);
+  sockaddr_storage from{};
+  socklen_t size = sizeof from;
+  const ssize_t n = recvfrom(fd_, buffer_.data(), buffer_.size(), 0,
+                             reinterpret_cast<sockaddr*>(&from), &size);  // NOLINT
   if (n < 0) return std::nullopt;
+  from_peer_ = one_host(as_address(peer_), reinterpret_cast<const sockaddr*>(&from));  // NOLINT
   return std::span<const std::uint8_t>(buffer_.data(), static_cast<std::size_t>(n));
 }
 

@@ -28,6 +28,8 @@ class UdpPort {
   void send(std::span<const std::uint8_t> datagram);
   // The next one that has come, or none. Valid until the next call.
   std::optional<std::span<const std::uint8_t>> receive();
+  // The last one is from the peer's host, whatever its port: a ground station may send from another one.
+  bool from_peer() const { return from_peer_; }
 
   std::uint16_t own_port() const { return own_port_; }
   std::uint64_t sent() const { return sent_; }
@@ -41,6 +43,7 @@ class UdpPort {
   std::vector<std::uint8_t> buffer_;
   std::uint16_t own_port_ = 0;
   std::uint64_t sent_ = 0, not_sent_ = 0;
+  bool from_peer_ = false;
 };
 
 }  // namespace whirl::live

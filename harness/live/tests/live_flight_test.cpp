@@ -159,6 +159,45 @@ TEST_F(Bridge, ShowsItsStateOnceASecondOfTheHost) {
   EXPECT_NE(shown_[1].find("height  1.50 m"), std::string::npos) << shown_[1];
 }
 
+TEST_F(Bridge, AFrameOfMavlink1GoesOutAsWell) {
+  open();
+  const Bytes old{0xFE, 2, 0, 51, 68, 0, 7, 7, 8, 8};  // as radios tell their own state
+  happen(io::Kind::uart_received, 2, old, 20);
+  const auto out = client_.receive();
+  ASSERT_TRUE(out);
+  EXPECT_EQ(Bytes(out->begin(), out->end()), old);
+}
+
+// Its client is said to be at 127.0.0.2, and 127.0.0.1 sends.
+TEST_F(Bridge, WhatAnotherHostSendsIsLeftOutWhereTheClientOnlyIsHeard) {
+  for (const bool client_only : {true, false}) {
+    world_.radio.clear();
+    LiveOptions options;
+    options.client_only = client_only;
+    options.wants_end = [] { return false; };
+    UdpPort port = std::move(UdpPort::open("127.0.0.2:9", 0).value());
+    UdpPort other = port_to(port.own_port());
+    LiveFlight flight(clock_, std::move(port), options);
+    other.send(heartbeat());
+    ASSERT_TRUE(flight.turn(0, world_).value());
+    EXPECT_EQ(world_.radio.size(), client_only ? 0u : 1u);
+    EXPECT_EQ(flight.summary().size(), client_only ? 3u : 2u);
+    if (client_only) {
+      EXPECT_EQ(flight.summary().back(),
+                "UDP: 1 datagrams of another host than the client's were left out");
+    }
+  }
+}
+
+TEST_F(Bridge, TheClientsHostIsHeardFromAnyPort) {
+  LiveOptions options;
+  options.client_only = true;
+  open(options);
+  to_flight_->send(heartbeat());
+  EXPECT_TRUE(turn(0));
+  EXPECT_EQ(world_.radio.size(), 1u);
+}
+
 TEST_F(Bridge, OfABenchWaitsForNobodyAndSaysNothingOfItsPace) {
   LiveOptions options;
   options.waits = false;
