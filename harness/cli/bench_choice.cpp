@@ -161,9 +161,11 @@ Result<bench::BenchDescription> bench_named(const std::string& name, const char*
   if (!file) return file.error();
   auto bench = read_bench(shown_path(file.value()));
   if (!bench) return bench;
-  const auto board = find_board(bench.value().board, {file.value(), "board"}, root);
+  const auto board = find_board(bench.value().board, {bench.value().file, "board"}, root);
+  if (!board) return board.error();
+  if (const auto there = check_radios(board.value(), bench.value()); !there) return there.error();
   for (bench::SerialLink& link : bench.value().serials) {
-    link.mavlink = link.mavlink || (board && is_radio_at(board.value(), link));
+    link.mavlink = is_radio_at(board.value(), link);
   }
   return bench;
 }

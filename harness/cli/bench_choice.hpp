@@ -15,8 +15,9 @@ namespace whirl::cli {
 // that kind; --gdb, --twice, several seeds or several runs at once
 Result<Done> check_bench_options(const RunOptions& options);
 
-// Of test_plans/benches, or a path. `command`: who asks, for the message. A line to a telemetry radio of its board, where
-// that is found, is one that carries MAVLink.
+// Of test_plans/benches, or a path. `command`: who asks, for the message. A line to a telemetry radio of its board is one
+// that carries MAVLink.
+// Errors  bad_input: no such bench, no such board, a line of kind "mavlink" where the board has no radio
 Result<bench::BenchDescription> bench_named(const std::string& name, const char* command,
                                             const std::string& root);
 
@@ -24,7 +25,7 @@ Result<bench::BenchDescription> bench_named(const std::string& name, const char*
 Result<Done> check_copper_options(const RunOptions& options);
 
 // Errors  bad_input: no such bench, another board than the plan's, a bus that the plan uses and nothing joins,
-//         the phrase was not said; several boards, a vehicle; what check_bench_options() refuses
+//         MAVLink where the board has no radio, the phrase was not said; several boards, a vehicle; what check_bench_options() refuses
 Result<bench::BenchDescription> bench_for(const plan::Plan& plan, const std::vector<Node>& nodes,
                                           const RunOptions& options, const std::string& root);
 
