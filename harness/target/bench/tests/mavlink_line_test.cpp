@@ -291,9 +291,13 @@ Bytes summed(Bytes frame, std::uint8_t extra) {
   return frame;
 }
 
-// HEARTBEAT of a ground station, 255/190, that is on a radio's air as well: MAV_TYPE_GCS, no autopilot.
+// HEARTBEATs of who is on a radio's air as well: a ground station, 255/190 (MAV_TYPE_GCS, no autopilot), and a vehicle, 2/1.
 Bytes station_beat(std::uint8_t number) {
   return summed({0xFD, 0x09, 0, 0, number, 0xFF, 0xBE, 0, 0, 0, 0, 0, 0, 0, 6, 8, 0, 4, 3}, 50);
+}
+
+Bytes other_beat(std::uint8_t number) {
+  return summed({0xFD, 0x09, 0, 0, number, 2, 1, 0, 0, 0, 3, 0, 0, 0, 2, 3, 0, 3, 3}, 50);
 }
 
 // A clock on which the far end acts: HEARTBEAT at 0.3 s of each second, each other one 4 ms late, and answers to what is asked.
@@ -307,7 +311,8 @@ class FarClock final : public pacing::HostClock {
     now_ns_ = std::min(t_ns, now_ns_ + kMs);
     if (beats_ && now_ns_ % (2000 * kMs) == 300 * kMs) beat();
     if (beats_ && now_ns_ % (2000 * kMs) == 1304 * kMs) beat();
-    if (beats_ && now_ns_ % (1000 * kMs) == 100 * kMs) far_.write(station_beat(of_station_++));
+    if (beats_ && now_ns_ % (1000 * kMs) == 100 * kMs) far_.write(station_beat(of_others_));
+    if (beats_ && now_ns_ % (1000 * kMs) == 700 * kMs) far_.write(other_beat(of_others_++));
     far_.write(Bytes(noise_B_, 0x55));
     Bytes asked(1024);
     asked.resize(far_.read(asked));
@@ -337,7 +342,7 @@ class FarClock final : public pacing::HostClock {
   bool beats_;
   std::int64_t answer_ns_, now_ns_ = 124'000 * kMs, asked_ns_ = 0;
   std::size_t noise_B_;
-  std::uint8_t number_ = 250, of_station_ = 254;
+  std::uint8_t number_ = 250, of_others_ = 254;
   Bytes question_;
 };
 
@@ -353,7 +358,7 @@ TEST(MavlinkCheck, TellsWhoBeatsHowSteadyAndWhatAnAnswerTakes) {
   ASSERT_TRUE(told.ok()) << told.error().message();
   ASSERT_EQ(told.value().size(), 3u);
   EXPECT_EQ(told.value()[0],
-            "MAVLink of 1/1 at 57600 baud: 2.0 frames and 42 B a second; 0 missing by their "
+            "MAVLink of 1/1 at 57600 baud: 3.0 frames and 63 B a second; 0 missing by their "
             "numbers, 0 B outside of frames");
   EXPECT_EQ(told.value()[1], "HEARTBEAT heard 5 times, period 1004.0 ms, 8.0 ms off it at most");
   // Asked and answered in turns of a millisecond each.
