@@ -232,6 +232,14 @@ TEST(MavlinkLine, OfAFrameWhoseEndIsLostTheNextOneIsNotPartOfTheLoss) {
   EXPECT_EQ(rig.link.counts().outside_B, 12u);
 }
 
+TEST(MavlinkLine, NoiseBetweenFramesIsNoStretchWithoutThem) {
+  Rig rig;
+  for (int i = 0; i < 20; ++i) rig.far->write(joined({kBeat_7, Bytes(30, 0x55)}));
+  ASSERT_TRUE(rig.serve(kMs).ok());
+  EXPECT_EQ(rig.link.counts().outside_B, 600u);
+  EXPECT_EQ(rig.found().find("no frame from"), std::string::npos) << rig.found();
+}
+
 // A line that is flooded is read in turns, that others are served too.
 TEST(MavlinkLine, OfAFloodATurnReadsEightKibibytes) {
   Rig rig;
