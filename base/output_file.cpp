@@ -8,7 +8,27 @@
 
 namespace whirl {
 
-OutputFile::OutputFile(std::string path) : path_(std::move(path)) {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_other_than_a_file(const std::string& path) {
+  std::error_code unknown;
+  const fs::file_status there = fs::status(path, unknown);
+  return fs::exists(there) && !fs::is_regular_file(there) && !fs::is_directory(there);
+}
+
+// A link to nothing stays what it is called.
+std::string behind_links(const std::string& path) {
+  std::error_code unknown;
+  const fs::path behind = fs::canonical(path, unknown);
+  return unknown ? path : behind.string();
+}
+
+}  // namespace
+
+OutputFile::OutputFile(std::string path)
+    : path_(std::move(path)), file_(behind_links(path_)), direct_(is_other_than_a_file(path_)) {
   errno = 0;
   out_.open(part(), std::ios::binary);
   if (!out_) why_not_ = errno;
@@ -16,6 +36,8 @@ OutputFile::OutputFile(std::string path) : path_(std::move(path)) {
 
 OutputFile::OutputFile(OutputFile&& other) noexcept
     : path_(std::move(other.path_)),
+      file_(std::move(other.file_)),
+      direct_(other.direct_),
       out_(std::move(other.out_)),
       pending_(std::exchange(other.pending_, false)),
       why_not_(other.why_not_) {}
@@ -35,7 +57,7 @@ Result<Done> OutputFile::close() {
   const bool open = static_cast<bool>(out_);
   errno = 0;
   out_.close();
-  if (open && out_ && std::rename(part().c_str(), path_.c_str()) == 0) {
+  if (open && out_ && (direct_ || std::rename(part().c_str(), file_.c_str()) == 0)) {
     pending_ = false;
     return Done{};
   }
@@ -49,8 +71,9 @@ Result<Done> OutputFile::close() {
 void OutputFile::discard() {
   pending_ = false;
   out_.close();
+  if (direct_) return;
   std::error_code ignored;
-  std::filesystem::remove(part(), ignored);
+  fs::remove(part(), ignored);
 }
 
 Result<Done> write_text(const std::string& path, const std::string& text) {

@@ -1,5 +1,6 @@
 // A file that is written whole or not at all: as NAME.part until it is closed. What bore the name before
-// stays until then; who never closes it leaves nothing.
+// stays until then; who never closes it leaves nothing. A link leads to its file. What is no plain file, a device or a
+// FIFO, is written as it stands: no file takes its place.
 #pragma once
 #include <fstream>
 #include <string>
@@ -22,10 +23,11 @@ class OutputFile {
   const std::string& path() const { return path_; }
 
  private:
-  std::string part() const { return path_ + ".part"; }
+  std::string part() const { return direct_ ? path_ : file_ + ".part"; }
   void discard();
 
-  std::string path_;
+  std::string path_, file_;  // as it was said, and where links lead
+  bool direct_ = false;      // no plain file
   std::ofstream out_;
   bool pending_ = true;  // neither closed nor discarded
   int why_not_ = 0;      // errno of what failed first
