@@ -16,6 +16,14 @@ std::string place_of(lua_State* L) {
   return {};
 }
 
+std::string place_of_function(lua_State* L) {
+  lua_Debug function;
+  lua_pushvalue(L, -1);
+  lua_getinfo(L, ">S", &function);
+  if (function.linedefined <= 0) return {};
+  return std::string(function.short_src) + ":" + std::to_string(function.linedefined);
+}
+
 void raise(lua_State* L, const Error& error) {
   Error placed = error;
   if (placed.place.empty()) placed.place = place_of(L);

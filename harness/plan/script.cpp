@@ -165,14 +165,24 @@ Dimension Script::dimension(std::size_t column) const {
 
 bool Script::condition(lua_State* L, int ref) {
   lua_rawgeti(L, LUA_REGISTRYINDEX, ref);
+  const std::string place = place_of_function(L);
   push_signals(L);
+  in_condition_ = true;
   lua_call(L, 1, 1);
+  in_condition_ = false;
+  if (!lua_isboolean(L, -1)) {  // to Lua 0 is true: what a signal is would hold whatever it is
+    raise(L, {ErrorKind::bad_input, place,
+              std::string("a condition is true or false, not a ") + luaL_typename(L, -1),
+              "return s.told_armed == 1"});
+  }
   const bool met = lua_toboolean(L, -1) != 0;
   lua_pop(L, 1);
   return met;
 }
 
 void Script::wait_until(std::int64_t t_ns, int condition_ref) {
+  if (in_condition_)
+    raise(file_.sandbox().state(), "a condition looks at a moment and cannot wait");
   wake_ns_ = t_ns;
   wake_condition_ = condition_ref;
   condition_met_ = false;

@@ -194,7 +194,7 @@ class Script {
   std::int64_t wake_ns_ = 0;
   int wake_condition_ = -1;
   bool condition_met_ = false;
-  bool started_ = false, done_ = false;
+  bool started_ = false, done_ = false, in_condition_ = false;
   bool looked_ = false;
   std::size_t told_before_ = 0;
   std::optional<RandomStream> chance_;

@@ -199,5 +199,27 @@ TEST(Limits, AreInTheirOwnUnitAndSoIsTheMargin) {
   EXPECT_EQ(e.unit, "degC");
 }
 
+// To Lua 0 is true: s.told_armed alone held while it was 0.
+TEST(Guards, AConditionIsTrueOrFalse) {
+  for (const char* call : {"t:within('20 ms', function(s) return s.x_m end)",
+                           "t:wait_until(function(s) return s.x_m end, '20 ms')",
+                           "t:always('x', function(s) return s.x_m end) t:wait '9 ms'",
+                           "t:within('20 ms', function(s) local x = s.x_m end)"}) {
+    const results::Report report = report_of(with_two_signals(call));
+    EXPECT_EQ(results::exit_code(report), 2) << call;
+    EXPECT_NE(report.reason.find("a condition is true or false"), std::string::npos)
+        << report.reason;
+    EXPECT_NE(report.reason.find("plan.lua:2"), std::string::npos) << report.reason;
+  }
+}
+
+TEST(Guards, AConditionCannotWait) {
+  const results::Report report =
+      report_of(with_two_signals("t:within('20 ms', function(s) t:wait '1 ms' return true end)"));
+  EXPECT_EQ(results::exit_code(report), 2);
+  EXPECT_NE(report.reason.find("plan.lua:2: a condition looks at a moment"), std::string::npos)
+      << report.reason;
+}
+
 }  // namespace
 }  // namespace whirl::oracle
