@@ -218,6 +218,7 @@ TEST(PlanFile, RefusesWhatIsNoPlan) {
       {with("stand = {}, vehicle = 'v'"), "a plan has a vehicle or a stand, one of the two"},
       {with(""), "a plan has a vehicle or a stand, one of the two"},
       {with("vehicle = 'v', seed = -1"), "seed"},
+      {with("vehicle = 'v', timeout = '0 s'"), "timeout: is 0"},
       {with("vehicle = 'v', timeout = '5 N'"), "'5 N' is a force, not a time"},
       {with("vehicle = 'v', colour = 1"), "unknown key 'colour'"},
       {with("vehicle = 'v', world = { wind = '2 m/s' }"), "unknown key 'world'"},
