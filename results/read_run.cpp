@@ -93,6 +93,10 @@ Report report_of(const json& from) {
 
 Result<Report> read_run(std::string_view json_text) {
   const json run = parse_json(json_text);
+  if (!run.is_object()) {
+    return Error{ErrorKind::internal, "run.json", "is no object of JSON",
+                 "it is cut off, or no run's"};
+  }
   try {
     return report_of(run);
   } catch (const json::exception& e) {

@@ -37,6 +37,7 @@ TEST(ReadRun, GivesTheSameTestcases) {
 
 TEST(ReadRun, RefusesWhatIsNone) {
   for (const char* text : {"", "{}", "[1]", "{\"plan\": 3}"}) EXPECT_FALSE(read_run(text).ok());
+  EXPECT_EQ(read_run("{\"plan\": ").error().what, "is no object of JSON");
   std::string wrong = run_json(sample());
   wrong.replace(wrong.find("\"fail\""), 6, "\"fine\"");
   EXPECT_FALSE(read_run(wrong).ok());
