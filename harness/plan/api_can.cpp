@@ -42,8 +42,8 @@ void judge_can(Script& self, const CanWindow& w, std::int64_t from, std::int64_t
   std::snprintf(text, sizeof text, "%lld frames, bus load %.3g %%", static_cast<long long>(frames),
                 100.0 * load);
   if (w.period) {
-    judge_spread(self, deviations(starts, from, to, w.period->value_SI), *w.tolerance,
-                 w.name + " period deviation", w.place, to);
+    judge_spread(self, deviations(starts, from, to, w.period->value_SI, w.tolerance->value_SI),
+                 *w.tolerance, w.name + " period deviation", w.place, to);
   }
   if (w.load) {
     self.judge_in_window({load, Dimension::ratio, w.name + " load"}, Script::Figure::extreme,
@@ -97,7 +97,7 @@ int can(lua_State* L) {
     w.message = static_cast<std::uint32_t>(given.integer_or("message", 0, 0));
     w.name += " message " + std::to_string(*w.message);
   }
-  w.period = optional_limit(given, "period", Dimension::time);
+  w.period = optional_period(given);
   w.tolerance = optional_limit(given, "tolerance", Dimension::time);
   w.load = optional_limit(given, "load", Dimension::ratio);
   w.errors = given.integer_or("errors", 0, 0);

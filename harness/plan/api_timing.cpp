@@ -9,6 +9,7 @@
 #include "harness/plan/raise.hpp"
 #include "harness/plan/timing_window.hpp"
 #include "harness/plan/values.hpp"
+#include "harness/plan/watched_calls.hpp"
 #include "io_bridges/board_description/bus_name.hpp"
 
 namespace whirl::plan {
@@ -54,36 +55,31 @@ std::string on_node(lua_State* L, Script& self, std::size_t node, const std::str
   return at.rest;
 }
 
+// What a call that still ran at the window's end tells: that it took more than it may, or that nobody knows.
+void add_cut_calls(Script& self, const Budget& b, WatchedCalls& calls) {
+  const auto beyond = [&b](double x_s, const std::optional<Limit>& limit) {
+    return limit && x_s > less_margin(*limit, b.margin).value_SI;
+  };
+  for (const WatchedCalls::Cut& cut : calls.cut) {
+    if (beyond(cut.lasted_s, b.response)) calls.response_s.push_back(cut.lasted_s);
+    if (beyond(cut.execution_s, b.execution)) calls.execution_s.push_back(cut.execution_s);
+    if (std::isnan(cut.execution_s) && beyond(cut.lasted_s, b.execution))
+      self.not_seen_whole("a call never returned");
+  }
+}
+
 void judge_calls(Script& self, const Budget& b, std::int64_t from, std::int64_t to) {
-  std::vector<std::int64_t> entries;
-  std::vector<double> execution, response, latency;
-  const results::EventLog& events = self.stage().logs[b.node];
-  const auto number = static_cast<std::uint16_t>(b.number);
-  const auto found = events.calls.find(number);
-  if (found != events.calls.end()) {
-    for (const auto& call : found->second) {
-      if (call.entry_ns < from || call.entry_ns > to) continue;
-      entries.push_back(call.entry_ns);  // one that is still running at the window's end has come
-      if (call.return_ns > to) continue;
-      execution.push_back(seconds(call.execution_ns));
-      response.push_back(seconds(call.return_ns - call.entry_ns));
-      // Called from no interrupt: that has no latency, and meets no limit.
-      latency.push_back(call.latency_ns < 0 ? std::nan("") : seconds(call.latency_ns));
-    }
-  }
-  const auto open = events.open_calls_ns.find(number);
-  if (open != events.open_calls_ns.end()) {
-    for (const std::int64_t entry_ns : open->second) {
-      if (entry_ns >= from && entry_ns <= to) entries.push_back(entry_ns);
-    }
-  }
+  WatchedCalls calls =
+      calls_between(self.stage().logs[b.node], static_cast<std::uint16_t>(b.number), from, to);
+  add_cut_calls(self, b, calls);
   if (b.jitter) {
-    judge_code_time(self, deviations(entries, from, to, b.period->value_SI), b, *b.jitter,
-                    "period jitter", to);
+    const double most_s = less_margin(*b.jitter, b.margin).value_SI;
+    judge_code_time(self, deviations(calls.entries_ns, from, to, b.period->value_SI, most_s), b,
+                    *b.jitter, "period jitter", to);
   }
-  if (b.execution) judge_code_time(self, execution, b, *b.execution, "execution time", to);
-  if (b.response) judge_code_time(self, response, b, *b.response, "response time", to);
-  if (b.latency) judge_code_time(self, latency, b, *b.latency, "interrupt latency", to);
+  if (b.execution) judge_code_time(self, calls.execution_s, b, *b.execution, "execution time", to);
+  if (b.response) judge_code_time(self, calls.response_s, b, *b.response, "response time", to);
+  if (b.latency) judge_code_time(self, calls.latency_s, b, *b.latency, "interrupt latency", to);
 }
 
 void judge_busy(Script& self, const Budget& b, std::int64_t from, std::int64_t to) {
@@ -101,7 +97,7 @@ int read_budget(lua_State* L) {
   Budget b;
   b.function = lua_tostring(L, lua_upvalueindex(1));
   b.place = place_of(L);
-  b.period = optional_limit(given, "period", Dimension::time);
+  b.period = optional_period(given);
   b.jitter = optional_limit(given, "jitter", Dimension::time);
   b.execution = optional_limit(given, "execution", Dimension::time);
   b.response = optional_limit(given, "response", Dimension::time);
@@ -175,8 +171,8 @@ void judge_bus(Script& self, const BusWindow& w, std::int64_t from, std::int64_t
     figure = Script::Figure::of_all;
   }
   if (w.period) {
-    judge_spread(self, deviations(starts, from, to, w.period->value_SI), *w.tolerance,
-                 w.name + " period deviation", w.place, to, figure);
+    judge_spread(self, deviations(starts, from, to, w.period->value_SI, w.tolerance->value_SI),
+                 *w.tolerance, w.name + " period deviation", w.place, to, figure);
   }
   if (w.spi) return;  // SPI has no acknowledge
   const double count = starts.empty() ? std::nan("") : static_cast<double>(refused);
@@ -203,7 +199,7 @@ int pin_window(lua_State* L, Script& self, const lua::Table& given) {
     raise(L, "'" + at.rest + "' is no pin that " + board.name + " names");
   must_see(L, self, "pin_" + at.rest);
   const auto number = static_cast<std::uint16_t>(pin - board.pins.begin());
-  const auto period = optional_limit(given, "period", Dimension::time);
+  const auto period = optional_period(given);
   const auto tolerance = optional_limit(given, "tolerance", Dimension::time);
   const auto high = optional_limit(given, "high", Dimension::time);
   const std::int64_t end = window_end(self, given);
@@ -222,8 +218,8 @@ int pin_window(lua_State* L, Script& self, const lua::Table& given) {
         off.push_back(std::abs(seconds(pulse.fall_ns - pulse.rise_ns) - high->value_SI));
       }
     }
-    judge_spread(script, deviations(rises, from, to, period->value_SI), *tolerance,
-                 name + " period deviation", place, to);
+    judge_spread(script, deviations(rises, from, to, period->value_SI, tolerance->value_SI),
+                 *tolerance, name + " period deviation", place, to);
     if (high) judge_spread(script, off, *tolerance, name + " width deviation", place, to);
   });
   return 0;
@@ -262,7 +258,7 @@ int bus(lua_State* L) {
     w.read = given.choice("direction", {"read", "write"}) == "read";
     w.name += w.read ? " read" : " write";
   }
-  w.period = optional_limit(given, "period", Dimension::time);
+  w.period = optional_period(given);
   w.tolerance = optional_limit(given, "tolerance", Dimension::time);
   w.nacks = given.integer_or("nacks", 0, 0);
   w.bytes = given.integer_or("bytes", 0, 0);
@@ -322,17 +318,18 @@ void judge_latency(Script& self, const LatencyWindow& w, std::int64_t from, std:
   }
   const auto ready = events.data_ready_ns.find(w.sensor);
   results::Histogram histogram{w.name, "s", {}, w.limit.value_SI};
-  std::size_t untraced = 0;
+  std::size_t untraced = 0, unwritten = 0;
   for (const Actuator& actuator : w.actuators) {
     const auto trace = metrics::trace_latency(
         ready == events.data_ready_ns.end() ? std::span<const std::int64_t>{} : ready->second,
         tasks, writes_to(events, actuator, from, to));
     for (const auto& sample : trace.samples) histogram.samples.push_back(sample.latency_s);
     untraced += trace.untraced;
+    unwritten += trace.samples.empty() && trace.untraced == 0 ? 1 : 0;
   }
   const auto d = metrics::distribution(histogram.samples);
-  // A write that cannot be traced has no known latency: that is not a pass.
-  const double worst = untraced > 0 ? std::nan("") : d.max;
+  // A write that cannot be traced has no known latency, nor has what nobody wrote to: that is not a pass.
+  const double worst = untraced + unwritten > 0 ? std::nan("") : d.max;
   auto figure = Script::Figure::extreme;
   for (const Actuator& actuator : w.actuators) {
     if (!unread_between(events, false, actuator.bus, from, to)) continue;
@@ -342,6 +339,9 @@ void judge_latency(Script& self, const LatencyWindow& w, std::int64_t from, std:
   std::string note = spread(d, w.limit.unit);
   if (untraced > 0)
     note += "; " + std::to_string(untraced) + " writes cannot be traced to a sample";
+  if (unwritten > 0 && d.count > 0)
+    note += "; nothing traced to " + std::to_string(unwritten) + " of " +
+            std::to_string(w.actuators.size()) + " actuators";
   self.judge_in_window({worst, Dimension::time, w.name}, figure, w.limit, w.place, seconds(to),
                        note);
   self.stage().report.histograms.push_back(std::move(histogram));

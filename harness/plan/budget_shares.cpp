@@ -5,6 +5,8 @@
 #include <span>
 #include <vector>
 
+#include "harness/plan/watched_calls.hpp"
+
 namespace whirl::plan {
 namespace {
 
@@ -51,6 +53,11 @@ void judge_budget_shares(Script& script, const BudgetShares& shares, const Budge
   char note[96] = "";
   if (shares.share) {
     std::snprintf(note, sizeof note, "%zu calls", entries_ns.size());
+    for (const auto& cut :
+         calls_between(log, static_cast<std::uint16_t>(w.number), w.from_ns, w.to_ns).cut) {
+      if (cut.lasted_s > shares.share->value_SI * window_s)
+        script.not_seen_whole("a call had not returned");
+    }
     const double share = entries_ns.empty() ? std::nan("") : execution_s / window_s;
     script.judge_in_window({share, Dimension::ratio, w.function + " share of time"},
                            Script::Figure::of_all, *shares.share, w.place,

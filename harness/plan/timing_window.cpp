@@ -33,6 +33,12 @@ std::optional<Limit> optional_limit(const lua::Table& given, const char* key, Di
   return Limit{value, unit_symbol(given.text(key))};
 }
 
+std::optional<Limit> optional_period(const lua::Table& given) {
+  if (!given.has("period")) return std::nullopt;
+  return Limit{given.quantity("period", Dimension::time, lua::above(0.0)),
+               unit_symbol(given.text("period"))};
+}
+
 std::int64_t window_end(Script& self, const lua::Table& given) {
   constexpr std::size_t kMost_windows = 1'000;
   if (self.windows() >= kMost_windows) given.refuse("during", "more than 1000 budgets");
@@ -40,7 +46,9 @@ std::int64_t window_end(Script& self, const lua::Table& given) {
 }
 
 std::vector<double> deviations(std::span<const std::int64_t> times, std::int64_t from,
-                               std::int64_t to, double nominal_s) {
+                               std::int64_t to, double nominal_s, double tolerance_s) {
+  constexpr double kSlack_s = 1e-11;  // times are whole nanoseconds
+  if (times.empty() && seconds(to - from) - nominal_s <= tolerance_s + kSlack_s) return {};
   std::vector<double> all = metrics::deviations_s(metrics::periods_s(times), nominal_s);
   const double head = seconds((times.empty() ? to : times.front()) - from);
   const double tail = seconds(to - (times.empty() ? from : times.back()));

@@ -17,12 +17,14 @@ std::string in_text(double x_s, const std::string& unit);
 std::string spread(const metrics::Distribution& d, const std::string& unit);
 
 std::optional<Limit> optional_limit(const lua::Table& given, const char* key, Dimension dimension);
+std::optional<Limit> optional_period(const lua::Table& given);
 std::int64_t window_end(Script& self, const lua::Table& given);
 
 // The period of what happens at `times` in [from, to]: with its deviation from nominal. The edges
-// count too: a thing that stopped, or never began, has a gap there.
+// count too: a thing that stopped, or never began, has a gap there. A gap of all the window that is within the
+// tolerance says nothing of what never came: then there are none.
 std::vector<double> deviations(std::span<const std::int64_t> times, std::int64_t from,
-                               std::int64_t to, double nominal_s);
+                               std::int64_t to, double nominal_s, double tolerance_s);
 void judge_spread(Script& self, std::span<const double> values, const Limit& limit,
                   const std::string& name, const std::string& place, std::int64_t to_ns,
                   Script::Figure figure = Script::Figure::extreme);

@@ -2,6 +2,7 @@
 // an actuator. Each writes its own train of messages.
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "harness/tests/oracle/scenario.hpp"
 
@@ -31,10 +32,15 @@ Window write_window(Scenario& s, Dice& dice) {
   return window;
 }
 
-// A worst value under its limit: a failure that was seen stays one; a window that the run has cut
-// short, and one without a value, have shown nothing.
-void report_worst(const Limited& limit, const std::string& name, const std::vector<double>& values,
-                  const Window& window, const End& end, std::vector<Told>& told) {
+// A worst value under its limit: a failure that was seen stays one; a window that the run has cut short, one without
+// a value and what never came have shown nothing. cut: of calls that still ran at its end, where beyond the limit.
+void report_worst(const Limited& limit, const std::string& name, std::vector<double> values,
+                  const Window& window, const End& end, std::vector<Told>& told,
+                  const std::vector<double>& cut = {}, bool came = true) {
+  const auto right = [&](double x) { return limit.judge(name, x, 2e-12).right; };
+  std::copy_if(cut.begin(), cut.end(), std::back_inserter(values),
+               [&](double x) { return right(x) == Right::fail; });
+  if (!came && !values.empty() && right(values.front()) == Right::pass) values.clear();
   double worst = values.empty() ? kNaN : values.front();
   for (double x : values) worst = std::isnan(x) || std::isnan(worst) ? kNaN : std::max(worst, x);
   Told mine = limit.judge(name, worst, 2e-12);
@@ -101,20 +107,9 @@ std::vector<Call> within(const std::vector<Call>& calls, std::int64_t from, std:
 
 std::vector<double> seconds_of(const std::vector<Call>& calls, std::int64_t (*what)(const Call&)) {
   std::vector<double> all;
-  all.reserve(calls.size());
   for (const Call& c : calls)
     all.push_back(what(c) < 0 ? kNaN : static_cast<double>(what(c)) * 1e-9);
   return all;
-}
-
-std::int64_t execution(const Call& c) {
-  return c.execution_ns;
-}
-std::int64_t response(const Call& c) {
-  return c.return_ns - c.entry_ns;
-}
-std::int64_t latency(const Call& c) {
-  return c.latency_ns;
 }
 
 void post_calls(Scenario& s, std::uint16_t number, const std::vector<Call>& calls) {
@@ -148,39 +143,58 @@ void add_budget(Scenario& s, Dice& dice, const std::string& id) {
   s.functions.push_back(function);
   post_calls(s, number, calls);
   s.wait(dice.between(5, 150));
+  using Values = std::function<std::vector<double>(std::int64_t, std::int64_t, std::int64_t)>;
   struct Part {
     std::string name;
     Limited limit;
-    std::function<std::vector<double>(std::int64_t, std::int64_t, std::int64_t)> values;
+    Values values, cut;
   };
   // The limits lie near what comes in a window that is not cut.
   const std::int64_t from = window.begin_ns(), to = window.to ? *window.to * kMs : horizon(s) * kMs;
   std::vector<Part> parts;
   std::string keys;
-  const auto add = [&](const std::string& key, const std::string& name, auto values) {
+  const Values none = [](auto...) { return std::vector<double>{}; };
+  const auto add = [&](const std::string& key, const std::string& name, auto values, Values cut) {
     const Limited limit = most_near(dice, duration(), worst_of(values(from, to, to + kMs)), 2e-12);
     keys += ", " + key + " = " + limit.lua;
-    parts.push_back({function + " " + name, limit, values});
+    parts.push_back({function + " " + name, limit, values, std::move(cut)});
+  };
+  const auto entries = [=](std::int64_t a, std::int64_t b, std::int64_t known) {
+    std::vector<std::int64_t> all;
+    for (const Call& c : calls) {
+      if (c.entry_ns >= a && c.entry_ns <= b && c.return_ns <= known) all.push_back(c.entry_ns);
+    }
+    return all;
   };
   if (dice.chance(0.6)) {
     keys += ", period = '" + std::to_string(train.period_ns) + " ns'";
-    add("jitter", "period jitter", [=](std::int64_t a, std::int64_t b, std::int64_t known) {
-      std::vector<std::int64_t> entries;
-      for (const Call& c : calls) {
-        if (c.entry_ns >= a && c.entry_ns <= b && c.return_ns <= known)
-          entries.push_back(c.entry_ns);
-      }
-      return off_period(entries, a, b, train.period_ns);
-    });
+    const auto off = [=](std::int64_t a, std::int64_t b, std::int64_t known) {
+      return off_period(entries(a, b, known), a, b, train.period_ns);
+    };
+    add("jitter", "period jitter", off, none);
   }
+  const auto cut = [=](bool executed) -> Values {
+    return [=](std::int64_t a, std::int64_t b, std::int64_t known) {
+      std::vector<double> all;
+      for (const Call& c : calls) {
+        if (c.entry_ns < a || c.entry_ns > b || c.return_ns <= b || c.return_ns > known) continue;
+        all.push_back(static_cast<double>(executed ? c.execution_ns : b - c.entry_ns) * 1e-9);
+      }
+      return all;
+    };
+  };
   const auto of = [=](std::int64_t (*what)(const Call&)) {
     return [=](std::int64_t a, std::int64_t b, std::int64_t) {
       return seconds_of(within(calls, a, b), what);
     };
   };
-  if (parts.empty() || dice.chance(0.5)) add("execution", "execution time", of(execution));
-  if (dice.chance(0.4)) add("response", "response time", of(response));
-  if (dice.chance(0.4)) add("latency", "interrupt latency", of(latency));
+  if (parts.empty() || dice.chance(0.5))
+    add("execution", "execution time", of([](const Call& c) { return c.execution_ns; }), cut(true));
+  if (dice.chance(0.4))
+    add("response", "response time", of([](const Call& c) { return c.return_ns - c.entry_ns; }),
+        cut(false));
+  if (dice.chance(0.4))
+    add("latency", "interrupt latency", of([](const Call& c) { return c.latency_ns; }), none);
   // Said at the window's begin: before the wait above.
   const std::string line =
       "t:budget('" + function + "') { " + keys.substr(2) + window.argument() + " }";
@@ -188,8 +202,10 @@ void add_budget(Scenario& s, Dice& dice, const std::string& id) {
   s.judgements.push_back([=](const End& end, std::vector<Told>& told) {
     if (window.from > end.last_act_ms) return;
     for (const Part& part : parts) {
-      report_worst(part.limit, part.name, part.values(from, window.end_ns(end), end.known_ms * kMs),
-                   window, end, told);
+      const std::int64_t b = window.end_ns(end), known = end.known_ms * kMs;
+      const bool came = !entries(from, b, known).empty();
+      report_worst(part.limit, part.name, part.values(from, b, known), window, end, told,
+                   part.cut(from, b, known), came);
     }
   });
 }
@@ -302,7 +318,7 @@ void add_bus(Scenario& s, Dice& dice, const std::string& id) {
                        known = end.known_ms * kMs;
     if (tolerance)
       report_worst(*tolerance, name + " period deviation", periods(from, to, known), window, end,
-                   told);
+                   told, {}, !chosen(from, to, known).empty());
     if (spi) return;
     const auto mine = chosen(from, to, known);
     const auto refused =

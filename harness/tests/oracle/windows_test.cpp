@@ -113,6 +113,25 @@ TEST(Windows, AGapAtEitherEndCountsWhereItIsLongerThanAPeriod) {
   EXPECT_EQ(none.note, "p50 7000 us, p99 7000 us, 2 values");
 }
 
+// A gap of all the window that is within the tolerance was a pass for what never came.
+TEST(Windows, WhatNeverCameIsNoPassHoweverWideItsTolerance) {
+  for (const char* window :
+       {"t:budget 'fw::task' { period = '1 ms', jitter = '20 ms', during = '20 ms' }",
+        "t:budget 'fw::task' { period = '1 ms', jitter = '19 ms', during = '20 ms' }",
+        "t:bus { device = 'imu', period = '1 s', tolerance = '2 s', during = '20 ms' }"}) {
+    const results::Expectation e = only(with_two_signals(std::string(window) + " t:wait '30 ms'"));
+    EXPECT_EQ(e.verdict, results::Verdict::fail) << window;
+    EXPECT_EQ(e.note, "nothing to measure") << window;
+  }
+  Scenario once = with_two_signals(
+      "t:budget 'fw::task' { period = '1 ms', jitter = '20 ms', during = '20 ms' } t:wait '30 ms'");
+  add_call(once, 5 * kMs, 6 * kMs);
+  EXPECT_EQ(only(once).verdict, results::Verdict::pass);
+  EXPECT_EQ(results::exit_code(report_of(with_two_signals(
+                "t:budget 'fw::task' { period = '0 s', jitter = '1 s' } t:wait '9 ms'"))),
+            2);
+}
+
 // 60'000'000 * 1e-9 is not 60 * 1e-3: the difference is no deviation.
 TEST(Windows, RoundingIsNoDeviation) {
   Scenario s = with_two_signals(
@@ -167,6 +186,44 @@ TEST(Windows, EachBudgetOfAFunctionHasItsOwnFigure) {
   add_call(s, 15 * kMs, 16 * kMs, 2000, -1);
   EXPECT_EQ(report_of(s).expectations[2].note, "not known of each of 3 values");
   EXPECT_EQ(report_of(s).expectations[2].verdict, results::Verdict::fail);
+}
+
+// It comes twice, and hangs in the third call.
+TEST(Windows, AFunctionThatHangsMeetsNoLimit) {
+  const auto hangs = [](const std::string& budget) {
+    Scenario s = with_two_signals("t:budget 'fw::task' { " + budget + " } t:wait '30 ms'");
+    for (std::int64_t t : {5, 6}) add_call(s, t * kMs, t * kMs + 100 * kUs, 90 * kUs);
+    s.messages.push_back(
+        {30 * kMs, [](io::Batch& batch) {
+           batch.add(io::Kind::function_call, 1, 30 * kMs, io::FunctionCall{7 * kMs, -1, -1});
+         }});
+    return only(s);
+  };
+  const results::Expectation response = hangs("response = '200 us', during = '20 ms'");
+  EXPECT_EQ(response.verdict, results::Verdict::fail);
+  EXPECT_TRUE(near(response.measured, 13'000.0, round_off(8, 1e4)));
+  for (const char* budget :
+       {"execution = '100 us', during = '20 ms'", "share = '5 %', during = '20 ms'"}) {
+    EXPECT_EQ(hangs(budget).verdict, results::Verdict::inconclusive) << budget;
+    EXPECT_NE(hangs(budget).note.find("returned"), std::string::npos) << hangs(budget).note;
+  }
+  EXPECT_EQ(hangs("execution = '100 us', during = '7 ms'").verdict,
+            results::Verdict::pass);  // it had just begun
+}
+
+// It returns behind the window's end, and is known then.
+TEST(Windows, ACallThatAWindowCutsCountsByWhatIsKnownOfIt) {
+  const auto verdict = [](const std::string& budget) {
+    Scenario s =
+        with_two_signals("t:budget 'fw::task' { " + budget + ", during = '20 ms' } t:wait '30 ms'");
+    add_call(s, 5 * kMs, 5 * kMs + 100 * kUs, 90 * kUs);
+    add_call(s, 19 * kMs, 23 * kMs, 500 * kUs);
+    return only(s).verdict;
+  };
+  EXPECT_EQ(verdict("response = '999 us'"), results::Verdict::fail);
+  EXPECT_EQ(verdict("response = '1001 us'"), results::Verdict::pass);
+  EXPECT_EQ(verdict("execution = '499 us'"), results::Verdict::fail);
+  EXPECT_EQ(verdict("execution = '501 us'"), results::Verdict::pass);
 }
 
 TEST(Windows, TheFirstFunctionOfTheListIsWatchedToo) {
@@ -233,6 +290,15 @@ TEST(Windows, ALatencyIsToTheDeviceThatIsNamedOrToEveryMotor) {
   EXPECT_TRUE(near(only(with_motors("m1")).measured, 4000.0, round_off(8, 9000)));
   EXPECT_TRUE(near(only(with_motors("part")).measured, 8000.0, round_off(8, 9000)));
   EXPECT_EQ(only(with_motors("part")).verdict, results::Verdict::fail);
+}
+
+TEST(Windows, AMotorThatNobodyWroteToHasNoLatency) {
+  Scenario s = with_motors("esc");
+  s.other_devices.push_back({"m4", "i2c3", 0x43, 4});
+  const results::Expectation e = only(s);
+  EXPECT_EQ(e.verdict, results::Verdict::fail);
+  EXPECT_TRUE(std::isnan(e.measured));
+  EXPECT_EQ(e.note, "p50 4100 us, p99 4198 us, 2 values; nothing traced to 1 of 3 actuators");
 }
 
 TEST(Windows, AWriteBelongsToALatencyFromItsStartToItsStop) {
