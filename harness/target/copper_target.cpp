@@ -1,6 +1,7 @@
 #include "harness/target/copper_target.hpp"
 
 #include <algorithm>
+#include <string_view>
 
 #include "io_bridges/copper/decoding.hpp"
 #include "io_bridges/sigrok/capture.hpp"
@@ -30,6 +31,7 @@ Result<Done> CopperTarget::start() {
   for (const std::string& bus : decoding.buses()) buses_.insert(bus);
   pins_ = decoding.pins();
   ready_ = decoding.ready();
+  end_ns_ = decoding.end_ns();
   if (buses_.empty() && pins_.empty()) {
     return Error{ErrorKind::bad_input, options_.file, "has no wire of this board's buses or pins",
                  "channels are named as i2c3_scl, spi1_cs_DEVICE, pin_NAME"};
@@ -76,10 +78,26 @@ Result<TargetState> CopperTarget::arrive(io::Batch& happened) {
   return state;
 }
 
+// Within a step it ends with the run.
+void CopperTarget::tell_end(io::Batch& happened) {
+  constexpr std::int64_t kStep_ns = 1'000'000;
+  constexpr std::string_view kWhy = "the capture ends here";
+  if (end_ns_ + kStep_ns >= until_ns_) return;
+  for (const std::string& bus : buses_) {
+    const bool spi = bus.starts_with("spi");
+    if (!spi && !bus.starts_with("i2c")) continue;
+    const io::BusUnread rest{end_ns_, static_cast<std::uint8_t>(spi ? 1 : 0), {}};
+    happened.add(io::Kind::bus_unread, static_cast<std::uint16_t>(std::stoi(bus.substr(3))),
+                 until_ns_, rest, kWhy.data(), static_cast<std::uint32_t>(kWhy.size()));
+  }
+  end_ns_ = until_ns_;  // once
+}
+
 void CopperTarget::stop(io::Batch& happened) {
   io::Batch own;
   target_->stop(own);
   replace(own, happened);
+  tell_end(happened);
 }
 
 std::vector<std::pair<std::string, std::string>> CopperTarget::versions() const {

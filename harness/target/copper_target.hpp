@@ -5,6 +5,7 @@
 //             the pins that it has; all else is the target's own, so that the run is the same run
 //   Times     of the capture are virtual time (a file that `whirl export --vcd` drew from the same plan and seed)
 //   Reads     the capture whole at start()
+//   Ends      before the run does: its I2C and SPI buses are unread from there on, and no window over that time is judged
 #pragma once
 #include <memory>
 #include <set>
@@ -41,6 +42,7 @@ class CopperTarget final : public Target {
  private:
   bool is_replaced(const io::Header& header) const;
   void replace(const io::Batch& own, io::Batch& happened);
+  void tell_end(io::Batch& happened);
 
   CopperOptions options_;
   std::unique_ptr<Target> target_;
@@ -49,7 +51,7 @@ class CopperTarget final : public Target {
   bool more_ = false;
   std::set<std::string> buses_;  // that the capture sees whole
   std::set<std::uint16_t> pins_, ready_;
-  std::int64_t until_ns_ = 0;
+  std::int64_t until_ns_ = 0, end_ns_ = 0;  // the run's and the capture's
 };
 
 }  // namespace whirl
