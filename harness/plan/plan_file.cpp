@@ -77,16 +77,27 @@ std::int64_t read_latency_ns(const lua::Table& t) {
   return latency_ns;
 }
 
+// "i2c2"; not "i2c02", which would be a second name of it.
+bool is_bus_name(const std::string& bus) {
+  const auto number = bus_number(bus);
+  const auto letters = bus.substr(0, bus.find_last_not_of("0123456789") + 1);
+  return number && *number > 0 && bus == letters + std::to_string(*number);
+}
+
 void read_board_wire(const lua::Table& t, Plan& plan) {
   const auto from = place_on_node(t.text("from"), plan), to = place_on_node(t.text("to"), plan);
   if (!from) t.refuse("from", "'" + t.text("from") + "' is on no node", "write NODE.DEVICE");
   if (!to) t.refuse("to", "'" + t.text("to") + "' is on no node", "write NODE.i2c2");
   if (!from || !to) return;
   if (from->first == to->first) t.refuse("to", "a wire joins two boards");
+  if (!is_bus_name(to->second))
+    t.refuse("to", "'" + to->second + "' names no bus", "write NODE.i2c2");
   PlanBoardWire wire{from->first, from->second, to->first, to->second};
   if (to->second.starts_with("spi")) {
     wire.select = t.text("select");
     wire.ready = t.text_or("ready", "");
+    if (!wire.ready.empty() && wire.ready == wire.select)
+      t.refuse("ready", "is the pin of select: a pin has one wire");
     wire.latency_ns = read_latency_ns(t);
   } else if (bus_kind(to->second) == BusKind::dac) {
     wire.latency_ns = read_latency_ns(t);

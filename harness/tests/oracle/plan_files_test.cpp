@@ -147,6 +147,8 @@ TEST(PlanFile, ABoardInTheDevicesPlaceOnSpiHasItsPinsAndTheLatencyOfItsLine) {
   EXPECT_EQ(taken.latency_ns, 20'000);
   EXPECT_EQ(wire(", select = 'PA15'").plans.at(0).board_wires.at(0).latency_ns, 100'000);
   EXPECT_NE(wire("").error.find("wires[1].select"), std::string::npos) << wire("").error;
+  EXPECT_NE(wire(", select = 'PA15', ready = 'PA15'").error.find("ready: is the pin of select"),
+            std::string::npos);
   for (const char* latency : {"1 us", "2 ms"}) {
     const std::string error =
         wire(std::string(", select = 'PA15', latency = '") + latency + "'").error;
@@ -191,6 +193,12 @@ TEST(PlanFile, RefusesNodesAndWiresThatLeadNowhere) {
   };
   EXPECT_NE(refused("a.usart1", "a.usart2").find("wires[1].to: a wire joins two boards"),
             std::string::npos);
+  for (const char* end : {"b.dac", "b.dac0", "b.dac01", "b.", "b.imu"}) {  // dac01: dac1 twice
+    EXPECT_NE(
+        refused("a.battery", end).find("wires[1].to: '" + std::string(end + 2) + "' names no bus"),
+        std::string::npos)
+        << end << refused("a.battery", end);
+  }
   for (const char* end : {"c.usart1", "a.can1", "a", "a.usart"}) {
     EXPECT_NE(refused("b.usart1", end).find("is no UART of a node"), std::string::npos) << end;
   }
