@@ -228,6 +228,19 @@ Result<std::vector<PastExpectation>> recall(const std::string& file, const std::
     rows.push_back({query.text(0), query.text(1), query.text(2), query.text(3), query.text(4),
                     query.text(5), query.real(6), query.real(7), query.text(8)});
   }
+  if (rows.empty() && !expectation.empty()) {
+    return Error{ErrorKind::bad_input, file,
+                 "holds no expectation with '" + expectation + "' in its name",
+                 "whirl history PLAN shows what it holds"};
+  }
+  if (rows.empty() && !plan.empty()) {  // a run that was interrupted at once is one without any
+    Statement run(history, "SELECT 1 FROM run WHERE plan = ?1");
+    run.bind(plan);
+    if (!run.next() && history.good()) {
+      return Error{ErrorKind::bad_input, file, "holds no run of '" + plan + "'",
+                   "whirl history without a name shows all plans"};
+    }
+  }
   if (!history.good()) return history.error();
   return rows;
 }

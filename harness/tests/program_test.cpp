@@ -390,6 +390,9 @@ TEST(Program, HistoryRemembersTheMargins) {
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("p: x\n"), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.out.find("margin 0.5"), std::string::npos) << outcome.out;
+  const Outcome none = whirl(root, {"history", "q"});
+  EXPECT_EQ(none.code, 2);
+  EXPECT_NE(none.err.find("holds no run of 'q'"), std::string::npos) << none.err;
 }
 
 }  // namespace
