@@ -107,8 +107,8 @@ std::vector<Call> within(const std::vector<Call>& calls, std::int64_t from, std:
 
 std::vector<double> seconds_of(const std::vector<Call>& calls, std::int64_t (*what)(const Call&)) {
   std::vector<double> all;
-  for (const Call& c : calls)
-    all.push_back(what(c) < 0 ? kNaN : static_cast<double>(what(c)) * 1e-9);
+  all.reserve(calls.size());
+  for (const Call& c : calls) all.push_back(what(c) < 0 ? kNaN : double(what(c)) * 1e-9);
   return all;
 }
 
