@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "harness/plan/timing_window.hpp"
 #include "harness/plan/watched_calls.hpp"
 
 namespace whirl::plan {
@@ -27,7 +28,7 @@ double mean_period_s(std::span<const std::int64_t> times_ns) {
 
 BudgetShares read_budget_shares(const lua::Table& given, const BoardDescription& board) {
   BudgetShares shares;
-  if (given.has("share")) shares.share = limit_of(given, "share");
+  shares.share = optional_limit(given, "share", Dimension::ratio);
   if (!given.has("rate")) return shares;
   shares.rate = limit_of(given, "rate");
   shares.every = given.integer_or("every", 1, 1, 1'000'000);

@@ -29,7 +29,8 @@ std::string spread(const metrics::Distribution& d, const std::string& unit) {
 
 std::optional<Limit> optional_limit(const lua::Table& given, const char* key, Dimension dimension) {
   if (!given.has(key)) return std::nullopt;
-  const double value = given.quantity(key, dimension, lua::at_least(0.0));
+  const double value = given.quantity(
+      key, dimension, dimension == Dimension::ratio ? kShare_that_can_fail : lua::at_least(0.0));
   return Limit{value, unit_symbol(given.text(key))};
 }
 

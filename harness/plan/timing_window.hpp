@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "harness/lua/table.hpp"
 #include "harness/metrics/timing.hpp"
 #include "harness/plan/script.hpp"
 #include "harness/plan/values.hpp"
@@ -16,6 +17,8 @@ std::string in_text(double x_s, const std::string& unit);
 // "p50 3 us, p99 8 us, 1000 values"
 std::string spread(const metrics::Distribution& d, const std::string& unit);
 
+// Of a time's share: no more than all of it is ever taken.
+inline constexpr lua::Range kShare_that_can_fail{.low = 0.0, .high = 1.0, .high_open = true};
 std::optional<Limit> optional_limit(const lua::Table& given, const char* key, Dimension dimension);
 std::optional<Limit> optional_period(const lua::Table& given);
 std::int64_t window_end(Script& self, const lua::Table& given);

@@ -62,6 +62,8 @@ TEST(PlanCalls, RefuseWhatTheyCannotUse) {
       {"t:budget 'stack' { depth = '1 ms' }", "depth"},
       {"t:budget 'stack' { depth = '1 KiB', during = '1 s' }", "of the whole run"},
       {"t:budget 'stack' { busy = '1 %' }", "busy is of the core, not of 'stack'"},
+      {"t:budget 'cpu' { busy = '100 %' }", "busy: '100 %' must be at least 0 below 1"},
+      {"t:budget 'fw::task' { share = '1000 %' }", "share: '1000 %' must be at least 0 below 1"},
       {"t:bus { device = 'nothing' }", "unknown device 'nothing' on played"},
       {"t:bus { device = 'esc1', period = '1 ms' }", "period and tolerance go together"},
       {"t:bus { device = 'esc1', direction = 'up' }", "direction"},
