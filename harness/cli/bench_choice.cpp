@@ -7,6 +7,7 @@
 #include "harness/cli/find_board.hpp"
 #include "harness/cli/find_file.hpp"
 #include "harness/cli/find_plans.hpp"
+#include "harness/target/bench/serial_rack_link.hpp"
 #include "io_bridges/board_description/line_part.hpp"
 
 namespace whirl::cli {
@@ -72,9 +73,7 @@ bool pod_plays(const BoardDevice& device, const bench::BenchDescription& bench) 
 }
 
 bool is_radio_at(const BoardDescription& board, const bench::SerialLink& link) {
-  return std::any_of(board.devices.begin(), board.devices.end(), [&](const BoardDevice& device) {
-    return is_radio(device) && is_at_uart(device, link.uart);
-  });
+  return bench::part_at(board, link, is_radio) != nullptr;
 }
 
 // Of a flight controller's board: what hangs on a bus that the bench joins is played by it, some parts by a pod; memories

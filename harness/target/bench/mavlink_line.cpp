@@ -1,15 +1,15 @@
 #include "harness/target/bench/mavlink_line.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdio>
+
+#include "harness/target/bench/turn_of_bytes.hpp"
 
 namespace whirl::bench {
 namespace {
 
-constexpr double kBits = 10.0;   // 8N1
-constexpr int kMost_pieces = 8;  // of a turn: who floods a line must not hold the loop
+constexpr double kBits = 10.0;  // 8N1
 
 std::string number(std::uint64_t n, const std::string& what) {
   return std::to_string(n) + " " + what + (n == 1 ? "" : "s");
@@ -84,14 +84,11 @@ void MavlinkLine::publish_delivered(std::int64_t now_host_ns, Arrivals& arrivals
 }
 
 Result<Done> MavlinkLine::read_bytes() {
-  std::array<std::uint8_t, 1024> piece;
-  for (int i = 0; i < kMost_pieces; ++i) {
-    const auto got = tty_->read(piece);
-    if (!got) return got.error();
-    if (got.value() == 0) break;
-    counts_.bytes += got.value();
-    for (const std::uint8_t byte : std::span(piece).first(got.value())) parser_.add(byte);
-  }
+  const auto read = read_turn(*tty_, [this](std::span<const std::uint8_t> piece) {
+    counts_.bytes += piece.size();
+    for (const std::uint8_t byte : piece) parser_.add(byte);
+  });
+  if (!read) return read;
   if (!enough_ns_ && counts_.bytes > kLongest_frame_B) enough_ns_ = now_ns_;
   return Done{};
 }

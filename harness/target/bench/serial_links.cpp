@@ -3,14 +3,9 @@
 #include <array>
 #include <cstring>
 
+#include "harness/target/bench/turn_of_bytes.hpp"
+
 namespace whirl::bench {
-namespace {
-
-using Piece = std::array<std::uint8_t, 1024>;
-constexpr int kMost_pieces = 8;  // of a turn: who floods a line must not hold the loop
-
-}  // namespace
-
 Result<Done> BoardSerial::open() {
   auto tty = io::Tty::open(link_.path, link_.baud);
   if (!tty) return tty.error();
@@ -36,7 +31,7 @@ Result<Done> BoardSerial::serve(std::int64_t now_host_ns, Arrivals& arrivals) {
     waiting_.pop_front();
   }
   if (const auto flushed = tty_->flush(); !flushed) return flushed;
-  Piece piece;
+  std::array<std::uint8_t, 1024> piece;
   const auto got = tty_->read(piece);
   if (!got) return got.error();
   if (got.value() == 0) return Done{};
@@ -57,15 +52,9 @@ Result<Done> InstrumentLine::open() {
 }
 
 Result<Done> InstrumentLine::serve(std::int64_t now_host_ns, Arrivals& arrivals) {
-  Piece piece;
-  for (int i = 0; i < kMost_pieces; ++i) {
-    const auto got = tty_->read(piece);
-    if (!got) return got.error();
-    if (got.value() == 0) break;
-    cutter_.add(std::span(piece).first(got.value()),
-                [&](std::string_view line) { read_line(line, now_host_ns, arrivals); });
-  }
-  return Done{};
+  return read_turn(*tty_, [&](std::span<const std::uint8_t> piece) {
+    cutter_.add(piece, [&](std::string_view line) { read_line(line, now_host_ns, arrivals); });
+  });
 }
 
 void InstrumentLine::read_line(std::string_view line, std::int64_t now_host_ns,

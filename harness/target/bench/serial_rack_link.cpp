@@ -1,9 +1,9 @@
 #include "harness/target/bench/serial_rack_link.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
+#include "harness/target/bench/turn_of_bytes.hpp"
 #include "io_bridges/board_description/line_part.hpp"
 
 namespace whirl::bench {
@@ -42,14 +42,7 @@ Result<Done> SerialRackLink::open_line(io::TtyFrame frame, double baud) {
 
 Result<Done> SerialRackLink::take_in(std::int64_t now_host_ns) {
   advance(now_host_ns);
-  std::array<std::uint8_t, 1024> piece;
-  for (int i = 0; i < kMost_pieces; ++i) {
-    const auto got = tty_->read(piece);
-    if (!got) return got.error();
-    if (got.value() == 0) break;
-    rack_.give(std::span(piece).first(got.value()));
-  }
-  return Done{};
+  return read_turn(*tty_, [this](std::span<const std::uint8_t> piece) { rack_.give(piece); });
 }
 
 void SerialRackLink::make_safe() {

@@ -56,8 +56,6 @@ class SerialRackLink : public RackLink {
   std::vector<std::uint8_t> waiting_;
 
  private:
-  static constexpr int kMost_pieces = 8;  // of a turn: who floods a line must not hold the loop
-
   LinePlace place_;
   bool safe_ = false;
 };
