@@ -99,7 +99,7 @@ int can(lua_State* L) {
   }
   w.period = optional_period(given);
   w.tolerance = optional_limit(given, "tolerance", Dimension::time);
-  w.load = optional_limit(given, "load", Dimension::ratio);
+  w.load = optional_limit(given, "load", Dimension::ratio, kShare);
   w.errors = given.integer_or("errors", 0, 0);
   const std::int64_t end = window_end(self, given);
   check_finish(L, given);

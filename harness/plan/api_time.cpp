@@ -7,10 +7,6 @@
 namespace whirl::plan {
 namespace {
 
-double seconds_of(std::int64_t ns) {
-  return static_cast<double>(ns) * 1e-9;
-}
-
 int wait(lua_State* L) {
   Script& self = Script::of(L);
   self.wait_until(self.stage().now_ns + check_duration_ns(L, 2));
@@ -50,13 +46,12 @@ int within(lua_State* L) {
     Script& script = Script::of(l);
     const std::int64_t now = script.stage().now_ns;
     const bool met = script.condition_met();
-    const double took_s =
-        met ? seconds_of(now - since_ns) : std::numeric_limits<double>::quiet_NaN();
+    const double took_s = met ? seconds(now - since_ns) : std::numeric_limits<double>::quiet_NaN();
     const char* place = lua_tostring(l, 5);
     const std::string name =
         lua_isnil(l, 4) ? std::string("within, ") + place : std::string(lua_tostring(l, 4));
     script.judge({took_s, Dimension::time, name}, How::at_most, std::nullopt,
-                 check_limit(l, 2, Dimension::time), place, seconds_of(now),
+                 check_limit(l, 2, Dimension::time), place, seconds(now),
                  met ? "" : "never came true");
     lua_pushboolean(l, static_cast<int>(met));
     return 1;
@@ -81,7 +76,7 @@ int log(lua_State* L) {
     line += " ... (" + std::to_string(size - line.size()) + " bytes more)";
   }
   if (lines.size() == kMost_lines) line = "the log is full: what follows is left out";
-  lines.push_back({seconds_of(stage.now_ns), "plan", std::move(line)});
+  lines.push_back({seconds(stage.now_ns), "plan", std::move(line)});
   return 0;
 }
 
@@ -105,7 +100,7 @@ int value(lua_State* L) {
 }
 
 int now(lua_State* L) {
-  push_measurement(L, {seconds_of(Script::of(L).stage().now_ns), Dimension::time, "time"});
+  push_measurement(L, {seconds(Script::of(L).stage().now_ns), Dimension::time, "time"});
   return 1;
 }
 

@@ -102,7 +102,7 @@ int read_budget(lua_State* L) {
   b.execution = optional_limit(given, "execution", Dimension::time);
   b.response = optional_limit(given, "response", Dimension::time);
   b.latency = optional_limit(given, "latency", Dimension::time);
-  b.busy = optional_limit(given, "busy", Dimension::ratio);
+  b.busy = optional_limit(given, "busy", Dimension::ratio, kShare);
   b.margin = given.quantity_or("margin", Dimension::ratio, 0.0, lua::between(0.0, 0.9));
   const NodePlace at = node_at(L, self, b.function);
   b.shares = read_budget_shares(given, self.stage().nodes[at.node].board);

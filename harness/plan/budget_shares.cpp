@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <numeric>
 #include <span>
 #include <vector>
 
@@ -12,10 +13,6 @@ namespace whirl::plan {
 namespace {
 
 constexpr double kNs = 1e-9;
-
-Limit limit_of(const lua::Table& given, const char* key) {
-  return {given.quantity(key, Dimension::ratio, lua::above(0.0)), unit_symbol(given.text(key))};
-}
 
 // NaN of fewer than two.
 double mean_period_s(std::span<const std::int64_t> times_ns) {
@@ -28,9 +25,9 @@ double mean_period_s(std::span<const std::int64_t> times_ns) {
 
 BudgetShares read_budget_shares(const lua::Table& given, const BoardDescription& board) {
   BudgetShares shares;
-  shares.share = optional_limit(given, "share", Dimension::ratio);
+  shares.share = optional_limit(given, "share", Dimension::ratio, kShare);
   if (!given.has("rate")) return shares;
-  shares.rate = limit_of(given, "rate");
+  shares.rate = optional_limit(given, "rate", Dimension::ratio, lua::above(0.0));
   shares.every = given.integer_or("every", 1, 1, 1'000'000);
   shares.sensor = board.number(given.text("of"));
   if (shares.sensor < 0) given.refuse("of", "no device of " + board.name);
@@ -40,31 +37,25 @@ BudgetShares read_budget_shares(const lua::Table& given, const BoardDescription&
 void judge_budget_shares(Script& script, const BudgetShares& shares, const BudgetWindow& w) {
   const results::EventLog& log = script.stage().logs[w.node];
   const double accuracy = script.stage().nodes[w.node].board.timing_accuracy();
-  std::vector<std::int64_t> entries_ns, ready_ns;
-  double execution_s = 0.0;
-  const auto calls = log.calls.find(static_cast<std::uint16_t>(w.number));
-  if (calls != log.calls.end()) {
-    for (const auto& call : calls->second) {
-      if (call.entry_ns < w.from_ns || call.return_ns > w.to_ns) continue;
-      entries_ns.push_back(call.entry_ns);
-      execution_s += kNs * static_cast<double>(call.execution_ns);
-    }
-  }
+  const WatchedCalls calls =
+      calls_between(log, static_cast<std::uint16_t>(w.number), w.from_ns, w.to_ns);
   const double window_s = kNs * static_cast<double>(w.to_ns - w.from_ns);
   char note[96] = "";
   if (shares.share) {
-    std::snprintf(note, sizeof note, "%zu calls", entries_ns.size());
-    for (const auto& cut :
-         calls_between(log, static_cast<std::uint16_t>(w.number), w.from_ns, w.to_ns).cut) {
+    std::snprintf(note, sizeof note, "%zu calls", calls.whole_ns.size());
+    for (const WatchedCalls::Cut& cut : calls.cut) {
       if (cut.lasted_s > shares.share->value_SI * window_s)
         script.not_seen_whole("a call had not returned");
     }
-    const double share = entries_ns.empty() ? std::nan("") : execution_s / window_s;
+    const double execution_s =
+        std::accumulate(calls.execution_s.begin(), calls.execution_s.end(), 0.0);
+    const double share = calls.whole_ns.empty() ? std::nan("") : execution_s / window_s;
     script.judge_in_window({share, Dimension::ratio, w.function + " share of time"},
                            Script::Figure::of_all, *shares.share, w.place,
                            kNs * static_cast<double>(w.to_ns), note, accuracy);
   }
   if (!shares.rate) return;
+  std::vector<std::int64_t> ready_ns;
   const auto ready = log.data_ready_ns.find(static_cast<std::uint16_t>(shares.sensor));
   if (ready != log.data_ready_ns.end()) {
     for (const std::int64_t at_ns : ready->second) {
@@ -72,7 +63,7 @@ void judge_budget_shares(Script& script, const BudgetShares& shares, const Budge
     }
   }
   const double own_s = static_cast<double>(shares.every) * mean_period_s(ready_ns);
-  const double mean_s = mean_period_s(entries_ns);
+  const double mean_s = mean_period_s(calls.whole_ns);
   std::snprintf(note, sizeof note, "every %.6g ms, the sensor's own %.6g ms", 1e3 * mean_s,
                 1e3 * own_s);
   script.judge_in_window(

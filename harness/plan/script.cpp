@@ -99,10 +99,6 @@ const char* words(How how) {
   return "?";
 }
 
-double seconds(std::int64_t ns) {
-  return static_cast<double>(ns) * 1e-9;
-}
-
 // How a time that was to be watched was not; empty: it was.
 std::string unfilled(std::int64_t from_ns, std::int64_t to_ns, std::int64_t now_ns,
                      bool completed) {

@@ -9,10 +9,6 @@
 
 namespace whirl::plan {
 
-double seconds(std::int64_t ns) {
-  return static_cast<double>(ns) * 1e-9;
-}
-
 std::string in_text(double x_s, const std::string& unit) {
   if (std::abs(x_s) < 1e-12) x_s = 0.0;  // times are whole nanoseconds
   char text[48];
@@ -27,17 +23,14 @@ std::string spread(const metrics::Distribution& d, const std::string& unit) {
          std::to_string(d.count) + " values";
 }
 
-std::optional<Limit> optional_limit(const lua::Table& given, const char* key, Dimension dimension) {
+std::optional<Limit> optional_limit(const lua::Table& given, const char* key, Dimension dimension,
+                                    const lua::Range& range) {
   if (!given.has(key)) return std::nullopt;
-  const double value = given.quantity(
-      key, dimension, dimension == Dimension::ratio ? kShare_that_can_fail : lua::at_least(0.0));
-  return Limit{value, unit_symbol(given.text(key))};
+  return Limit{given.quantity(key, dimension, range), unit_symbol(given.text(key))};
 }
 
 std::optional<Limit> optional_period(const lua::Table& given) {
-  if (!given.has("period")) return std::nullopt;
-  return Limit{given.quantity("period", Dimension::time, lua::above(0.0)),
-               unit_symbol(given.text("period"))};
+  return optional_limit(given, "period", Dimension::time, lua::above(0.0));
 }
 
 std::int64_t window_end(Script& self, const lua::Table& given) {

@@ -12,14 +12,14 @@
 
 namespace whirl::plan {
 
-double seconds(std::int64_t ns);
 std::string in_text(double x_s, const std::string& unit);
 // "p50 3 us, p99 8 us, 1000 values"
 std::string spread(const metrics::Distribution& d, const std::string& unit);
 
-// Of a time's share: no more than all of it is ever taken.
-inline constexpr lua::Range kShare_that_can_fail{.low = 0.0, .high = 1.0, .high_open = true};
-std::optional<Limit> optional_limit(const lua::Table& given, const char* key, Dimension dimension);
+// A share of a time as a limit: no more than all of it is ever taken.
+inline constexpr lua::Range kShare{.low = 0.0, .high = 1.0, .high_open = true};
+std::optional<Limit> optional_limit(const lua::Table& given, const char* key, Dimension dimension,
+                                    const lua::Range& range = lua::at_least(0.0));
 std::optional<Limit> optional_period(const lua::Table& given);
 std::int64_t window_end(Script& self, const lua::Table& given);
 

@@ -1,5 +1,6 @@
 // Between Lua values and ours: measurements, limits, durations, handles. Internal to harness/plan.
 #pragma once
+#include <cstdint>
 #include <lua.hpp>
 #include <string>
 
@@ -7,6 +8,10 @@
 #include "harness/plan/script.hpp"
 
 namespace whirl::plan {
+
+inline double seconds(std::int64_t ns) {
+  return static_cast<double>(ns) * 1e-9;
+}
 
 // A measurement is a table { value = SI, name = ..., number = ... }, the whole of it is in
 // Script::measurements; a bare number is one without a dimension.

@@ -2,15 +2,9 @@
 
 #include <cmath>
 
+#include "harness/plan/values.hpp"
+
 namespace whirl::plan {
-namespace {
-
-double seconds(std::int64_t ns) {
-  return static_cast<double>(ns) * 1e-9;
-}
-
-}  // namespace
-
 WatchedCalls calls_between(const results::EventLog& events, std::uint16_t function,
                            std::int64_t from_ns, std::int64_t to_ns) {
   WatchedCalls all;
@@ -26,6 +20,7 @@ WatchedCalls calls_between(const results::EventLog& events, std::uint16_t functi
         all.cut.push_back({seconds(to_ns - call.entry_ns), seconds(call.execution_ns)});
         continue;
       }
+      all.whole_ns.push_back(call.entry_ns);
       all.execution_s.push_back(seconds(call.execution_ns));
       all.response_s.push_back(seconds(call.return_ns - call.entry_ns));
       all.latency_s.push_back(call.latency_ns < 0 ? std::nan("") : seconds(call.latency_ns));

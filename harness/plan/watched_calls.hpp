@@ -14,8 +14,9 @@ struct WatchedCalls {
     double execution_s = 0.0;  // in all; NaN of one that never returned
   };
   std::vector<std::int64_t> entries_ns;  // of all, in order but for those that never returned
-  std::vector<double> execution_s, response_s,
-      latency_s;  // not of the cut ones; NaN: called from no interrupt
+  // Of those that returned within the window. Latency: NaN where no interrupt called.
+  std::vector<std::int64_t> whole_ns;  // their entries
+  std::vector<double> execution_s, response_s, latency_s;
   std::vector<Cut> cut;
 };
 
