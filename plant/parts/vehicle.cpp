@@ -1,5 +1,6 @@
 #include "plant/parts/vehicle.hpp"
 
+#include "base/angles.hpp"
 #include "plant/parts/motor_numbers.hpp"
 
 namespace whirl::plant {
@@ -7,7 +8,7 @@ namespace {
 
 using Law = Spread::Law;
 
-constexpr double kG_mps2 = 9.80665, kDeg_rad = 3.14159265358979323846 / 180.0;
+constexpr double kG_mps2 = 9.80665;
 
 constexpr const char* kVehicleGroups[] = {"motors", "rotors", "body", "imu", "clock"};
 
@@ -47,19 +48,19 @@ constexpr PartNumber kVehicle[] = {
      "misalignment.x",
      "rad",
      false,
-     {Law::normal, 0.0, 0.3 * kDeg_rad, 1.0 * kDeg_rad},
+     {Law::normal, 0.0, 0.3 * kDeg, 1.0 * kDeg},
      "a board on foam pads"},
     {"imu",
      "misalignment.y",
      "rad",
      false,
-     {Law::normal, 0.0, 0.3 * kDeg_rad, 1.0 * kDeg_rad},
+     {Law::normal, 0.0, 0.3 * kDeg, 1.0 * kDeg},
      "a board on foam pads"},
     {"imu",
      "misalignment.z",
      "rad",
      false,
-     {Law::normal, 0.0, 0.3 * kDeg_rad, 1.0 * kDeg_rad},
+     {Law::normal, 0.0, 0.3 * kDeg, 1.0 * kDeg},
      "a board on foam pads"},
     {"imu",
      "accelerometer.turn_on_bias",
@@ -71,7 +72,7 @@ constexpr PartNumber kVehicle[] = {
      "gyroscope.turn_on_bias",
      "rad/s",
      false,
-     {Law::level, 20.0 * kDeg_rad / 3.0, 0.0, 20.0 * kDeg_rad / 3.0},
+     {Law::level, 20.0 * kDeg / 3.0, 0.0, 20.0 * kDeg / 3.0},
      "[MPU6000] 6.1: 20 deg/s"},
     {"imu",
      "accelerometer.scale_error",

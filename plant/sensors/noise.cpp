@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/angles.hpp"
+
 namespace whirl::plant {
 namespace {
 
 // Terms of equal variance, a decade apart, add up to B^2 / (2 pi f) with this deviation each.
 double term_deviation(double instability) {
-  return instability * std::sqrt(std::log(10.0) / 3.14159265358979323846);
+  return instability * std::sqrt(std::log(10.0) / kPi);
 }
 
 constexpr double kFlickerGrain_s = 0.01;  // its fastest term takes 1 s
