@@ -20,6 +20,8 @@ class AttitudeFilter {
   void correct_heading(float yaw_rad, float share);
   void set_gyro_bias(const Vector3& bias_B_radps) { bias_B_radps_ = bias_B_radps; }
 
+  void turn(const Quaternion& by_W) { q_WB_ = by_W * q_WB_; }
+
   const Quaternion& q_WB() const { return q_WB_; }
   const Vector3& w_WB_B_radps() const { return w_B_radps_; }  // bias taken off
   const Vector3& gyro_bias_B_radps() const { return bias_B_radps_; }

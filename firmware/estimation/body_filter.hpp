@@ -32,6 +32,8 @@ class BodyFilter {
   // The magnetic field, and the declination of the place: towards east of north.
   void correct_heading(const Vector3& field_B, float declination_rad, float since_last_s);
 
+  void turn(const Quaternion& by_W) { q_WB_ = by_W * q_WB_; }
+
   const Quaternion& q_WB() const { return q_WB_; }
   const Vector3& v_AB_B_mps() const { return v_B_mps_; }
   float scale() const { return scale_; }

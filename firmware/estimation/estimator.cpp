@@ -34,6 +34,7 @@ void Estimator::tick() {
   gps_guard_.tick();
   ++pressure_age_ms_;
   ++field_age_ms_;
+  field_guard_.tick();
 }
 
 void Estimator::on_imu(const ImuSample& sample) {
@@ -68,7 +69,8 @@ bool Estimator::converged() const {
 void Estimator::on_fix(const CaptureFix& fix) {
   // Who flies by GPS comes into a room in another frame: not before it has landed.
   if (situation_.in_flight && gps_frame_.known()) return;
-  if (is_stuck(fix) && situation_.airborne) return;
+  const bool stuck = capture_guard_.stuck(fix.p_WB_W_m, fix.yaw_rad);
+  if (situation_.airborne && (stuck || !plausible(fix))) return;
   const bool first = fix_age_ms_ >= kFixLost_ms && !situation_.in_flight;
   const float since_last_s = seconds(fix_age_ms_);
   if (!fix_fresh()) calibration_.restart();  // a window by gravity is none by capture
@@ -89,13 +91,10 @@ void Estimator::on_fix(const CaptureFix& fix) {
   still_fixes_ = position_.innovation_W_m().norm() < 0.03f ? still_fixes_ + 1 : 0;
 }
 
-// Cameras measure a tenth of a millimetre: a pose that repeats to the last bit is the newest that somebody
-// still has, and not one of now. Some come twice.
-bool Estimator::is_stuck(const CaptureFix& fix) {
-  constexpr unsigned kMostSame = 8;  // 0.2 s
-  const bool same = fix.p_WB_W_m == fix_.p_WB_W_m && fix.yaw_rad == fix_.yaw_rad;
-  same_fixes_ = same ? std::min(same_fixes_ + 1, kMostSame) : 0;
-  return same_fixes_ == kMostSame;
+bool Estimator::plausible(const CaptureFix& fix) const {
+  const float turned_rad = wrap_pi(fix.yaw_rad - yaw_of(explicit_.q_WB()));
+  return CaptureGuard::plausible((fix.p_WB_W_m - position_.p_WB_W_m()).norm(), turned_rad,
+                                 seconds(fix_age_ms_));
 }
 
 // v = 0.5 V + 0.5 dp/dt [Bangura 2017, 6.9, 6.10]. After a gap the difference is too old a velocity.
@@ -117,11 +116,16 @@ void Estimator::on_gps(const GpsSolution& solution) {
     if (!gps_frame_.known()) return;
     position_.start(Vector3::Zero());
   }
+  const float wrong_rad = heading_by_motion_.compare(solution.v_W_mps, solution.age_s);
+  if (situation_.airborne && wrong_rad != 0.0f) turn_heading(wrong_rad);
   const Vector3 p_W_m = gps_frame_.local(solution);
   const auto innovation = position_.gps_innovation(p_W_m, solution.v_W_mps, solution.age_s);
   const float since_last_s = gps_guard_.age_s();
   const bool was_lost = !gps_guard_.fresh();
-  if (!gps_guard_.believe(innovation.p_W_m, innovation.v_W_mps)) {
+  // Where the pressure draws the climb, the receiver is not judged by that.
+  Vector3 v_off_W = innovation.v_W_mps;
+  if (pressure_drawn()) v_off_W.z() = 0.0f;
+  if (!gps_guard_.believe(innovation.p_W_m, v_off_W)) {
     // Nothing has moved it: what it was told before was wrong, or this is.
     if (situation_.resting && since_last_s > kGpsDoubted_s) {
       position_.start({p_W_m.x(), p_W_m.y(), position_.p_WB_W_m().z()});
@@ -136,9 +140,30 @@ void Estimator::on_gps(const GpsSolution& solution) {
   }
   inertial_.correct(solution.v_W_mps, solution.age_s, since_last_s);
   if (!situation_.airborne) return;
+  compare_climb(solution.v_W_mps.z(), since_last_s);
   const float height_error_m = std::clamp(height_.z_m() - height_offset_m_ - p_W_m.z(),
                                           -kMostHeightError_m, kMostHeightError_m);
   height_offset_m_ += kHeightByGps_ps * std::min(since_last_s, 0.25f) * height_error_m;
+}
+
+// A receiver's climb is good to decimetres a second. A barometer that for half a second tells another one, which the
+// accelerometer has not felt, is moved by something else than height, and what it has taught the filter is wrong as well.
+void Estimator::compare_climb(float gps_vz_mps, float since_last_s) {
+  constexpr float kOff_mps = 0.8f;
+  const bool off = pressure_drawn() && std::abs(height_.vz_mps() - gps_vz_mps) > kOff_mps;
+  climb_off_s_ = off ? climb_off_s_ + since_last_s : 0.0f;
+  climb_doubted_ |= climb_off_s_ > kClimbOff_s;
+}
+
+void Estimator::turn_heading(float by_rad) {
+  const Quaternion by_W(std::cos(0.5f * by_rad), 0.0f, 0.0f, std::sin(0.5f * by_rad));
+  explicit_.turn(by_W);
+  body_.turn(by_W);
+  inertial_.turn(by_W);
+  position_.forget_bias();
+  heading_by_motion_.forget();
+  field_guard_.misleads();
+  ++heading_turns_;
 }
 
 void Estimator::on_pressure(float pressure_Pa) {
@@ -161,11 +186,17 @@ void Estimator::on_pressure(float pressure_Pa) {
 }
 
 void Estimator::on_field(const Vector3& field_B_uT) {
-  body_.correct_heading(field_B_uT, declination_rad_, seconds(field_age_ms_));
+  const float since_last_s = seconds(field_age_ms_);
   field_age_ms_ = 0;
   field_B_uT_ = field_B_uT;
-  if (fix_fresh()) return;
   const Vector3 field_W = explicit_.q_WB() * field_B_uT;
+  if (situation_.resting) {
+    field_guard_.rests(field_W);
+  } else if (!field_guard_.believe(field_W)) {
+    return;
+  }
+  body_.correct_heading(field_B_uT, declination_rad_, since_last_s);
+  if (fix_fresh()) return;
   const float from_north_rad = declination_rad_ - std::atan2(field_W.y(), field_W.x());
   explicit_.correct_heading(yaw_of(explicit_.q_WB()) + from_north_rad,
                             situation_.in_flight ? kFieldShareFlight : kFieldShareGround);
@@ -215,8 +246,12 @@ void Estimator::step(const Situation& situation) {
 
 // Without capture the height is the barometer's, and what rests does not move.
 void Estimator::move_by_height() {
-  if (pressure_fresh() && height_.ready()) position_.set_height(baro_z_m(), baro_vz_mps());
-  if (situation_.resting) position_.hold_still();
+  if (pressure_good() && height_.ready()) position_.set_height(baro_z_m(), baro_vz_mps());
+  if (!situation_.resting) return;
+  position_.hold_still();
+  heading_by_motion_.forget();
+  climb_doubted_ = false;
+  climb_off_s_ = 0.0f;
 }
 
 __attribute__((noinline)) void Estimator::step_explicit(const Vector3& w_B) {
@@ -248,8 +283,7 @@ __attribute__((noinline)) void Estimator::step_aided(const Vector3& w_B) {
 VelocitySource Estimator::find_velocity_source() const {
   if (fix_fresh()) return VelocitySource::capture;
   if (gps_guard_.fresh()) return VelocitySource::gps;
-  const bool healthy =
-      source_ == AttitudeSource::velocity_aided && pressure_fresh() && field_fresh();
+  const bool healthy = source_ == AttitudeSource::velocity_aided && pressure_good() && field_good();
   const bool goes_on = situation_.by_drag && situation_.airborne && fix_age_ms_ < kByDrag_ms;
   return goes_on && healthy ? VelocitySource::drag : VelocitySource::none;
 }
@@ -266,6 +300,7 @@ void Estimator::step_position() {
     return position_.dead_reckon(velocity_by_drag_W(), baro_z_m(), kStep_s);
   }
   position_.predict(q_WB(), a_B_mps2_, kStep_s);
+  heading_by_motion_.feel(q_WB() * a_B_mps2_, kStep_s);
   if (!fix_fresh()) move_by_height();
   if (!position_known()) return;
   const float share = situation_.airborne ? kStep_s / kSteadyWind_s : 1.0f;
@@ -287,7 +322,7 @@ Vector3 Estimator::velocity_measured_B() const {
     v_B.head<2>() = velocity_through_air(a_B.head<2>() / a_B.z(), drag_.drag_spm());
   }
   const Vector3 down_B = body_.q_WB().conjugate() * Vector3::UnitZ();
-  if (pressure_fresh() && down_B.z() > kSteepest_cos) {
+  if (pressure_good() && down_B.z() > kSteepest_cos) {
     v_B.z() = (height_.vz_mps() - down_B.head<2>().dot(v_B.head<2>())) / down_B.z();
   }
   return v_B;

@@ -18,10 +18,13 @@
 
 #include "firmware/estimation/attitude_filter.hpp"
 #include "firmware/estimation/body_filter.hpp"
+#include "firmware/estimation/capture_guard.hpp"
 #include "firmware/estimation/drag_identification.hpp"
+#include "firmware/estimation/field_guard.hpp"
 #include "firmware/estimation/gps_frame.hpp"
 #include "firmware/estimation/gps_guard.hpp"
 #include "firmware/estimation/ground_calibration.hpp"
+#include "firmware/estimation/heading_by_motion.hpp"
 #include "firmware/estimation/height_filter.hpp"
 #include "firmware/estimation/inertial_filter.hpp"
 #include "firmware/estimation/position_filter.hpp"
@@ -65,12 +68,12 @@ class Estimator {
   static constexpr std::uint32_t kFixFresh_ms = 200, kFixLost_ms = 500;
   static constexpr std::uint32_t kByDrag_ms = 60'000;  // as long as the wind may be taken to stay
 
-  Estimator();
+  [[gnu::cold]] Estimator();  // cold: small before fast, once
 
   void tick();  // each millisecond, before what came in it
   void on_imu(const ImuSample& sample);
   void on_fix(const CaptureFix& fix);
-  void on_gps(const GpsSolution& solution);
+  [[gnu::cold]] void on_gps(const GpsSolution& solution);  // 5 Hz
   void on_pressure(float pressure_Pa);
   void on_field(const Vector3& field_B_uT);
   void step(const Situation& situation);
@@ -105,10 +108,16 @@ class Estimator {
   bool calibrated() const {
     return zeros_ == Zeros::by_capture || (zeros_ == Zeros::by_gravity && !fix_fresh());
   }
+  // Came within the last 0.2 s.
   bool pressure_fresh() const { return pressure_age_ms_ < kSlowSensorLost_ms; }
   bool field_fresh() const { return field_age_ms_ < kSlowSensorLost_ms; }
+  // The same, and is believed: what height and heading go by.
+  bool pressure_good() const { return pressure_fresh() && height_.believes() && !climb_doubted_; }
+  bool field_good() const { return field_fresh() && field_guard_.fresh(); }
   float pressure_Pa() const { return pressure_Pa_; }
   const Vector3& field_B_uT() const { return field_B_uT_; }
+  // How often the motion has shown that the heading was wrong, and turned it.
+  std::uint32_t heading_turns() const { return heading_turns_; }
   const ImuSample& imu() const { return sample_; }
   const GpsSolution& gps() const { return gps_; }
   const GpsFrame& gps_frame() const { return gps_frame_; }
@@ -123,6 +132,7 @@ class Estimator {
 
  private:
   static constexpr std::uint32_t kSlowSensorLost_ms = 200;
+  static constexpr float kClimbOff_s = 0.5f;
 
   void restart_aided();
   void step_explicit(const Vector3& w_B);
@@ -136,7 +146,10 @@ class Estimator {
   VelocitySource find_velocity_source() const;
   Vector3 velocity_by_drag_W() const;
   Vector3 velocity_measured_B() const;
-  bool is_stuck(const CaptureFix& fix);
+  bool plausible(const CaptureFix& fix) const;
+  bool pressure_drawn() const { return std::abs(height_.drawn_mps()) > 0.4f; }
+  void compare_climb(float gps_vz_mps, float since_last_s);
+  [[gnu::cold]] void turn_heading(float by_rad);
   void correct_velocity(const CaptureFix& fix, float since_last_s);
 
   AttitudeFilter explicit_;
@@ -160,7 +173,7 @@ class Estimator {
   enum class Zeros : std::uint8_t { unknown, by_gravity, by_capture } zeros_ = Zeros::unknown;
 
   CaptureFix fix_;
-  unsigned same_fixes_ = 0;  // as the one before, in a row
+  CaptureGuard capture_guard_;
   std::uint32_t fix_age_ms_ = kNever, still_fixes_ = 0;
   Vector3 capture_v_W_mps_ = Vector3::Zero();
   GpsFrame gps_frame_;
@@ -168,6 +181,11 @@ class Estimator {
   GpsSolution gps_;
   float pressure_Pa_ = 0.0f, resting_Pa_ = 0.0f, height_offset_m_ = 0.0f;
   std::uint32_t pressure_age_ms_ = kNever, field_age_ms_ = kNever;
+  float climb_off_s_ = 0.0f;  // for how long the barometer has climbed otherwise than the receiver
+  bool climb_doubted_ = false;  // until it rests
+  FieldGuard field_guard_;
+  HeadingByMotion heading_by_motion_;
+  std::uint32_t heading_turns_ = 0;
   Vector3 field_B_uT_ = Vector3::Zero();
   float declination_rad_ = 0.0f, start_scale_ = 1.0f, start_tilt_rad_ = 0.0f;
   float start_drag_spm_ = 0.0f;

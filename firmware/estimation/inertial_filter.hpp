@@ -36,6 +36,8 @@ class InertialFilter {
   void correct(const Vector3& v_WB_W_mps, float delay_s, float since_last_s);
   void correct_heading(float yaw_rad, float since_last_s);
 
+  void turn(const Quaternion& by_W) { q_WB_ = by_W * q_WB_; }
+
   const Quaternion& q_WB() const { return q_WB_; }
   const Vector3& v_WB_W_mps() const { return v_W_mps_; }
   const Vector3& wind_W_mps() const { return wind_W_mps_; }

@@ -28,8 +28,9 @@ class PositionFilter {
   void correct(const Vector3& p_WB_W_m, float since_last_fix_s);
   // Without fixes: along a velocity that something else knows, at a height that something else knows.
   void dead_reckon(const Vector3& v_WB_W_mps, float z_m, float dt_s);
-  void resume(const Vector3& p_WB_W_m);  // the first fix after a gap: the velocity stays
-  void hold_still();                     // standing on the ground: the velocity is zero
+  void resume(const Vector3& p_WB_W_m);           // the first fix after a gap: the velocity stays
+  void hold_still();                              // standing on the ground: the velocity is zero
+  void forget_bias() { bias_W_mps2_.setZero(); }  // it was reckoned with another heading
 
   struct Innovation {
     Vector3 p_W_m, v_W_mps;

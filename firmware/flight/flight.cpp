@@ -11,6 +11,8 @@ constexpr float kJoin_m = 0.3f;      // a trajectory is joined from so near
 
 }  // namespace
 
+Flight::Flight() = default;
+
 void Flight::tick() {
   estimator_.tick();
   pilot_.tick();
@@ -167,6 +169,7 @@ void Flight::enter(FlightState state, Reason reason) {
     airborne_ = starting_ = catching_ = false;
   }
   state_ = state;
+  if (!in_air()) course_lost_ = false;
   if (state_ == FlightState::failsafe) {
     constexpr float kLongestAtGround_s = 12.0f, kSlowest_mps = 0.25f;
     const float last_known_m = ground_W_m_.z() - estimator_.p_WB_W_m().z();
@@ -231,7 +234,10 @@ void Flight::supervise() {
   state_s_ += schedule::kAttitudeStep_s;
   watch_fall();
   const bool by_attitude = steered_ == PilotMode::attitude && pilot_.link() == PilotLink::ok;
-  react(supervisor_.step(conditions(), state_, schedule::kAttitudePeriod, by_attitude));
+  const Conditions now = conditions();
+  // Whatever its heading or the wind has become: it comes down level, and is led no further astray.
+  course_lost_ |= state_ == FlightState::failsafe && now.has(Condition::off_course);
+  react(supervisor_.step(now, state_, schedule::kAttitudePeriod, by_attitude));
   if (state_ == FlightState::armed && !steered_by_hand()) follow_target_into_air();
 }
 

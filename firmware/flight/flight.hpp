@@ -39,6 +39,8 @@ namespace fw {
 
 class Flight {
  public:
+  [[gnu::cold]] Flight();  // cold: small before fast, once
+
   // Inputs.
   void on_imu(const ImuSample& sample);
   void on_imu_missing();                                      // a tick without a sample
@@ -131,8 +133,11 @@ class Flight {
   Reason first_esc_problem() const;
   Reason first_sensor_problem() const;
   Fence fence() const;
-  // A place by capture or GPS, or by drag a velocity.
-  bool navigates() const { return estimator_.velocity_source() != VelocitySource::none; }
+  // A place by capture or GPS, or by drag a velocity; not who has lost its course, who comes down level.
+  bool navigates() const {
+    return !course_lost_ && estimator_.velocity_source() != VelocitySource::none;
+  }
+  bool off_course() const;
   bool in_air() const { return state_ >= FlightState::flying; }
   // Downward speed and height over where it armed, by the best that is known now.
   float sinking_mps() const;
@@ -195,7 +200,8 @@ class Flight {
   Vector3 ground_W_m_ = Vector3::Zero();
   float lift_ = 0.0f;  // share of the weight that the rotors are asked to carry
   float contact_s_ = 0.0f, state_s_ = 0.0f, blind_longest_s_ = 0.0f, quiet_s_ = 0.0f;
-  bool airborne_ = false, position_was_known_ = false;
+  bool airborne_ = false, position_was_known_ = false, course_lost_ = false;
+  std::uint32_t heading_turns_ = 0;  // that the reference knows of
   ThrustAndAttitude wanted_;
   std::array<std::uint16_t, 4> setpoints_{};
 };

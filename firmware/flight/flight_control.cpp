@@ -22,6 +22,11 @@ void Flight::position_step() {
   if (navigates()) {
     // Where it comes back may be elsewhere than where it was lost.
     if (!position_was_known_) reference_.start(estimator_.p_WB_W_m(), reference_.yaw_rad());
+    // Nor does it turn about because it was turned otherwise all the time.
+    if (heading_turns_ != estimator_.heading_turns()) {
+      reference_.start(estimator_.p_WB_W_m(), yaw_of(estimator_.q_WB()));
+    }
+    heading_turns_ = estimator_.heading_turns();
     position_was_known_ = true;
     return follow_reference();
   }

@@ -36,7 +36,7 @@ Reason Flight::restart() {
   const Vector3 up_W = estimator_.q_WB() * Vector3::UnitZ();
   const Fall fall{
       .attitude_known = !attitude_lost_,
-      .speed_known = estimator_.position_known() || estimator_.pressure_fresh(),
+      .speed_known = estimator_.position_known() || estimator_.pressure_good(),
       .height_m = height_m(),
       .sinking_mps = sinking_mps(),
       .tilt_rad = std::atan2(up_W.head<2>().norm(), up_W.z()),
@@ -64,7 +64,7 @@ void Flight::watch_fall() {
   const Conditions now = conditions();
   attitude_lost_ =
       attitude_lost_ || now.has(Condition::imu_not_running) || now.has(Condition::imu_frozen);
-  const bool speed_known = estimator_.position_known() || estimator_.pressure_fresh();
+  const bool speed_known = estimator_.position_known() || estimator_.pressure_good();
   const Vector3& felt_B_mps2 = estimator_.imu().a_B_mps2;
   fall_drag_.step(-(estimator_.q_WB() * felt_B_mps2).z(), sinking_mps(), schedule::kAttitudeStep_s);
   const float off_mps2 = felt_B_mps2.norm() - config::kGravity_mps2;

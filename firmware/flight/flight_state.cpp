@@ -64,6 +64,10 @@ const char* text_of(Reason reason) {
       return "barometer silent or out of range";
     case Reason::no_field:
       return "magnetometer silent or out of range";
+    case Reason::heading_by_gyro:
+      return "heading by gyro for too long";
+    case Reason::off_course:
+      return "course not kept";
     case Reason::by_drag:
       return "no position: velocity by drag";
     case Reason::calibrating:

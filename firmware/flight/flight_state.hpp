@@ -46,6 +46,8 @@ enum class Reason : std::uint8_t {  // why a command was refused, or a flight en
   attitude_lost,
   too_low,
   esc_over_current,
+  heading_by_gyro,
+  off_course,
 };
 const char* text_of(Reason reason);
 

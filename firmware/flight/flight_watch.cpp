@@ -31,9 +31,20 @@ Conditions Flight::conditions() const {
   now.set(Condition::rc_lost, steered_by_hand() && pilot_.link() == PilotLink::lost);
   now.set(Condition::rc_nonsense, steered_by_hand() && pilot_.link() == PilotLink::nonsense);
   now.set(Condition::no_setpoints, target_age_ms_ > kTargetsLost_ms && target_age_ms_ < kNever);
-  now.set(Condition::no_pressure, !estimator_.pressure_fresh());
-  now.set(Condition::no_field, !estimator_.field_fresh());
+  now.set(Condition::no_pressure, !estimator_.pressure_good());
+  now.set(Condition::no_field, !estimator_.field_good());
+  const bool by_gps = estimator_.velocity_source() == VelocitySource::gps;
+  now.set(Condition::heading_by_gyro, by_gps && !estimator_.field_good());
+  now.set(Condition::off_course, by_gps && off_course());
   return now;
+}
+
+// Far from where its own reference has it, which only a wrong heading, or a wind beyond its reach, does.
+bool Flight::off_course() const {
+  constexpr float kFar_m = 5.0f;
+  const bool led = state_ != FlightState::flying || aim_ == Aim::place || aim_ == Aim::trajectory;
+  if (!led || !in_air() || !airborne_ || !navigates() || !position_was_known_) return false;
+  return (reference_.p_W_m() - estimator_.p_WB_W_m()).head<2>().norm() > kFar_m;
 }
 
 // The capture system's room, or, by GPS alone, about where it began.
@@ -96,13 +107,13 @@ Reason Flight::ready_to_arm() const {
 }
 
 float Flight::sinking_mps() const {
-  if (!estimator_.position_known() && estimator_.pressure_fresh()) return estimator_.baro_vz_mps();
+  if (!estimator_.position_known() && estimator_.pressure_good()) return estimator_.baro_vz_mps();
   return estimator_.v_WB_W_mps().z();
 }
 
 float Flight::height_m() const {
   if (estimator_.position_known()) return ground_W_m_.z() - estimator_.p_WB_W_m().z();
-  return estimator_.pressure_fresh() ? ground_W_m_.z() - estimator_.baro_z_m() : 0.0f;
+  return estimator_.pressure_good() ? ground_W_m_.z() - estimator_.baro_z_m() : 0.0f;
 }
 
 // Faster far up, so that what is left of the battery lasts.

@@ -60,6 +60,8 @@ enum class Condition : std::uint8_t {
   battery_low,
   no_pressure,
   no_field,
+  heading_by_gyro,
+  off_course,
   by_drag,
   count
 };
@@ -120,6 +122,9 @@ inline constexpr Rule kRules[kConditions] = {
     {Condition::battery_low, Reason::battery_low, 3000, {stop, land, tell, none, none}},
     {Condition::no_pressure, Reason::no_pressure, 0, {tell, tell, tell, tell, tell}},
     {Condition::no_field, Reason::no_field, 0, {tell, tell, tell, tell, tell}},
+    // By GPS only, where nothing else tells the heading: zero points wander by 0.05 deg/s, or more in a part that warms up.
+    {Condition::heading_by_gyro, Reason::heading_by_gyro, 20'000, {none, fail, none, none, none}},
+    {Condition::off_course, Reason::off_course, 500, {none, fail, none, fail, tell}},
     {Condition::by_drag, Reason::by_drag, 0, {none, tell, none, none, none}},
 };
 }  // namespace reaction

@@ -257,7 +257,10 @@ TEST(Flight, AVelocityTowardsTheFenceEndsBeforeIt) {
 
 TEST(Flight, BlownOutOfTheFenceItLandsBackInside) {
   Hovering hover({});
-  hover.vehicle.p_W_.x() = 2.7;
+  hover.vehicle.push_W_N_.x() = 9.0;
+  for (int ms = 0; ms < 5000 && hover.vehicle.p_W_.x() < 2.7; ++ms)
+    hover.vehicle.step(hover.flight);
+  hover.vehicle.push_W_N_.setZero();
   hover.vehicle.run(hover.flight, 1.0);
   EXPECT_EQ(hover.flight.state(), FlightState::failsafe);
   EXPECT_EQ(hover.flight.last_reason(), Reason::outside_fence);

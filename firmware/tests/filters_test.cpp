@@ -258,8 +258,64 @@ TEST(HeightFilter, DoesNotBelieveNonsenseButASteadyChange) {
   }
   feed(std::nanf(""), 1000);
   EXPECT_TRUE(near(filter.z_m(), 0.0, stated(1e-3, "float")));
-  feed(101205.0f, 300);  // 10 m up
+  EXPECT_FALSE(filter.believes());
+  for (int i = 0; i < 600; ++i) feed(i % 2 ? 99000.0f : 104000.0f, 1);  // leaps about
+  EXPECT_TRUE(near(filter.z_m(), 0.0, stated(1e-3, "float")));
+  EXPECT_FALSE(filter.believes());
+}
+
+// No vehicle leaps by 10 m within a sample: that was the part, or a door that shut. From there on it tells height again.
+TEST(HeightFilter, ALeapIsAnotherZeroAndNoHeight) {
+  HeightFilter filter;
+  filter.zero(101325.0f);
+  const auto feed = [&](float pressure_Pa, int samples) {
+    for (int i = 0; i < 3 * samples; ++i) {
+      filter.predict(0.0f, kStep_s);
+      if (i % 3 == 0) filter.correct(pressure_Pa, 0.015f);
+    }
+  };
+  feed(101325.0f, 100);
+  feed(101205.0f, 30);
+  EXPECT_FALSE(filter.believes());
+  feed(101205.0f, 270);
+  EXPECT_TRUE(filter.believes());
+  EXPECT_TRUE(near(filter.z_m(), 0.0, stated(0.01, "what the last second has lent")));
+  feed(101193.0f, 1000);  // 1 m up
+  EXPECT_TRUE(near(filter.z_m(), -1.0, stated(0.05, "12 Pa a metre")));
+}
+
+// After ten seconds without a reading the pressure is right, and what was reckoned meanwhile is not.
+TEST(HeightFilter, AfterAGapAHeightThatStaysIsTaken) {
+  HeightFilter filter;
+  filter.zero(101325.0f);
+  filter.correct(101325.0f, 0.015f);
+  for (int i = 0; i < 2000; ++i) filter.predict(0.0f, kStep_s);
+  filter.correct(101205.0f, 10.0f);
+  for (int i = 0; i < 900; ++i) {
+    filter.predict(0.0f, kStep_s);
+    if (i % 3 == 0) filter.correct(101205.0f, 0.015f);
+  }
   EXPECT_TRUE(near(filter.z_m(), -10.0, stated(0.1, "12 Pa a metre")));
+}
+
+// One that climbs at 1.5 m/s without an acceleration has been drawn by that; one that was felt has not.
+TEST(HeightFilter, TellsAClimbThatNobodyFelt) {
+  HeightFilter unfelt, felt;
+  unfelt.zero(101325.0f);
+  felt.zero(101325.0f);
+  double z_m = 0.0, vz_mps = 0.0;
+  for (int i = 0; i < 800; ++i) {
+    const float a = i >= 100 && i < 200 ? -3.0f : 0.0f;  // half a second to 1.5 m/s
+    vz_mps += a * kStep_s;
+    z_m += vz_mps * kStep_s;
+    unfelt.predict(0.0f, kStep_s);
+    felt.predict(a, kStep_s);
+    const auto pressure_Pa = static_cast<float>(101325.0 + 12.01 * z_m);
+    if (i % 3 == 0) unfelt.correct(pressure_Pa, 0.015f);
+    if (i % 3 == 0) felt.correct(pressure_Pa, 0.015f);
+  }
+  EXPECT_LT(unfelt.drawn_mps(), -0.4f);
+  EXPECT_LT(std::abs(felt.drawn_mps()), 0.1f);
 }
 
 TEST(DesiredAttitude, ItsRateIsThatOfTheAttitudeAlongTheTrajectory) {

@@ -43,6 +43,9 @@ class VehicleModel {
   Eigen::Quaterniond q_WB_{1, 0, 0, 0};
   bool capture_on_ = true, capture_stuck_ = false, imu_on_ = true, pressure_on_ = true,
        field_on_ = true;
+  // What these read beside the truth: a magnet that the body carries, another pressure, another frame.
+  Eigen::Vector3d field_error_B_uT_{0, 0, 0}, capture_error_m_{0, 0, 0};
+  double pressure_error_Pa_ = 0.0, capture_turn_rad_ = 0.0;
   double battery_V_ = 16.4;
   std::array<bool, 4> esc_on_{true, true, true, true};
   double tilt_rad() const { return std::acos((q_WB_ * Eigen::Vector3d::UnitZ()).z()); }
@@ -122,8 +125,9 @@ inline void VehicleModel::sense(Flight& flight) {
   if (ms_ % 10 == 9) slow_sensors(flight);
   std::uniform_real_distribution<double> luck(0.0, 1.0);
   if (ms_ % 25 == 7 && luck(random_) > scenario_.capture_loss && capture_on_) {
-    const Eigen::Matrix3d R = q_WB_.toRotationMatrix();
-    const Eigen::Vector3d p = p_W_ + noise(0.0005);
+    const Eigen::AngleAxisd turn(capture_turn_rad_, Eigen::Vector3d::UnitZ());
+    const Eigen::Matrix3d R = (turn * q_WB_).toRotationMatrix();
+    const Eigen::Vector3d p = p_W_ + noise(0.0005) + capture_error_m_;
     const CaptureFix seen{p.cast<float>(), static_cast<float>(std::atan2(R(2, 1), R(2, 2))),
                           static_cast<float>(-std::asin(R(2, 0))),
                           static_cast<float>(std::atan2(R(1, 0), R(0, 0)))};
@@ -139,10 +143,10 @@ inline void VehicleModel::sense(Flight& flight) {
 inline void VehicleModel::slow_sensors(Flight& flight) {
   constexpr double declination = 12.4 * M_PI / 180.0;
   const Eigen::Vector3d field_W(23.0 * std::cos(declination), 23.0 * std::sin(declination), -53.0);
-  const Eigen::Vector3d field_B = q_WB_.conjugate() * field_W;
+  const Eigen::Vector3d field_B = q_WB_.conjugate() * field_W + field_error_B_uT_;
   // Standard atmosphere, 600 m above the sea.
   const double pressure_Pa = 101325.0 * std::pow(1.0 - 2.25577e-5 * (600.0 - p_W_.z()), 5.25588);
-  if (pressure_on_) flight.on_pressure(static_cast<float>(pressure_Pa));
+  if (pressure_on_) flight.on_pressure(static_cast<float>(pressure_Pa + pressure_error_Pa_));
   if (field_on_) flight.on_field(field_B.cast<float>());
   flight.on_battery(static_cast<float>(battery_V_));
 }
