@@ -175,8 +175,9 @@ std::map<std::string, Kinds> played_parts(const cli::Setup& setup) {
 // Of supply, cameras and motors, and none of a board's.
 bool is_of_the_world(io::FaultKind kind) {
   using Kind = io::FaultKind;
-  constexpr Kind kAll[] = {Kind::supply_dip, Kind::capture_lost, Kind::capture_frozen,
-                           Kind::esc_stopped, Kind::winding_short};
+  constexpr Kind kAll[] = {Kind::supply_dip,    Kind::capture_lost,  Kind::capture_frozen,
+                           Kind::esc_stopped,   Kind::winding_short, Kind::capture_moved,
+                           Kind::capture_turned};
   return std::find(std::begin(kAll), std::end(kAll), kind) != std::end(kAll);
 }
 

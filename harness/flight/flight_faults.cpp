@@ -9,7 +9,8 @@ namespace whirl::flight {
 namespace {
 
 constexpr const char *kEsc_stopped = "esc_stopped", *kSupply_dip = "supply_dip",
-                     *kWinding_short = "winding_short";
+                     *kWinding_short = "winding_short", *kCapture_frozen = "capture_frozen",
+                     *kCapture_moved = "capture_moved", *kCapture_turned = "capture_turned";
 
 }  // namespace
 
@@ -22,8 +23,14 @@ Result<bool> FlightWorld::take_fault(const FaultSpec& fault) {
     if (auto good = must_be_of_all(fault); !good) return good.error();
     const double start_s = static_cast<double>(fault.start_ns) * 1e-9;
     vehicle_.dip_supply(fault.value, start_s, static_cast<double>(fault.end_ns) * 1e-9 - start_s);
-  } else if (fault.kind == "capture_lost" || fault.kind == "capture_frozen") {
+  } else if (fault.kind == "capture_lost" || fault.kind == kCapture_frozen) {
     if (auto good = must_be_of_all(fault); !good) return good.error();
+  } else if (fault.kind == kCapture_moved || fault.kind == kCapture_turned) {
+    if (auto good = must_be_of_all(fault); !good) return good.error();
+    if (fault.value == 0.0) {
+      return Error{ErrorKind::bad_input, "", fault.kind + " without a value changes nothing",
+                   fault.kind == kCapture_moved ? "value = \"1.5 m\"" : "value = \"90 deg\""};
+    }
   } else {
     return false;
   }
@@ -55,6 +62,19 @@ Result<Done> FlightWorld::must_be_a_lead(const FaultSpec& fault) const {
   if (fault.value > 0.0) return Done{};
   return Error{ErrorKind::bad_input, "", "supply_dip of one motor takes volts of its supply",
                "value = \"3 V\""};
+}
+
+// What the cameras' computer sends for a pose. The stamp of time goes on.
+CapturedPose FlightWorld::spoiled(CapturedPose pose, std::int64_t t_ns) {
+  if (const auto& last = station_.last_pose(); last && faults_.any(kCapture_frozen, t_ns)) {
+    pose.p_WB_W_m = last->p_WB_W_m;
+    pose.roll_pitch_yaw_rad = last->roll_pitch_yaw_rad;
+  }
+  faults_.apply(kCapture_moved, t_ns,
+                [&pose](const FaultSpec& fault) { pose.p_WB_W_m.x() += fault.value; });
+  faults_.apply(kCapture_turned, t_ns,
+                [&pose](const FaultSpec& fault) { pose.roll_pitch_yaw_rad.z() += fault.value; });
+  return pose;
 }
 
 // What the lead of each motor's controller loses, from this boundary to the next.

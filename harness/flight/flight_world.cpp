@@ -12,7 +12,7 @@ namespace {
 
 constexpr float kForce = 21196.0f;  // of MAV_CMD_COMPONENT_ARM_DISARM
 constexpr std::uint16_t kArmDisarm = 400, kLand = 21, kTakeoff = 22;  // MAV_CMD
-constexpr const char *kCapture_lost = "capture_lost", *kCapture_frozen = "capture_frozen";
+constexpr const char* kCapture_lost = "capture_lost";
 constexpr double kStep_s = 1e-3;
 constexpr std::int64_t kStep_ns = 1'000'000;
 
@@ -181,18 +181,9 @@ void FlightWorld::send(std::int64_t t_ns, io::Batch& sensed) {
   const plant::Truth seen{.p_WB_W_m = s.p_WB_W_m, .v_WB_W_mps = s.v_WB_W_mps, .q_WB = s.q_WB};
   const auto hidden = [&] { return faults_.any(kCapture_lost, t_ns); };
   if (const auto pose = capture_.look(t_ns, seen, hidden)) {
-    station_.send_pose(frozen_or(*pose, t_ns), send);
+    station_.send_pose(spoiled(*pose, t_ns), send);
   }
   station_.step(t_ns, send);
-}
-
-// The stamp of time goes on.
-CapturedPose FlightWorld::frozen_or(CapturedPose pose, std::int64_t t_ns) {
-  const std::optional<CapturedPose>& last = station_.last_pose();
-  if (!last || !faults_.any(kCapture_frozen, t_ns)) return pose;
-  pose.p_WB_W_m = last->p_WB_W_m;
-  pose.roll_pitch_yaw_rad = last->roll_pitch_yaw_rad;
-  return pose;
 }
 
 // ---- What a plan may ask

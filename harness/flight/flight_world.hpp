@@ -9,7 +9,8 @@
 //            arming, a take-off or a landing of the other one ours ends its own set-points until it is commanded anew
 //   Begins   standing at W's origin, or as the plan's `start` says (surroundings.hpp)
 //   Disturbed by Wind with a duration, Jet, Magnet; held and turned by Hold until Release (flight_hand.cpp)
-//   Faults   capture_lost; capture_frozen (the pose that was sent last goes on); supply_dip (value: volts below; of all, or of the
+//   Faults   capture_lost; capture_frozen (the pose that was sent last goes on); capture_moved (each pose lies value metres
+//            further north); capture_turned (each is turned by value radians about W's third axis); supply_dip (value: volts below; of all, or of the
 //            lead of one motor's controller where that is a board); esc_stopped (of a motor, or of the device that
 //            is its ESC); winding_short (of one likewise; value: amperes of the bus) (flight_faults.cpp)
 #pragma once
@@ -101,7 +102,7 @@ class FlightWorld : public World {
   void take_off(const request::TakeOff& command);
   void go_to(const request::GoTo& command);
   void land();
-  CapturedPose frozen_or(CapturedPose pose, std::int64_t t_ns);
+  CapturedPose spoiled(CapturedPose pose, std::int64_t t_ns);
   void fly_figure_8(const request::Figure8& figure);
   void cruise(const request::Cruise& command);
   void hold_attitude(const request::HoldAttitude& command);

@@ -55,6 +55,8 @@ constexpr KindName kNames[] = {
     {FaultKind::board_unplugged, "board_unplugged"},
     {FaultKind::sensor_drift, "sensor_drift"},
     {FaultKind::winding_short, "winding_short"},
+    {FaultKind::capture_moved, "capture_moved"},
+    {FaultKind::capture_turned, "capture_turned"},
 };
 
 bool matches(int wanted, int here) {

@@ -67,6 +67,8 @@ enum class FaultKind : std::uint32_t {
   board_unplugged,  // board: without supply and off its wires while it lasts, then as from power-up
   sensor_drift,     // what axis reads runs away: value (SI) more with each minute since its start
   winding_short,  // harness: the bridge of motor `address` takes value amperes more while it drives
+  capture_moved,  // harness: the capture system's poses lie value metres further along W's first axis
+  capture_turned,  // harness: and are turned by value radians about W's third
 };
 
 std::optional<FaultKind> fault_kind(std::string_view name);  // "i2c_nack"

@@ -291,6 +291,8 @@ TEST(FlightWorld, ItsFaultsActAndAreReportedOnlyThen) {
   EXPECT_FALSE(fault(6, "esc_stopped", fault_at::Motor{5}, 0).ok());
   EXPECT_FALSE(fault(6, "winding_short", fault_at::Motor{5}, 30.0).ok());
   EXPECT_FALSE(fault(6, "winding_short", right, 0.0).ok());  // it would act and change nothing
+  EXPECT_FALSE(fault(6, "capture_moved", {}, 0.0).ok());
+  EXPECT_FALSE(fault(6, "capture_turned", right, 1.0).ok());
   flight.run(1.0);
   flight.height_m = 0.02;
   flight.run(0.9);
