@@ -120,6 +120,11 @@ Reason Flight::arm() {
   return Reason::none;
 }
 
+// Here, because this file knows the mode.
+bool Flight::escs_not_warm() const {
+  return motors_.not_warm(esc::Mode::FW_ESC_MODE);
+}
+
 void Flight::begin_armed() {
   emergency_ = false;
   motors_.forget_failures();

@@ -132,6 +132,7 @@ class Flight {
   void right_itself();
   Reason first_esc_problem() const;
   Reason first_sensor_problem() const;
+  bool escs_not_warm() const;
   Fence fence() const;
   // A place by capture or GPS, or by drag a velocity; not who has lost its course, who comes down level.
   bool navigates() const {

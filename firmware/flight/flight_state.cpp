@@ -26,6 +26,8 @@ const char* text_of(Reason reason) {
       return "an ESC reports a fault";
     case Reason::esc_over_current:
       return "an ESC had too much current";
+    case Reason::esc_not_warm:
+      return "an ESC's current sense cold or uncalibrated";
     case Reason::esc_silent:
       return "an ESC is silent";
     case Reason::motor_out:

@@ -48,6 +48,7 @@ enum class Reason : std::uint8_t {  // why a command was refused, or a flight en
   esc_over_current,
   heading_by_gyro,
   off_course,
+  esc_not_warm,
 };
 const char* text_of(Reason reason);
 

@@ -103,7 +103,8 @@ Reason Flight::ready_to_arm() const {
   if (!fence().contains(estimator_.p_WB_W_m())) return Reason::outside_fence;
   if (!battery_.connected()) return Reason::no_battery;
   if (battery_.rest_V() < parameters_.get(Parameter::bat_low_V)) return Reason::battery_low;
-  return first_esc_problem();
+  if (const Reason problem = first_esc_problem(); problem != Reason::none) return problem;
+  return escs_not_warm() ? Reason::esc_not_warm : Reason::none;
 }
 
 float Flight::sinking_mps() const {

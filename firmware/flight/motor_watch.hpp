@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "firmware/esc/core/protocol.hpp"
+#include "firmware/esc/core/setpoint.hpp"
 
 namespace fw {
 
@@ -48,6 +49,14 @@ class MotorWatch {
     return std::any_of(status_.begin(), status_.end(), [](const esc::protocol::Status& status) {
       return (status.flags & esc::flag_over_current) != 0;
     });
+  }
+  // One in this mode reads its thrust off a current whose zero still drifts, or that was never calibrated:
+  // it flies by a static map, and each of the four by another.
+  bool not_warm(esc::Mode mode) const {
+    return goes_by_power(mode) &&
+           std::any_of(status_.begin(), status_.end(), [](const esc::protocol::Status& status) {
+             return (status.flags & esc::flag_uncalibrated) != 0;
+           });
   }
   // How many have disarmed, fallen silent or stood when that was found, since they were last trusted anew.
   unsigned failed() const {

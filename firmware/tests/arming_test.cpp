@@ -47,6 +47,17 @@ TEST(Flight, RefusesToArmAndSaysWhy) {
   EXPECT_EQ(flight.arm(), Reason::esc_silent);
 }
 
+// The library is built for thrust by speed, which no current has a part in.
+TEST(Flight, BySpeedItArmsWithEscsThatWereNeverCalibrated) {
+  Flight flight;
+  VehicleModel vehicle({});
+  vehicle.run(flight, 3.0);
+  for (unsigned i = 0; i < 4; ++i) {
+    flight.on_esc_status(i, {0, 0, esc::flag_armed | esc::flag_uncalibrated});
+  }
+  EXPECT_EQ(flight.arm(), Reason::none);
+}
+
 TEST(Flight, RefusesATakeOffToNoSensibleHeightByName) {
   Flight flight;
   VehicleModel vehicle({});

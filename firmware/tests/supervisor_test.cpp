@@ -197,5 +197,22 @@ TEST(Fence, AVelocityIsBrakedBeforeTheMarginAndTurnedBackBeyondIt) {
                    stated(1e-5, "floats")));
 }
 
+// By power a rotor's thrust is as wrong as its current is: one of four is enough.
+TEST(MotorWatch, OneWhoseCurrentIsNotWarmCountsInTheModesThatGoByPower) {
+  using enum esc::Mode;
+  MotorWatch motors;
+  for (unsigned i = 0; i < 4; ++i) motors.on_status(i, {0, 0, esc::flag_armed});
+  EXPECT_FALSE(motors.not_warm(thrust_by_power));
+  for (unsigned cold = 0; cold < 4; ++cold) {
+    motors.on_status(cold, {0, 0, esc::flag_armed | esc::flag_uncalibrated});
+    EXPECT_TRUE(motors.not_warm(thrust_by_power)) << cold;
+    EXPECT_TRUE(motors.not_warm(power)) << cold;
+    for (const esc::Mode mode : {duty, speed, thrust_by_speed}) {
+      EXPECT_FALSE(motors.not_warm(mode)) << cold;
+    }
+    motors.on_status(cold, {0, 0, esc::flag_armed});
+  }
+}
+
 }  // namespace
 }  // namespace fw

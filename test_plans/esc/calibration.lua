@@ -22,7 +22,7 @@ plan "calibration_round_trip" {
   image = "esc", board = "esc32v2",
   stand = { prop = "hk_10x4.5", supply = "16.4 V", mode = "thrust_by_power" },
   tags = { "esc" },
-  timeout = "90 s", may_reset = true,
+  timeout = "140 s", may_reset = true,
   run = function(t)
     t:within("3 s", function(s) return s.armed == 1 end, "armed after its zeros")
     t:expect(flag(t:value("esc_flags").value, kUncalibrated) and 1 or 0, "a new ESC says that it is not calibrated"):equal(1)
@@ -41,9 +41,10 @@ plan "calibration_round_trip" {
       t:expect(kept[name] == line and 1 or 0, "kept: " .. name):equal(1)
     end
     t:within("3 s", function(s) return s.armed == 1 end, "armed anew")
+    t:expect(flag(t:value("esc_flags").value, kUncalibrated) and 1 or 0, "its current sense is not warm"):equal(1)
+    t:wait "100 s"
     t:expect(flag(t:value("esc_flags").value, kUncalibrated) and 1 or 0, "it says that it is calibrated"):equal(0)
     t:step "mode 5 in wind"
-    t:wait "60 s" -- at rest: the current sense settles
     t:command { thrust = "3.2 N" }
     t:within("3 s", function(s) return s.speed_radps > 150 end, "turning")
     t:ask("stream 100", "^ok$")

@@ -224,7 +224,10 @@ std::uint8_t Core::flags() const {
   if (latched == Latched::desync || latched == Latched::stalled || phase_ == Phase::lost) {
     flags |= flag_desync;
   }
-  if (!calibration_.identified) flags |= flag_uncalibrated;
+  // Thrust and power are read off the current, on which there is no reliance while its zero drifts.
+  const bool cold =
+      goes_by_power(calibration_.mode) && !offset_error_.settled(calibration_.sense.warm_up_A);
+  if (!calibration_.identified || cold) flags |= flag_uncalibrated;
   return flags;
 }
 

@@ -21,7 +21,7 @@ enum Flag : std::uint8_t {
   flag_over_current = 1 << 3,
   flag_under_voltage = 1 << 4,
   flag_desync = 1 << 5,
-  flag_uncalibrated = 1 << 6,
+  flag_uncalibrated = 1 << 6,    // or, in modes 4 and 5, the current sense not warm yet
   flag_write_rejected = 1 << 7,  // since the last read
 };
 

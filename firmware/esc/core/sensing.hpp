@@ -48,9 +48,12 @@ class OffsetError {
   }
   // warm_up_A: of the drift after power-up, one sigma.
   float amperes(float warm_up_A) const { return kWander_A + warm_up_A * cold_ * gone_; }
+  // What is still to come of the drift does not count beside the wander: of 0.4 A after 98 s.
+  bool settled(float warm_up_A) const { return warm_up_A * cold_ < kSettled_A; }
 
  private:
   static constexpr float kWander_A = 0.008f;
+  static constexpr float kSettled_A = 0.015f;
   static constexpr float kTime_s = 30.0f;  // of the drift
   float share_;
   float cold_ = 1.0f;  // of the drift, still to come

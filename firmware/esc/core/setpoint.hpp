@@ -16,6 +16,11 @@ enum class Mode : std::uint8_t {
   thrust_by_power = 5,  // "st": thrust from power and speed, Algorithm 1
 };
 
+// What it gives is read off its power, and so off the current.
+constexpr bool goes_by_power(Mode mode) {
+  return mode == Mode::power || mode == Mode::thrust_by_power;
+}
+
 struct Range {
   float min, max;
 };

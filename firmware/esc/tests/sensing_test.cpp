@@ -53,6 +53,17 @@ TEST(OffsetError, GrowsSinceTheLastRestAndLessWhenWarm) {
   EXPECT_TRUE(near(error.amperes(0.0f), 0.008, stated(1e-6, "told that it is warm")));
 }
 
+// What is to come of 0.4 A falls below 15 mA after 30 s ln(0.4 / 0.015) = 98.5 s, at rest or not: the thesis's 100 s.
+TEST(OffsetError, OfTheDriftLittleIsToComeAfterAHundredSeconds) {
+  for (const bool rests : {false, true}) {
+    OffsetError error(1e-3f);
+    EXPECT_TRUE(error.settled(0.0f));
+    int ms = 0;
+    for (; ms < 200'000 && !error.settled(0.4f); ++ms) error.tick(rests);
+    EXPECT_TRUE(near(1e-3 * ms, 98.5, stated(1.0, "float increments"))) << rests;
+  }
+}
+
 // Amplifier in closed form: pulses of 10 A for a share d of 50 us behind a pole of 1 kHz, in the steady
 // state, at their end.
 TEST(Sensing, RippleOfTheAmplifierIsTakenOut) {

@@ -89,6 +89,24 @@ TEST(ThrustByPower, WaitsForTheShuntToSettle) {
   }
 }
 
+// Who flies by it is told so: by the flag of what was never calibrated, in the modes that go by power alone.
+TEST(ThrustByPower, TellsThatItsCurrentSenseIsNotWarm) {
+  for (const Mode mode : {Mode::thrust_by_power, Mode::power, Mode::thrust_by_speed, Mode::speed}) {
+    Calibration cold = calibrated(mode);
+    cold.sense.warm_up_A = 0.4f;
+    AirBench bench(cold);
+    EXPECT_EQ((bench.core.flags() & flag_uncalibrated) != 0, goes_by_power(mode));
+    bench.hold(0.0, 90'000);
+    EXPECT_EQ((bench.core.flags() & flag_uncalibrated) != 0, goes_by_power(mode));
+    bench.hold(0.0, 12'000);
+    EXPECT_EQ(bench.core.flags() & flag_uncalibrated, 0);
+    Calibration never = calibrated(mode);
+    never.identified = false;
+    EXPECT_NE(Core(never).flags() & flag_uncalibrated, 0);
+    EXPECT_EQ(AirBench(mode).core.flags() & flag_uncalibrated, 0);  // told that it is warm
+  }
+}
+
 // A blade on which inflow takes a fifth less power per 20 % of speed over the middle.
 TEST(ThrustByPower, FollowsTheSpeedsEffectOnWhatInflowTakes) {
   Calibration told = calibrated(Mode::thrust_by_power);
