@@ -24,7 +24,7 @@ struct Faults {                        // never decremented by firmware
   std::uint32_t i2c_recoveries = 0;    // nine-clock recoveries of the bus
   std::uint32_t i2c_timeouts = 0;
   std::uint32_t baro_failures = 0, mag_failures = 0;  // transactions and readings
-  std::uint32_t sensor_reconfigured = 0;  // barometer or magnetometer had to be set up anew
+  std::uint32_t sensor_reconfigured = 0;  // barometer, magnetometer or GPS had to be set up anew
   std::uint32_t gps_searches = 0;         // for a receiver that stopped, beside the first
   std::uint32_t gps_bad_frames = 0;
   std::uint32_t link_bad_frames = 0;  // frames with a wrong CRC

@@ -8,7 +8,10 @@
 //             is tried three times; then the search begins anew, and asks again what it talks to
 //   Output    a Fix from PVT, or when the three messages of one solution are there, once; its time is that
 //             of the solution's first byte: the receiver measured a fixed latency before
-//   Faults    2 s without a solution: the receiver has lost its settings, the search begins anew
+//   Verified  each 2 s one setting is polled, right behind a solution, so that the answer delays none: rate,
+//             model, then each message, so each every 10 s at most. If one is not as it was told, all are told
+//             again, the port first. No answer is no loss: the line may have spoilt it
+//   Faults    2 s without a whole solution: the receiver has lost its settings, the search begins anew
 //   Source    PX4-GPSDrivers src/ubx.{h,cpp}, ArduPilot AP_GPS_UBLOX; acknowledge of a new baud rate may
 //             come at the old or the new one: it is not waited for
 #pragma once
@@ -63,6 +66,7 @@ class UbloxGps {
     return true;
   }
   std::uint32_t searches() const { return searches_; }  // beside the first
+  std::uint32_t restored() const { return restored_; }  // times that a lost setting was found
   std::uint32_t bad_frames() const { return parser_.bad_frames(); }
   std::uint32_t refused() const { return refused_; }  // settings answered with NAK
 
@@ -73,6 +77,9 @@ class UbloxGps {
   static constexpr std::uint32_t kBaud = 57600;
   static constexpr std::array<std::uint32_t, 6> kBauds{kBaud, 9600, 38400, 115200, 19200, 4800};
   static constexpr std::uint32_t kAnswer_us = 250'000, kSilence_us = 2'000'000;
+  static constexpr std::uint32_t kVerify_us = 2'000'000, kBehind_us = 20'000;
+  static constexpr std::uint16_t kPeriod_ms = 200;
+  static constexpr std::uint8_t kAirborne = 6, k3D = 2;  // below 1 g
   static constexpr unsigned kTries = 3;
   static constexpr std::uint8_t kCfg = 0x06;
 
@@ -80,8 +87,8 @@ class UbloxGps {
   static constexpr auto kPort = ubx::frame<20>(
       kCfg, 0x00,
       {1, 0, 0, 0, 0xD0, 0x08, 0, 0, kBaud & 0xFF, kBaud >> 8 & 0xFF, kBaud >> 16, 0, 1, 0, 1, 0});
-  static constexpr auto kRate = ubx::frame<6>(kCfg, 0x08, {200, 0, 1, 0, 1, 0});
-  static constexpr auto kNav5 = ubx::frame<36>(kCfg, 0x24, {0x05, 0, 6, 2});
+  static constexpr auto kRate = ubx::frame<6>(kCfg, 0x08, {kPeriod_ms, 0, 1, 0, 1, 0});
+  static constexpr auto kNav5 = ubx::frame<36>(kCfg, 0x24, {0x05, 0, kAirborne, k3D});
   static constexpr auto kPvt = ubx::frame<3>(kCfg, 0x01, {0x01, 0x07, 1});
   static constexpr auto kPosllh = ubx::frame<3>(kCfg, 0x01, {0x01, 0x02, 1});
   static constexpr auto kVelned = ubx::frame<3>(kCfg, 0x01, {0x01, 0x12, 1});
@@ -89,6 +96,15 @@ class UbloxGps {
   static constexpr std::array<std::span<const std::uint8_t>, 6> kSettings{kRate,   kNav5,   kPvt,
                                                                           kPosllh, kVelned, kSol};
   static constexpr std::size_t kPvtSetting = 2;  // taken: those behind it are not needed
+  // How each is asked for: without a payload; of a message by its class and id.
+  static constexpr auto kPollRate = ubx::frame<0>(kCfg, 0x08, {});
+  static constexpr auto kPollNav5 = ubx::frame<0>(kCfg, 0x24, {});
+  static constexpr auto kPollPvt = ubx::frame<2>(kCfg, 0x01, {0x01, 0x07});
+  static constexpr auto kPollPosllh = ubx::frame<2>(kCfg, 0x01, {0x01, 0x02});
+  static constexpr auto kPollVelned = ubx::frame<2>(kCfg, 0x01, {0x01, 0x12});
+  static constexpr auto kPollSol = ubx::frame<2>(kCfg, 0x01, {0x01, 0x06});
+  static constexpr std::array<std::span<const std::uint8_t>, kSettings.size()> kPolls{
+      kPollRate, kPollNav5, kPollPvt, kPollPosllh, kPollVelned, kPollSol};
 
   void begin(Phase phase, std::uint32_t now_us) {
     phase_ = phase;
@@ -104,6 +120,8 @@ class UbloxGps {
   // Sends what is to be acknowledged, again where it was not; false: given up.
   bool ask(std::span<const std::uint8_t> request, std::uint32_t now_us);
   void configure(std::uint32_t now_us);
+  void verify(std::uint32_t now_us);
+  void on_setting();
   void on_frame(std::uint32_t now_us);
   void on_answer(bool nak);
   void on_pvt(std::uint32_t now_us);
@@ -121,7 +139,10 @@ class UbloxGps {
   std::uint8_t awaited_ = 0;  // id of the CFG message
   std::uint8_t parts_ = 0;
   GpsFix next_, fix_;
-  std::uint32_t searches_ = 0, refused_ = 0;
+  std::uint32_t searches_ = 0, refused_ = 0, restored_ = 0;
+  std::size_t poll_ = 0;  // the next of kPolls
+  std::uint32_t polled_us_ = 0;
+  bool lost_ = false;  // one setting is not as it was told
 };
 
 template <BaudUart Uart>
@@ -144,8 +165,8 @@ void UbloxGps<Uart>::tick(std::uint32_t now_us) {
     case Phase::configure:
       return configure(now_us);
     case Phase::run:
-      if (now_us - since_us_ > kSilence_us) search(now_us);
-      return;
+      if (now_us - since_us_ > kSilence_us) return search(now_us);
+      return verify(now_us);
   }
 }
 
@@ -176,6 +197,35 @@ void UbloxGps<Uart>::configure(std::uint32_t now_us) {
   if (!ask(kSettings[setting_], now_us)) search(now_us);
 }
 
+// What was polled last has been answered by now, and its acknowledge is taken for none of a setting.
+template <BaudUart Uart>
+void UbloxGps<Uart>::verify(std::uint32_t now_us) {
+  if (now_us - polled_us_ < kVerify_us || now_us - since_us_ > kBehind_us) return;
+  polled_us_ = now_us;
+  if (lost_) {
+    lost_ = false;
+    restored_ = restored_ + 1;
+    return begin(Phase::confirm, now_us);
+  }
+  if (uart_.send(kPolls[poll_]) != Status::ok) return;
+  // Of the messages PVT, or the three behind it.
+  ++poll_;
+  if (poll_ == kPvtSetting && !pvt_) ++poll_;
+  if (poll_ == kPolls.size() || (poll_ > kPvtSetting && pvt_)) poll_ = 0;
+}
+
+// Of a message the rates at six ports, UART1's the second.
+template <BaudUart Uart>
+void UbloxGps<Uart>::on_setting() {
+  bool holds = true;
+  if (parser_.is(kCfg, 0x08, 6)) holds = parser_.get<std::uint16_t>(0) == kPeriod_ms;
+  if (parser_.is(kCfg, 0x24, 36)) {
+    holds = parser_.get<std::uint8_t>(2) == kAirborne && parser_.get<std::uint8_t>(3) == k3D;
+  }
+  if (parser_.is(kCfg, 0x01, 8)) holds = parser_.get<std::uint8_t>(3) == 1;
+  lost_ = lost_ || !holds;
+}
+
 template <BaudUart Uart>
 void UbloxGps<Uart>::push(std::uint8_t byte, std::uint32_t now_us) {
   if (parser_.between_frames()) frame_us_ = now_us;
@@ -187,6 +237,7 @@ void UbloxGps<Uart>::on_frame(std::uint32_t now_us) {
   constexpr std::size_t kPvtOf7 = 84, kPvtOf8 = 92;
   const bool nak = parser_.is(0x05, 0x00, 2);
   if (nak || parser_.is(0x05, 0x01, 2)) return on_answer(nak);
+  if (phase_ == Phase::run) on_setting();
   if (!pvt_) return on_message_of_three(now_us);
   if (parser_.is(0x01, 0x07, kPvtOf8) || parser_.is(0x01, 0x07, kPvtOf7)) on_pvt(now_us);
 }
@@ -260,7 +311,7 @@ void UbloxGps<Uart>::on_part(Part part, std::uint32_t now_us) {
     next_.received_us = frame_us_;
   }
   parts_ = static_cast<std::uint8_t>(parts_ | part);
-  if (phase_ == Phase::run) since_us_ = now_us;
+  if (phase_ == Phase::run && parts_ == whole) since_us_ = now_us;
 }
 
 }  // namespace fw

@@ -191,7 +191,7 @@ __attribute__((noinline)) void sensor_task() {
   if (const auto voltage_V = hal::battery_adc.next_V()) flight().on_battery(*voltage_V);
   faults.baro_failures = barometer.failures();
   faults.mag_failures = magnetometer.failures();
-  faults.sensor_reconfigured = barometer.restarts() + magnetometer.reconfigured();
+  faults.sensor_reconfigured = barometer.restarts() + magnetometer.reconfigured() + gps.restored();
 }
 
 static void can_gps_task() {

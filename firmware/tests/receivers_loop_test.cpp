@@ -16,6 +16,7 @@
 namespace fw {
 namespace {
 
+using Bytes = std::vector<std::uint8_t>;
 using whirl::io::EventQueue, whirl::io::FaultBook, whirl::io::Nanoseconds;
 
 std::uint32_t us_of(Nanoseconds ns) {
@@ -61,8 +62,9 @@ struct GpsLoop {
     uart.join(*part);
     part->join([this](const whirl::io::UartByte& byte, const whirl::io::UartFormat& format) {
       const auto sample = whirl::io::sample_uart(byte, format, 8, uart.baud);
-      if (!sample.stop_missing)
-        gps.push(static_cast<std::uint8_t>(sample.bits), us_of(queue.now()));
+      if (sample.stop_missing) return;
+      gps.push(static_cast<std::uint8_t>(sample.bits), us_of(queue.now()));
+      parser.add(static_cast<std::uint8_t>(sample.bits));
     });
   }
   void run_s(double s) {
@@ -79,6 +81,10 @@ struct GpsLoop {
   UbloxGps<Uart> gps{uart};
   std::unique_ptr<whirl::io::Ublox> part;
   std::vector<GpsFix> fixes;
+  std::function<void(const whirl::io::UbxFrame&)> spy;  // on what the part sends
+  whirl::io::UbxParser parser{[this](const whirl::io::UbxFrame& frame) {
+    if (spy) spy(frame);
+  }};
 };
 
 TEST(GpsLoop, FromAnySavedRateFixesComeFiveTimesASecond) {
@@ -120,6 +126,41 @@ TEST(GpsLoop, AReceiverThatForgotItsSettingsIsSetUpAgain) {
   EXPECT_EQ(loop.part->baud(), 57600.0);
   EXPECT_TRUE(loop.gps.running());
   EXPECT_TRUE(loop.fixes.back().usable());
+}
+
+// It goes on at 1 Hz with the model of a hand-held one: seen by what is polled, not by silence. A poll is every 2 s, five
+// of a 6's settings and three of an M8's, and two polls later they are told again.
+TEST(GpsLoop, AReceiverThatForgetsRateAndModelIsToldThemAgainWithoutASearch) {
+  using whirl::io::UbloxModel;
+  for (const UbloxModel model : {UbloxModel::six, UbloxModel::m8}) {
+    GpsLoop loop(57600, model);
+    Bytes nav5;
+    loop.spy = [&](const whirl::io::UbxFrame& frame) {
+      if (frame.message_class == 0x06 && frame.id == 0x24) nav5 = frame.payload;
+    };
+    loop.run_s(20.0);
+    ASSERT_TRUE(loop.gps.running());
+    EXPECT_EQ(loop.gps.restored(), 0u);
+    ASSERT_EQ(nav5.size(), 36u);  // it was polled
+    EXPECT_EQ(nav5[2], 6);
+    loop.book.add({.number = 1,
+                   .kind = whirl::io::FaultKind::gnss_forgets,
+                   .start_ns = loop.queue.now() + 1,
+                   .bus = 6});
+    loop.fixes.clear();
+    loop.run_s(14.0);
+    EXPECT_LT(loop.fixes.size(), 60u);  // for a while they came at 1 Hz
+    EXPECT_EQ(loop.gps.restored(), 1u);
+    EXPECT_EQ(loop.gps.searches(), 0u);
+    loop.fixes.clear();
+    nav5.clear();
+    loop.run_s(11.0);
+    EXPECT_EQ(loop.fixes.size(), 55u);
+    ASSERT_EQ(nav5.size(), 36u);
+    EXPECT_EQ(nav5[2], 6);
+    EXPECT_EQ(nav5[3], 2);
+    EXPECT_EQ(loop.gps.restored(), 1u);
+  }
 }
 
 TEST(CppmLoop, SticksBecomePulseWidthsAndALostLinkIsSeen) {

@@ -175,6 +175,8 @@ void FlightWorld::name_receiver_signals() {
   length("gps_error_north", error, [this] { return receiver_.error_W_m().x(); });
   length("gps_error_east", error, [this] { return receiver_.error_W_m().y(); });
   length("gps_error_down", error, [this] { return receiver_.error_W_m().z(); });
+  add_signal("gps_period", Dimension::time, "between the GPS receiver's two newest measurements",
+             [this] { return receiver_.period_s(); });
   const auto seen_m = [this] { return receiver_.place_m(vehicle_.state().p_WB_W_m); };
   length("receiver_north", shown, [=] { return seen_m().x(); });
   length("receiver_east", shown, [=] { return seen_m().y(); });

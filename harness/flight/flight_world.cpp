@@ -115,7 +115,7 @@ void FlightWorld::on_messages(const io::Batch& happened) {
         ++setpoints_refused_;
       }
     } else if (header.kind == io::Kind::gnss_solution) {
-      receiver_.on_solution(reader.as<io::GnssSolution>());
+      receiver_.on_solution(reader.as<io::GnssSolution>(), header.t_ns);
     } else if (header.kind == io::Kind::uart_received && is_radio(header)) {
       station_.receive(reader.payload(), header.t_ns);
     } else if (header.kind == io::Kind::uart_delivered && is_radio(header)) {

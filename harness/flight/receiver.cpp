@@ -31,7 +31,9 @@ void Receiver::hear(const io::MavlinkFrame& frame) {
   place_solution();
 }
 
-void Receiver::on_solution(const io::GnssSolution& solution) {
+void Receiver::on_solution(const io::GnssSolution& solution, std::int64_t t_ns) {
+  if (solution_) period_s_ = 1e-9 * static_cast<double>(t_ns - solution_ns_);
+  solution_ns_ = t_ns;
   solution_ = solution;
   place_solution();
 }

@@ -17,10 +17,11 @@ namespace whirl::flight {
 
 class Receiver {
  public:
-  void on_solution(const io::GnssSolution& solution);
+  void on_solution(const io::GnssSolution& solution, std::int64_t t_ns);
   void hear(const io::MavlinkFrame& frame);
 
   Eigen::Vector3d error_W_m() const;
+  double period_s() const { return period_s_; }  // between the two newest; NaN until there were
   // Of a vehicle that is at p_WB_W_m: north, east, down of its origin.
   Eigen::Vector3d place_m(const Eigen::Vector3d& p_WB_W_m) const;
 
@@ -28,6 +29,8 @@ class Receiver {
   void place_solution();
 
   std::optional<io::GnssSolution> solution_;
+  std::int64_t solution_ns_ = 0;
+  double period_s_ = std::nan("");
   std::optional<Geodetic> origin_;
   Eigen::Vector3d solution_m_ =
       Eigen::Vector3d::Constant(std::nan(""));  // of origin_; signals ask each step

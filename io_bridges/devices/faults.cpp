@@ -43,6 +43,7 @@ constexpr KindName kNames[] = {
     {FaultKind::memory_busy, "memory_busy"},
     {FaultKind::sensor_brown_out, "sensor_brown_out"},
     {FaultKind::gnss_brown_out, "gnss_brown_out"},
+    {FaultKind::gnss_forgets, "gnss_forgets"},
     {FaultKind::sensor_scale, "sensor_scale"},
     {FaultKind::can_bit_error, "can_bit_error"},
     {FaultKind::can_no_ack, "can_no_ack"},

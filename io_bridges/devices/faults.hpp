@@ -53,6 +53,8 @@ enum class FaultKind : std::uint32_t {
   memory_busy,         // a write does not end before the fault does
   sensor_brown_out,    // without supply while it lasts, then as after power-up
   gnss_brown_out,      // at its start the receiver begins anew: its saved settings, a hot start
+  gnss_forgets,        // at its start rate and navigation model are the part's defaults; port and
+                       // messages stay, so that it goes on
   sensor_scale,        // axis reads by value (a share) more, besides its offset
   // On CAN: `address` is the sending device's number (of can_lost, can_cut: the one that is cut off);
   // anywhere: every sender, of can_cut all devices.

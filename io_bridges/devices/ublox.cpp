@@ -39,19 +39,27 @@ Ublox::Ublox(EventQueue& queue, const Params& params, Sense sense, FaultBook* fa
       fix_due_ns_(queue.now() + params.first_fix_ns),
       measure_(queue, [this] { measure(); }),
       out_(queue, [this] { put_out(); }),
-      brown_out_(queue, [this] { brown_out(); }) {
+      brown_out_(queue, [this] { brown_out(); }),
+      forget_(queue, [this] { forget(); }) {
   WHIRL_CHECK(params.satellites >= kFewest_satellites && params.satellites <= 12,
               params.satellites);
   schedule();
   if (faults_ == nullptr) return;
   faults_->on_added([this](const Fault& added) {
     if (added.kind == FaultKind::gnss_brown_out) brown_out_.at(added.start_ns);
+    if (added.kind == FaultKind::gnss_forgets) forget_.at(added.start_ns);
   });
 }
 
 void Ublox::brown_out() {
   if (fault(FaultKind::gnss_brown_out, queue_.now()) == nullptr) return;
   restart({.start = ublox::Start::hot, .reload = true});
+  settings_changed();
+}
+
+void Ublox::forget() {
+  if (fault(FaultKind::gnss_forgets, queue_.now()) == nullptr) return;
+  config_.forget_navigation();
   settings_changed();
 }
 

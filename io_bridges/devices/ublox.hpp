@@ -53,7 +53,8 @@
 //   Faults   sensor_frozen (place and velocity stay, time goes on), sensor_offset (axis 0..2 m, 3..5
 //            m/s, north east down), sensor_late (solutions come value seconds later),
 //            sensor_wrong_identity (hwVersion reads value, 70000: 00070000), gnss_jammed,
-//            gnss_spoofed (fix and flags stay good), gnss_dropout, gnss_brown_out
+//            gnss_spoofed (fix and flags stay good), gnss_dropout, gnss_brown_out,
+//            gnss_forgets
 //   Left out antenna's place off the centre of mass, static hold, elevation and masks, power save, SBAS
 #pragma once
 #include <deque>
@@ -112,6 +113,7 @@ class Ublox : public RatedUartPeer {
   void settings_changed();
   void restart(const ublox::Restart& restart);
   void brown_out();
+  void forget();
 
   void schedule();
   void measure();
@@ -146,7 +148,7 @@ class Ublox : public RatedUartPeer {
   bool measured_ = false;
   std::deque<Solution> solutions_;  // on their way out
   std::uint32_t number_ = 0;        // of solutions
-  Event measure_, out_, brown_out_;
+  Event measure_, out_, brown_out_, forget_;
 };
 
 }  // namespace whirl::io

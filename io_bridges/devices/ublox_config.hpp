@@ -75,6 +75,7 @@ class UbloxConfig {
   // $PUBX,41: protocols and baud rate of a port.
   void set_port(std::uint16_t in_mask, std::uint16_t out_mask, std::uint32_t baud);
   void reload() { settings_ = saved_; }
+  void forget_navigation() { settings_.navigation = default_.navigation; }
   const ublox::Settings& settings() const { return settings_; }
 
  private:

@@ -89,3 +89,9 @@ end)
 gps_plan("gps: a receiver that begins anew in flight is found again", function(t)
   found_again_in_flight(t, { kind = "gnss_brown_out", device = "gps" })
 end)
+
+-- Its rate is 1 Hz and its model that of a hand-held one from then on: nothing fails, and fixes would be too few for good. What
+-- it was told is polled, each setting within 10 s, and told again.
+gps_plan("gps: a receiver that forgets its rate in flight is told it again", function(t)
+  forgets_in_flight(t, { kind = "gnss_forgets", device = "gps" })
+end)

@@ -55,3 +55,7 @@ end
 m8_plan("one that begins anew in flight is found again", function(t)
   found_again_in_flight(t, { kind = "gnss_brown_out", device = "m8" })
 end)
+
+m8_plan("a receiver that forgets its rate in flight is told it again", function(t)
+  forgets_in_flight(t, { kind = "gnss_forgets", device = "m8" })
+end)

@@ -124,6 +124,27 @@ TEST(UbloxFaults, ABrownOutLeavesWhatIsSavedAndAFixWithinASecond) {
                    stated(0.15, "settling of a hot start, 2 s after its fix, at 1 Hz")));
 }
 
+// Rate and model are the part's defaults; what it sends and how is as it was told.
+TEST(UbloxFaults, WhoForgetsGoesOnOnceASecondWithTheModelOfAHand) {
+  FaultBench bench;
+  bench.add(FaultKind::gnss_forgets, 0.0, 0, 10.05, 10.051);
+  UbxFrame rate{0x06, 0x08, {200, 0, 1, 0, 1, 0}}, nav5{0x06, 0x24, Bytes(36)};
+  nav5.payload[0] = 5, nav5.payload[2] = 6, nav5.payload[3] = 2;
+  bench.queue.run_until(9 * kSecond);
+  bench.send(rate);
+  bench.send(nav5);
+  bench.queue.run_until(10 * kSecond + kSecond / 10);
+  bench.forget();
+  bench.queue.run_until(14 * kSecond + kSecond / 10);
+  EXPECT_EQ(bench.applied, 1);
+  EXPECT_EQ(bench.of(0x01, 0x02).size(), 4u);
+  bench.send(UbxFrame{0x06, 0x24, {}});
+  bench.run(0.2);
+  ASSERT_EQ(bench.of(0x06, 0x24).size(), 1u);
+  EXPECT_EQ(bench.of(0x06, 0x24)[0].payload[2], 0);
+  EXPECT_EQ(bench.of(0x06, 0x24)[0].payload[3], 3);
+}
+
 TEST(UbloxFaults, WrongIdentityIsAnotherHardwareVersion) {
   FaultBench bench;
   bench.add(FaultKind::sensor_wrong_identity, 70000.0);

@@ -34,7 +34,8 @@ const std::array<Seat, 6>& seats() {
        {"ublox_6",
         kPodGps,
         {Kind::sensor_frozen, Kind::sensor_offset, Kind::sensor_late, Kind::sensor_wrong_identity,
-         Kind::gnss_jammed, Kind::gnss_spoofed, Kind::gnss_dropout, Kind::gnss_brown_out}},
+         Kind::gnss_jammed, Kind::gnss_spoofed, Kind::gnss_dropout, Kind::gnss_brown_out,
+         Kind::gnss_forgets}},
        {"sbus", kPodReceiver, {Kind::rc_link_lost, Kind::rc_glitch}},
        {"battery_sense", kPodBattery, {Kind::sensor_offset}}}};
   return all;

@@ -37,6 +37,19 @@ function found_again_in_flight(t, brown_out)
   t:within("10 s", function(s) return s.told_armed == 1 end, "armed anew by the receiver that was found")
 end
 
+-- It flies on, and once its settings are polled and told again, solutions come five times a second as before.
+function forgets_in_flight(t, forgets)
+  hover_by_gps(t)
+  some_moment(t)
+  t:expect(t:value "gps_period", "between solutions, before"):within("199 ms", "201 ms")
+  t:fault(forgets)
+  t:within("3 s", function(s) return s.gps_period_s > 0.9 end, "solutions come once a second")
+  t:within("13 s", function(s) return s.gps_period_s < 0.3 end, "and five times a second again")
+  local r = t:record({ "gps_period", "told_state" }, "5 s")
+  t:expect(r:max "gps_period", "between solutions, at most"):at_most "201 ms"
+  t:expect(r:max "told_state", "it flies on"):at_most(2)
+end
+
 -- Down, with the motors off, within the fence. Who stands is off in 0.8 s, of which the next heartbeat tells within 1.1, or if
 -- it is lost in 2.1. What rocks or hops on its feet in the wind takes up to 1.5 s (firmware/tests/touchdown_test.cpp), and a
 -- gust may throw it once more: 6 s.
