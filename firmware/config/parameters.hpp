@@ -17,11 +17,13 @@
 namespace fw {
 
 enum class Parameter : std::uint8_t {
-  est_filter,           // 0: explicit complementary filter, 1: velocity-aided filters
-  est_start_scale,      // latent scale that the velocity-aided filters start with
-  est_start_tilt_deg,   // about the nose, by which their attitude starts wrong; a change of either
-                        // starts them anew, but not while they are flown by
-  ctl_feedforward,      // 1: acceleration and rates of a trajectory are fed forward
+  est_filter,          // 0: explicit complementary filter, 1: velocity-aided filters
+  est_start_scale,     // latent scale that the velocity-aided filters start with
+  est_start_tilt_deg,  // about the nose, by which their attitude starts wrong; a change of either
+                       // starts them anew, but not while they are flown by
+  ctl_feedforward,     // 1: acceleration and rates of a trajectory are fed forward
+  ctl_no_heading,  // 1: where a place is held, the attitude of appendix E: its heading goes where qd3
+                   // is 0, near north
   mag_declination_deg,  // of the magnetic field, towards east of north
   fence_north_m,        // half the width of the box about the origin that is not left; 0: no limit
   fence_east_m,
@@ -86,6 +88,7 @@ inline constexpr ParameterRow kParameterTable[] = {
     {Parameter::est_start_tilt_deg, "EST_START_TILT", 0, -45, 45, Numbers::real,
      WhileArmed::allowed},
     {Parameter::ctl_feedforward, "CTL_FEEDFWD", 1, 0, 1, Numbers::whole, WhileArmed::allowed},
+    {Parameter::ctl_no_heading, "CTL_NO_HEADING", 0, 0, 1, Numbers::whole, WhileArmed::refused},
     // Canberra, from a map.
     {Parameter::mag_declination_deg, "MAG_DECLINATION", 12.4f, -180, 180, Numbers::real,
      WhileArmed::refused},

@@ -3,9 +3,14 @@
 //   Source  [Bangura 2017, 6.5.3]: gamma = Rd e3 along the force, nu = gamma x phi / |gamma x phi| with
 //           phi the heading, chi = nu x gamma, Rd = (chi nu gamma); rates from the derivatives of
 //           Td Rd e3 (6.40, 6.42)
+//   Variant appendix E: qd3 = 0, turned from level about a level axis, its heading left to that. With x, y of
+//           gamma q0 = sqrt((1 + sqrt(1 - x^2 - y^2)) / 2), q1 = y / (2 q0), q2 = -x / (2 q0); q0 is positive,
+//           as the filters' is. Refused where x^2 + y^2 > 1
 //   Limits  tilt, and never upside down; the collective's own limits are the mixer's
 //   Differs the derivatives are those of the trajectory, not of the errors, and snap counts as 0
 #pragma once
+#include <optional>
+
 #include "firmware/math.hpp"
 
 namespace fw {
@@ -25,6 +30,10 @@ struct ThrustAndAttitude {
 struct WantedForce {
   Vector3 f_W_mps2 = Vector3::Zero(), jerk_W_mps3 = Vector3::Zero(), snap_W_mps4 = Vector3::Zero();
 };
-ThrustAndAttitude resolve(WantedForce wanted, const Quaternion& q_WB, float yaw_rad);
+// Without a yaw it is appendix E's; where that is refused, the present attitude stays.
+ThrustAndAttitude resolve(WantedForce wanted, const Quaternion& q_WB, std::optional<float> yaw_rad);
+
+// Appendix E, upright; nothing where x and y are together longer than gamma, or no numbers.
+std::optional<Quaternion> without_heading(float x, float y);
 
 }  // namespace fw

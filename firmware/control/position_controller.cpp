@@ -34,7 +34,7 @@ ThrustAndAttitude PositionController::step(const Vector3& p_WB_W_m, const Vector
     wanted.jerk_W_mps3 = -reference.jerk_W_mps3() - drag.cwiseProduct(reference.a_W_mps2());
     wanted.snap_W_mps4 = -drag.cwiseProduct(reference.jerk_W_mps3());
   }
-  ThrustAndAttitude out = resolve(wanted, q_WB, reference.yaw_rad());
+  ThrustAndAttitude out = resolve(wanted, q_WB, heading(reference.yaw_rad()));
   out.v_B_mps = out.q_WB.conjugate() * reference.v_W_mps();
   return out;
 }
@@ -54,7 +54,7 @@ ThrustAndAttitude PositionController::sink(float speed_mps, float sinking_mps,
   f_W.head<2>() *= lift;  // who carries less leans no further: on its feet it would rock
   const float v_error = std::clamp(sinking_mps - speed_mps, -0.6f, 0.6f);
   f_W.z() += lift * kGravity_mps2 + config::kVelocityGain_ps[2] * v_error;
-  return resolve({.f_W_mps2 = f_W}, q_WB, yaw_rad);
+  return resolve({.f_W_mps2 = f_W}, q_WB, heading(yaw_rad));
 }
 
 float PositionController::hover_thrust_N() const {

@@ -15,6 +15,8 @@ class PositionController {
  public:
   void reset() { integral_W_mps2_.setZero(); }
   void set_drag(float drag_spm) { drag_ps_ = drag_spm * config::kGravity_mps2; }
+  // Its attitudes are appendix E's, whatever yaw is asked for.
+  void leave_heading(bool left) { heading_left_ = left; }
   // lift: share of the weight that is carried (below 1 while taking off and touching down).
   ThrustAndAttitude step(const Vector3& p_WB_W_m, const Vector3& v_WB_W_mps, const Quaternion& q_WB,
                          const Reference& reference, float lift, float dt_s, bool integrating);
@@ -31,6 +33,10 @@ class PositionController {
   Vector3 force(const Vector3& p_WB_W_m, const Vector3& v_WB_W_mps, const Reference& reference,
                 float lift) const;
   void integrate(const Vector3& p_error_W_m, float dt_s);
+  std::optional<float> heading(float yaw_rad) const {
+    return heading_left_ ? std::nullopt : std::optional(yaw_rad);
+  }
+  bool heading_left_ = false;
   Vector3 integral_W_mps2_ = Vector3::Zero();
   // Deceleration by drag over velocity, in level flight.
   float drag_ps_ = config::kDrag_spm * config::kGravity_mps2;

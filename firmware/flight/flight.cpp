@@ -213,6 +213,7 @@ void Flight::apply_parameters() {
   const float drag_spm = estimator_.drag().drag_spm();
   attitude_control_.set_drag(drag_spm);
   position_control_.set_drag(drag_spm);
+  position_control_.leave_heading(parameters_.is_on(Parameter::ctl_no_heading));
   velocity_control_.set_drag(drag_spm);
 }
 

@@ -365,6 +365,48 @@ TEST(DesiredAttitude, AtTheLimitOfTiltItStillCarriesTheWeightAndPointsTheSameWay
   }
 }
 
+// Appendix E by its own equations: E.2 turns q back into x, y and the vertical, E.5 has q3 = 0, E.9 q0 > 0.
+TEST(DesiredAttitude, WithoutAHeadingItIsTheOneOfAppendixE) {
+  for (const float x : {-0.9f, -0.3f, 0.0f, 0.2f, 0.6f}) {
+    for (const float y : {-0.4f, 0.0f, 0.1f, 0.4f}) {
+      const auto q = without_heading(x, y);
+      ASSERT_TRUE(q);
+      EXPECT_GT(q->w(), 0.7f);
+      EXPECT_EQ(q->z(), 0.0f);
+      EXPECT_TRUE(near(-2.0 * q->w() * q->y(), x, stated(1e-6, "float")));
+      EXPECT_TRUE(near(2.0 * q->w() * q->x(), y, stated(1e-6, "float")));
+      const double down = std::sqrt(1.0 - x * x - y * y);
+      const double by_q = q->w() * q->w() - q->x() * q->x() - q->y() * q->y();
+      EXPECT_TRUE(near(by_q, down, stated(2e-6, "float")));
+      EXPECT_TRUE(near(q->norm(), 1.0, stated(1e-6, "float")));
+    }
+  }
+  // 30 degrees about the level axis: north of it is a nose down, east a roll to the left.
+  const auto pitched = without_heading(0.5f, 0.0f), rolled = without_heading(0.0f, 0.5f);
+  EXPECT_TRUE(near(pitched->y(), -std::sin(15.0 * kDegree), stated(1e-6, "float")));
+  EXPECT_TRUE(near(rolled->x(), std::sin(15.0 * kDegree), stated(1e-6, "float")));
+  EXPECT_TRUE(without_heading(0.6f, 0.8f - 1e-6f));
+  EXPECT_FALSE(without_heading(0.8f, 0.61f));
+  EXPECT_FALSE(without_heading(-1.01f, 0.0f));
+  EXPECT_FALSE(without_heading(std::nanf(""), 0.0f));
+}
+
+TEST(DesiredAttitude, WithoutAHeadingForceAndThrustAreTheSame) {
+  for (const Vector3& f_W : {Vector3(2.0f, -1.0f, kG), Vector3(0, 0, kG), Vector3(-9, 9, kG)}) {
+    const WantedForce wanted{.f_W_mps2 = f_W};
+    const ThrustAndAttitude with = resolve(wanted, Quaternion::Identity(), 1.2f);
+    const ThrustAndAttitude without = resolve(wanted, Quaternion::Identity(), std::nullopt);
+    EXPECT_EQ(with.thrust_N, without.thrust_N);
+    const Vector3 apart = with.q_WB * Vector3::UnitZ() - without.q_WB * Vector3::UnitZ();
+    EXPECT_TRUE(near(apart.norm(), 0.0, stated(1e-6, "float")));
+    EXPECT_TRUE(near(without.q_WB.z(), 0.0, stated(1e-6, "float")));
+  }
+  const Quaternion held(0.8f, 0.0f, 0.0f, 0.6f);  // what is no number is no attitude
+  const WantedForce nonsense{.f_W_mps2 = {std::nanf(""), 0, kG}};
+  EXPECT_TRUE(near(resolve(nonsense, held, std::nullopt).q_WB.angularDistance(held), 0.0,
+                   stated(1e-3, "float")));
+}
+
 TEST(Reference, CarriesATrajectoryOnBetweenItsPoints) {
   Reference reference;
   const TrajectoryPoint point{{1, 2, -1}, {0.5f, 0, 0}, {0, 0.2f, 0}, 0.1f};
