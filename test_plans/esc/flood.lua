@@ -23,8 +23,9 @@ local function flood(name, rate)
       local flooded = t:record({ "thrust" }, "1 s")
       t:expect(flooded:max_error { thrust = calm }, "thrust off its value")
         :at_most "0.04 N"
-      local rise = t:record({ "thrust" }, "1 s", function() t:command { thrust = "3.2 N" } end)
+      local rise = t:record({ "thrust", "bus_peak" }, "1 s", function() t:command { thrust = "3.2 N" } end)
       t:expect(rise:rise_time "thrust", "thrust rise, 10 to 90 %"):at_most "50 ms"
+      ends(t, rise, 3.2, "rise")
       t:step "calm again"
       t:command { setpoint_rate = "50 Hz" }
       t:wait "200 ms"

@@ -32,15 +32,16 @@ local function rise(name, tags, options)
       t:expect(up:overshoot "thrust", "overshoot"):at_most "10 %"
       local band = options.band or "2 %"
       local share = tonumber((options.off or band):match "%d+") / 100
-      local function ends(record, wanted_N, words)
-        t:expect(record:final "thrust", words):within((1 - share) * wanted_N .. " N", (1 + share) * wanted_N .. " N")
+      local function ends(record, wanted_N, words, settles)
+        t:expect(record:final "thrust", "thrust after the " .. words)
+            :within((1 - share) * wanted_N .. " N", (1 + share) * wanted_N .. " N")
+        t:expect(record:settled("thrust", band), words .. " settled within " .. band):at_most(settles or "150 ms")
       end
-      ends(up, high_N, "thrust after the rise")
-      t:expect(up:settled("thrust", band), "settled within " .. band):at_most "150 ms"
+      ends(up, high_N, "rise")
       t:step "fall"
       local down = t:record(signals, "1 s", function() t:command { thrust = low_N .. " N" } end)
       t:expect(down:fall_time "thrust", string.format("thrust fall %.1f to %.1f N", high_N, low_N)):at_most "70 ms"
-      ends(down, low_N, "thrust after the fall")
+      ends(down, low_N, "fall", options.fall_settles)
       safe(t, up, "rise")
       safe(t, down, "fall")
       t:expect(t:value "armed", "still armed"):equal(1)
@@ -57,5 +58,7 @@ rise("light", { "esc" }, { motor = { inertia = "-12 %" } })
 -- current has gaps and power tells nothing: the image carries what it was told of the wind through that.
 -- From 2.4 N on: the static map's speed of 2 N, by which it begins, is the slowest at which power was calibrated, and
 -- in this wind the current has gaps there.
--- off: a third of what RPM control loses there, 22 % at 3.6 N, as downdraft.lua asks.
-rise("downdraft", { "esc" }, { down = "4 m/s", band = "4 %", off = "7 %", low_N = 2.4 })
+-- off: a third of what RPM control loses there, 22 % at 3.6 N, as downdraft.lua asks: within 3 % it is not on every copy
+-- (-3.0 % at 2.4 N; docs/thrust_estimator.md, "Copies").
+-- fall_settles: for 0.25 s at most it carries what it was told, and what power then tells is smoothed by 50 ms.
+rise("downdraft", { "esc" }, { down = "4 m/s", band = "4 %", off = "7 %", fall_settles = "300 ms", low_N = 2.4 })

@@ -11,7 +11,7 @@ local signals = { "thrust", "winding_peak", "bus_peak" }
 local function small_steps(t)
   t:step "fall"
   local fall = t:record(signals, "1 s", function() t:command { thrust = "2 N" } end)
-  t:expect(fall:final "thrust", "thrust after the fall"):within("1.9 N", "2.2 N")
+  ends(t, fall, 2, "fall")
   t:expect(fall:fall_time "thrust", "thrust fall 3.2 to 2.0 N"):at_most "70 ms"
   safe(t, fall, "fall")
   t:step "rise"
@@ -19,7 +19,8 @@ local function small_steps(t)
   t:expect(rise:rise_time "thrust", "thrust rise 2.0 to 3.2 N"):at_most "50 ms"
   t:expect(rise:response_time "thrust", "command on the wire to 90 %"):at_most "70 ms"
   t:expect(rise:overshoot "thrust", "overshoot"):at_most "10 %"
-  t:expect(rise:settled("thrust", "2 %"), "settled within 2 %"):at_most "150 ms"
+  ends(t, rise, 3.2, "rise")
+  t:expect(rise:settled("thrust", "2 %"), "rise settled within 2 %"):at_most "150 ms"
   safe(t, rise, "rise")
 end
 
@@ -29,7 +30,7 @@ local function large_step(t)
   t:wait "2 s"
   local low_N = t:value("thrust", "N")
   local rise = t:record(signals, "1 s", function() t:command { thrust = "4 N" } end)
-  t:expect(rise:final "thrust", "thrust after the step"):within("3.6 N", "4.4 N")
+  ends(t, rise, 4, "large rise")
   local bound = t:shortest_rise { from = low_N .. " N", to = rise:final("thrust").value .. " N", current = "20 A" }
   t:log(string.format("20 A alone take %.1f ms", 1e3 * bound.value))
   t:expect(rise:rise_time "thrust", "thrust rise 0.8 to 4.0 N, with 10 % over what 20 A alone take")

@@ -9,6 +9,14 @@ function start(t, wish)
   t:wait "2 s"
 end
 
+-- Where a change of thrust has led: to what was commanded, and without wandering on. `record`: thrust and another
+-- signal, from the change on.
+function ends(t, record, wanted_N, words)
+  t:expect(record:final "thrust", "thrust after the " .. words)
+      :within(0.97 * wanted_N .. " N", 1.03 * wanted_N .. " N")
+  t:expect(record:settled("thrust", "3 %"), words .. " settled within 3 %"):at_most "150 ms"
+end
+
 -- Bit `number` of the status byte.
 function flag(flags, number)
   return flags // 2 ^ number % 2 == 1
