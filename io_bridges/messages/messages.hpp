@@ -208,7 +208,7 @@ struct ShaftState {  // means and sums of the time since the last boundary, stat
   double air_torque_Nm = 0.0;     // mean
   double source_current_A = 0.0;  // mean, out of the supply
   double bridge_current_A = 0.0;  // mean, into the bridge
-  double bridge_peak_A = 0.0;     // largest mean of a 50 us window
+  double bridge_peak_A = 0.0;     // largest mean of a PWM period that has ended
   double winding_peak_A = 0.0;    // largest magnitude
   double bus_voltage_V = 0.0;     // at this instant
   double bus_highest_V = 0.0, bus_lowest_V = 0.0;

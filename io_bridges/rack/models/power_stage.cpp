@@ -13,7 +13,6 @@ constexpr double kShunt_VpA = 0.5e-3 * 50.9;
 constexpr double kReference_V = 3.3;
 constexpr double kLeast_source_ohm = 1e-3;  // leads; also keeps the bus capacitor's equation sane
 constexpr double kLongest_step_s = 25e-6;
-constexpr double kWindow_s = 50e-6;
 constexpr double kStands_radps = 5.0;
 constexpr double kBackwards_radps = -30.0;  // a start swings a little to both sides
 constexpr int kBackward_reports = 50;       // one each millisecond
@@ -26,7 +25,10 @@ plant::Leg leg_of(const std::array<bool, 2>& on) {
 }  // namespace
 
 PowerStage::PowerStage(const PowerStageParams& params, std::uint64_t seed, const std::string& name)
-    : params_(params), motor_(params.motor), shunt_(params.shunt, seed, name + ".shunt") {
+    : params_(params),
+      motor_(params.motor),
+      shunt_(params.shunt, seed, name + ".shunt"),
+      window_(std::llround(1e9 / params.motor.pwm_Hz)) {
   for (const char* pin : {"a", "b", "c", "bus", "shunt"}) {
     noise_.emplace_back(seed, name + ".adc." + pin);
   }
@@ -52,6 +54,7 @@ void PowerStage::switched(int leg, bool upper, bool on, Nanoseconds now) {
   advance(now);
   auto& both = on_[static_cast<std::size_t>(leg)];
   auto& since = both_since_[static_cast<std::size_t>(leg)];
+  if (upper && on && !both[1]) window_.upper_switch_on();
   both[upper ? 1 : 0] = on;
   if (both[0] && both[1]) {
     since = now_ns_;
@@ -101,8 +104,9 @@ void PowerStage::advance(Nanoseconds now) {
   while (now_ns_ < now) {
     const double dt_s = std::min(static_cast<double>(now - now_ns_) * 1e-9, kLongest_step_s);
     const auto step_ns = std::min<Nanoseconds>(now - now_ns_, 25'000);
-    run(dt_s);
+    const double charge_C = run(dt_s);
     now_ns_ += step_ns;
+    window_.flow(charge_C, now_ns_);
   }
 }
 
@@ -148,7 +152,7 @@ double PowerStage::seen_V() const {
 // The motor is fed by the mean of the capacitor's voltage, as its current is foreseen; what it took by more or less
 // than by the mean as it has come to be (0.04 % of a hover) is the capacitor's. With the voltage at the step's start
 // 0.2 % of a hover's energy came from nowhere.
-void PowerStage::run(double dt_s) {
+double PowerStage::run(double dt_s) {
   hold_or_turn();
   motor_.set_bus(bus_V_);
   const double gone = way_gone(dt_s);
@@ -173,11 +177,7 @@ void PowerStage::run(double dt_s) {
   bus_V_ = seen_V();
   state_.bus_highest_V = std::max(state_.bus_highest_V, bus_V_);
   state_.bus_lowest_V = std::min(state_.bus_lowest_V, bus_V_);
-  window_charge_C_ += books.bus_charge_C;
-  window_s_ += dt_s;
-  if (window_s_ < kWindow_s) return;
-  state_.bridge_peak_A = std::max(state_.bridge_peak_A, window_charge_C_ / window_s_);
-  window_charge_C_ = window_s_ = 0.0;
+  return books.bus_charge_C;
 }
 
 void PowerStage::watch_direction(double speed_radps, Nanoseconds now) {
@@ -198,6 +198,7 @@ io::ShaftState PowerStage::report(Nanoseconds now) {
   told.air_torque_Nm = books_.air_torque_Nm / dt_s;
   told.source_current_A = source_charge_C_ / dt_s;
   told.bridge_current_A = books_.bus_charge_C / dt_s;
+  told.bridge_peak_A = window_.take_peak_A();
   told.winding_peak_A = motor_.peak_current_A();
   told.bus_voltage_V = bus_V_;
   told.electrical_in_J = books_.electrical_in_J;

@@ -27,6 +27,7 @@
 #include "io_bridges/devices/event_queue.hpp"
 #include "io_bridges/devices/wire.hpp"
 #include "io_bridges/messages/messages.hpp"
+#include "io_bridges/rack/models/pwm_window.hpp"
 #include "plant/motor/switched_motor.hpp"
 #include "plant/sensors/current_shunt.hpp"
 
@@ -92,7 +93,7 @@ class PowerStage {
   double way_gone(double dt_s) const;
   Feed feed(double bridge_A, double dt_s, double gone) const;
   double seen_V() const;
-  void run(double dt_s);
+  double run(double dt_s);  // the charge that went into the bridge, C
   void watch_direction(double speed_radps, Nanoseconds now);
   void hold_or_turn();
   void switched(int leg, bool upper, bool on, Nanoseconds now);
@@ -114,7 +115,8 @@ class PowerStage {
   Nanoseconds now_ns_ = 0, reported_ns_ = 0;
   plant::MotorBooks books_;
   io::ShaftState state_;
-  double source_charge_C_ = 0.0, window_charge_C_ = 0.0, window_s_ = 0.0;
+  double source_charge_C_ = 0.0;
+  PwmWindow window_;
 };
 
 }  // namespace whirl::rack

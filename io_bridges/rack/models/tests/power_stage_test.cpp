@@ -57,8 +57,8 @@ struct Stand {
   void off() {
     for (int leg = 0; leg < 3; ++leg) set(leg, true, false), set(leg, false, false);
   }
-  // One PWM period of 50 us at the pattern that the rotor's true angle asks for.
-  void period(double duty) {
+  // One PWM period at the pattern that the rotor's true angle asks for.
+  void period(double duty, Nanoseconds length_ns = 50 * kUs) {
     static constexpr int kHigh[] = {0, 0, 1, 1, 2, 2}, kLow[] = {1, 2, 2, 0, 0, 1};
     const auto sector =
         static_cast<std::size_t>(plant::sector_of(stage.motor().electrical_angle_rad()));
@@ -70,7 +70,7 @@ struct Stand {
     const auto on_ns = static_cast<Nanoseconds>(duty * 50e3);
     now += on_ns;
     set(high, true, false);
-    now += 50 * kUs - on_ns;
+    now += length_ns - on_ns;
   }
   void spin(double duty, int periods) {
     for (int i = 0; i < periods; ++i) period(duty);
@@ -194,6 +194,37 @@ TEST(PowerStage, BooksBalanceAndTheRotorFindsItsSpeed) {
   EXPECT_TRUE(near(now.source_current_A, now.bridge_current_A,
                    stated(0.01 * now.bridge_current_A, "capacitor at both ends")));
   EXPECT_TRUE(s.shots.empty());
+}
+
+// The same pulses by a clock that is 0.01 % fast: no window has two of them. The rotor is held and the shaft's phase with
+// it, so that each pulse is like the last.
+TEST(PowerStage, BusPeakIsThatOfOnePeriodByAFastClockToo) {
+  for (const Nanoseconds length : {50'000, 49'995}) {
+    Stand s;
+    s.load(1.0);
+    s.now = 5 * kMs;
+    for (int n = 0; n < 400; ++n) s.period(0.2, length);
+    s.stage.report(s.now);
+    for (int n = 0; n < 400; ++n) s.period(0.2, length);
+    const io::ShaftState held = s.stage.report(s.now);
+    EXPECT_GT(held.bridge_current_A, 1.0);
+    EXPECT_TRUE(near(held.bridge_peak_A, held.bridge_current_A,
+                     stated(0.01 * held.bridge_current_A, "each period is like the next")));
+  }
+}
+
+// One longer pulse counts as a whole, wherever the PWM's periods lie between the milliseconds.
+TEST(PowerStage, BusPeakIsThatOfTheOneLongPulse) {
+  Stand s;
+  s.load(1.0);
+  s.now = 5 * kMs + 25 * kUs;
+  for (int n = 0; n < 400; ++n) s.period(0.2);
+  s.stage.report(s.now);
+  s.period(0.6);
+  const double its_own_A = s.stage.report(s.now).bridge_current_A;
+  for (int n = 0; n < 3; ++n) s.period(0.2);
+  EXPECT_TRUE(near(s.stage.report(s.now).bridge_peak_A, its_own_A,
+                   stated(1e-6 * its_own_A, "bounds are edges: nothing is split")));
 }
 
 TEST(PowerStage, BrakeStopsTheRotorAsItsTorqueAndInertiaSay) {
