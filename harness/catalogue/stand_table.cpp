@@ -32,6 +32,11 @@ void read_stage_motor(const lua::Table& t, stand::StageParams& stage) {
   pass("inductance", "inductance", m.inductance_H);
   pass("no_load_current", "no_load_current", m.no_load_current_A);
   pass("inertia", "inertia", m.inertia_kgm2);
+  const auto own = [&](const char* key, Dimension dimension, lua::Range range) {
+    if (t.has(key)) stage[key] = t.quantity(key, dimension, range);
+  };
+  own("diode_drop", Dimension::voltage, lua::between(0.0, 3.0));
+  own("start_temperature", Dimension::temperature, lua::between(200.0, 500.0));
   if (t.flag_or("swap_wires", false)) stage["swap_wires"] = 1.0;
   for (const char* key : {"winding_resistance", "pole_pairs"}) {
     if (t.has(key)) t.refuse(key, "cannot differ on a stand", "only a vehicle's motor has its own");
@@ -47,6 +52,14 @@ void read_stage_shunt(const lua::Table& t, stand::StageParams& stage) {
   pass("noise", "shunt.noise", s.noise_A);
   pass("warm_up", "shunt.warm_up", s.warm_up_A);
   pass("wander", "shunt.wander", s.wander_A);
+}
+
+void check_warmth(const lua::Table& t, const stand::StandParams& p) {
+  if (!p.stage.contains("start_temperature")) return;
+  const auto heat = p.tolerance.find("heat");
+  if (heat != p.tolerance.end() && heat->second != plant::ToleranceClass::none) return;
+  t.refuse("motor", "start_temperature: the drawing's motor neither warms nor cools",
+           "tolerance = { heat = \"typical\" }");
 }
 
 // The motor is cooled by the same air.
@@ -85,6 +98,7 @@ Result<stand::StandParams> read_stand(const lua::Table& t, const std::string& pr
   if (t.has("motor")) read_stage_motor(t.table("motor"), p.stage);
   if (t.has("shunt")) read_stage_shunt(t.table("shunt"), p.stage);
   p.tolerance = read_tolerance(t, plant::esc_stand_groups(), plant::ToleranceClass::typical);
+  check_warmth(t, p);
   if (t.has("mode")) p.esc.mode = read_esc_mode(t, "mode").on_wire;
   p.esc.address = static_cast<std::uint8_t>(t.integer_or("address", p.esc.address, 0x08, 0x77));
   p.esc.pulse_rate_Hz = read_pulse_rate(t);

@@ -160,5 +160,41 @@ TEST(StandTable, WhatTheBoardsPowerStageCannotTakeIsRefused) {
             std::string::npos);
 }
 
+std::string refused_motor(const std::string& motor, const std::string& rest = "") {
+  const auto read = read_stand(
+      table("{ prop = 'hk_10x4.5', supply = '16 V', motor = { " + motor + " }" + rest + " }"),
+      "nowhere");
+  return read.ok() ? "" : read.error().message();
+}
+
+TEST(StandTable, DiodeAndStartTemperatureReachThePowerStage) {
+  const auto read = read_stand(table("{ prop = 'hk_10x4.5', supply = '16 V', motor = { diode_drop "
+                                     "= '0.5 V', start_temperature = '80 degC' } }"),
+                               WHIRL_SOURCE_FOLDER "/test_plans/propellers");
+  ASSERT_TRUE(read.ok()) << read.error().message();
+  EXPECT_EQ(read.value().stage.at("diode_drop"), 0.5);
+  EXPECT_TRUE(near(read.value().stage.at("start_temperature"), 353.15, round_off(4, 353.15)));
+}
+
+TEST(StandTable, DiodeAndStartTemperatureBeyondThePlantsRangeAreRefused) {
+  const auto names = [](const std::string& said, const char* key) {
+    return said.find(key) != std::string::npos;
+  };
+  EXPECT_TRUE(names(refused_motor("diode_drop = '3.1 V'"), "motor.diode_drop"));
+  EXPECT_TRUE(names(refused_motor("diode_drop = '-0.1 V'"), "motor.diode_drop"));
+  EXPECT_TRUE(names(refused_motor("diode_drop = '5 %'"), "motor.diode_drop"));
+  EXPECT_TRUE(names(refused_motor("start_temperature = '-80 degC'"), "motor.start_temperature"));
+  EXPECT_TRUE(names(refused_motor("start_temperature = '230 degC'"), "motor.start_temperature"));
+}
+
+TEST(StandTable, AStartTemperatureOfAMotorWithoutHeatIsRefused) {
+  for (const char* tolerance : {"'none'", "{ motor = 'typical' }"}) {
+    EXPECT_NE(
+        refused_motor("start_temperature = '80 degC'", std::string(", tolerance = ") + tolerance)
+            .find("neither warms nor cools"),
+        std::string::npos);
+  }
+}
+
 }  // namespace
 }  // namespace whirl::catalogue
