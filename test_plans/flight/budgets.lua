@@ -4,6 +4,8 @@
 -- to is measured anew:
 --   whirl run test_plans/flight/budgets.lua --seeds 1..20 --jobs 2
 -- Seeds hardly differ: the worst calls take the same path.
+-- No `margin` beside that: it is asked of requirements, for the clock's 10 %. Of these limits fw::imu_task has 7 % left
+-- (5.38 us, seed 5), the others 16 to 24 %; of the thesis's all have 90 % and more.
 -- Rates are judged by the IMU's own samples: its clock, up to 1 % off by the data sheet, is told beside each.
 include "include/hover.lua"
 

@@ -56,7 +56,7 @@ plan "calibrations find what the parts are off" {
   run = function(t)
     local truth = spoil(t)
     boot(t)
-    t:budget("fw::imu_task") { period = "1 ms", jitter = "20 us", execution = "100 us", during = "60 s" }
+    t:budget("fw::imu_task") { period = "1 ms", jitter = "20 us", execution = "100 us", during = "60 s", margin = "10 %" }
     t:budget("fw::sensor_task") { execution = "1 ms", during = "80 s" }
 
     t:step "gyro"

@@ -9,9 +9,9 @@ plan "estimation" {
     hover(t)
     t:wait "10 s"
     t:step "hover"
-    t:budget("fw::sensor_task") { period = "10 ms", jitter = "100 us", execution = "100 us", during = "20 s" }
-    t:budget("fw::Estimator::step_aided") { execution = "50 us", during = "20 s" }
-    t:budget("fw::Estimator::step_explicit") { execution = "50 us", during = "20 s" }
+    t:budget("fw::sensor_task") { period = "10 ms", jitter = "100 us", execution = "100 us", during = "20 s", margin = "10 %" }
+    t:budget("fw::Estimator::step_aided") { execution = "50 us", during = "20 s", margin = "10 %" }
+    t:budget("fw::Estimator::step_explicit") { execution = "50 us", during = "20 s", margin = "10 %" }
     local r = t:record({ "attitude_error", "attitude_error_1", "attitude_error_2", "told_scale_1", "told_scale_2",
                          "air_velocity_error_x", "air_velocity_error_y", "baro_height_error", "baro_climb_error" }, "21 s")
     t:expect(r:rms "attitude_error", "attitude, flown by"):at_most "1 deg"

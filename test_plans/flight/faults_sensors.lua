@@ -33,7 +33,7 @@ for _, f in ipairs(faults) do
     run = function(t)
       hover(t)
       some_moment(t)
-      t:budget("fw::imu_task") { period = "1 ms", jitter = "20 us", during = "3 s" }
+      t:budget("fw::imu_task") { period = "1 ms", jitter = "20 us", during = "3 s", margin = "10 %" }
       t:bus { device = "esc1", direction = "write", period = "20 ms", tolerance = "0.5 ms", during = "3 s" }
       judged_sensor_fault(t, f)
     end,

@@ -17,7 +17,7 @@ end
 
 -- Nothing of the flight may show that the card is in trouble: from now on.
 local function undisturbed(t, during)
-  t:budget("fw::imu_task") { period = "1 ms", jitter = "20 us", during = during }
+  t:budget("fw::imu_task") { period = "1 ms", jitter = "20 us", during = during, margin = "10 %" }
   t:budget("fw::log_task") { execution = "300 us", response = "500 us", during = during }
   for _, esc in ipairs { "esc1", "esc2", "esc3", "esc4" } do
     t:bus { device = esc, direction = "write", period = "20 ms", tolerance = "0.5 ms", during = during }

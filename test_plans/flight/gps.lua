@@ -13,10 +13,10 @@ plan "gps" {
   run = function(t)
     t:step "cold start"
     arm_by_gps(t)
-    t:budget("cpu") { busy = "60 %" }
-    t:budget("fw::imu_task") { period = "1 ms", jitter = "20 us" }
-    t:budget("fw::attitude_task") { execution = "300 us", response = "500 us" }
-    t:budget("fw::gps_task") { execution = "200 us", response = "500 us" }
+    t:budget("cpu") { busy = "60 %", margin = "10 %" }
+    t:budget("fw::imu_task") { period = "1 ms", jitter = "20 us", margin = "10 %" }
+    t:budget("fw::attitude_task") { execution = "300 us", response = "500 us", margin = "10 %" }
+    t:budget("fw::gps_task") { execution = "200 us", response = "500 us", margin = "10 %" }
     judged_gps(t)
   end,
 }

@@ -15,7 +15,7 @@ plan "gps m8" {
   run = function(t)
     t:step "cold start"
     arm_by_gps(t)
-    t:budget("fw::gps_task") { execution = "200 us", response = "500 us" }
+    t:budget("fw::gps_task") { execution = "200 us", response = "500 us", margin = "10 %" }
     judged_gps(t)
   end,
 }

@@ -69,7 +69,7 @@ parameter_plan("parameters in flight are guarded, and written after the landing"
   hover(t)
   -- No word of flash is written here: one takes 16 us.
   t:budget("fw::store_task") { execution = "5 us", during = "2 s" }
-  t:budget("fw::telemetry_task") { execution = "300 us", response = "500 us", during = "2 s" }
+  t:budget("fw::telemetry_task") { execution = "300 us", response = "500 us", during = "2 s", margin = "10 %" }
   for _, esc in ipairs { "esc1", "esc2", "esc3", "esc4" } do
     t:bus { device = esc, direction = "write", period = "20 ms", tolerance = "0.5 ms", during = "2 s" }
   end

@@ -9,9 +9,9 @@ plan "sbus" {
   run = function(t)
     boot_by_hand(t)
     arm_by_hand(t)
-    t:budget("fw::imu_task") { period = "1 ms", jitter = "20 us" }
-    t:budget("fw::attitude_task") { execution = "300 us", response = "500 us" }
-    t:budget("cpu") { busy = "60 %" }
+    t:budget("fw::imu_task") { period = "1 ms", jitter = "20 us", margin = "10 %" }
+    t:budget("fw::attitude_task") { execution = "300 us", response = "500 us", margin = "10 %" }
+    t:budget("cpu") { busy = "60 %", margin = "10 %" }
     take_off_by_hand(t)
     local held = t:record({ "height", "north", "east" }, "2 s")
     t:expect(held:rms_error("height", string.format("%.3f m", t:value("height", "m"))), "it does not wander"):at_most "4 cm"

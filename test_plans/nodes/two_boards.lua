@@ -14,8 +14,8 @@ plan "two_boards" {
   run = function(t)
     t:wait "200 ms"
     for _, node in ipairs { "left", "right" } do
-      t:budget(node .. "/fw::esc::control_task") { period = "1 ms", jitter = "50 us", response = "600 us", during = "1 s" }
-      t:budget(node .. "/cpu") { busy = "70 %", during = "1 s" }
+      t:budget(node .. "/fw::esc::control_task") { period = "1 ms", jitter = "50 us", response = "600 us", during = "1 s", margin = "10 %" }
+      t:budget(node .. "/cpu") { busy = "70 %", during = "1 s", margin = "10 %" }
     end
     t:fault { kind = "uart_flip", bus = "right/usart1", start = "500 ms", duration = "300 ms", value = "5 %" }
     for _ = 1, 10 do

@@ -10,9 +10,9 @@ plan "pod_imu" {
   timeout = "10 s",
   run = function(t)
     t:wait "100 ms"
-    t:budget("spi1_handler") { execution = "0.6 us", latency = "0.25 us", during = "300 ms" }
-    t:budget("exti15_10_handler") { execution = "20 us", latency = "1.5 us", during = "300 ms" }
-    t:budget("stack") { depth = "1 KiB" }
+    t:budget("spi1_handler") { execution = "0.6 us", latency = "0.25 us", during = "300 ms", margin = "10 %" }
+    t:budget("exti15_10_handler") { execution = "20 us", latency = "1.5 us", during = "300 ms", margin = "10 %" }
+    t:budget("stack") { depth = "1 KiB", margin = "10 %" }
     t:ask("done", "^done 1$", "3 s")
     local function figure(name) return tonumber(t:ask(name, "^" .. name .. " %-?%d+$"):match "%S+$") or 0 / 0 end
     for _, kind in ipairs { "command", "burst", "read", "write" } do

@@ -9,10 +9,10 @@ plan "pod_outputs" {
   timeout = "10 s",
   run = function(t)
     t:wait "200 ms"
-    t:budget("tim4_handler") { execution = "20 us", latency = "100 us", during = "1 s" }
-    t:budget("can2_rx0_handler") { execution = "20 us", latency = "100 us", during = "1 s" }
-    t:budget("can2_tx_handler") { execution = "20 us", latency = "100 us", during = "1 s" }
-    t:budget("stack") { depth = "1 KiB" }
+    t:budget("tim4_handler") { execution = "20 us", latency = "100 us", during = "1 s", margin = "10 %" }
+    t:budget("can2_rx0_handler") { execution = "20 us", latency = "100 us", during = "1 s", margin = "10 %" }
+    t:budget("can2_tx_handler") { execution = "20 us", latency = "100 us", during = "1 s", margin = "10 %" }
+    t:budget("stack") { depth = "1 KiB", margin = "10 %" }
     t:wait "1.5 s"
     local function figure(name) return tonumber(t:ask(name, "^" .. name .. " %-?%d+$"):match "%S+$") or 0 / 0 end
     for name, least in pairs { sbus_frames = 100, cppm_frames = 60 } do

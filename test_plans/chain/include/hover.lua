@@ -4,9 +4,9 @@ function judged_hover(t, boards, bus)
   t:command { arm = true }
   t:within("3 s", function(s) return s.told_armed == 1 end, "armed")
 
-  t:budget("flight/fw::imu_task") { period = "1 ms", jitter = "20 us", execution = "100 us", during = "20 s" }
-  t:budget("flight/fw::esc_task") { execution = "200 us", response = "500 us", during = "20 s" }
-  t:budget("flight/cpu") { busy = "60 %", during = "20 s" }
+  t:budget("flight/fw::imu_task") { period = "1 ms", jitter = "20 us", execution = "100 us", during = "20 s", margin = "10 %" }
+  t:budget("flight/fw::esc_task") { execution = "200 us", response = "500 us", during = "20 s", margin = "10 %" }
+  t:budget("flight/cpu") { busy = "60 %", during = "20 s", margin = "10 %" }
   bus(t)
   if boards then
     for _, esc in ipairs(escs) do

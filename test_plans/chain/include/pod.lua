@@ -47,9 +47,9 @@ function pod_hover(t, host)
   if host.windows then host.windows(t) end
   t:command { arm = true }
   t:within("4 s", function(s) return s.told_armed == 1 end, "armed")
-  t:budget("flight/fw::imu_task") { period = "1 ms", jitter = "25 us", execution = "100 us", during = "10 s" }
-  t:budget("pod/spi1_handler") { execution = "0.6 us", latency = host.latency or "0.25 us", during = "10 s" }
-  t:budget("pod/exti15_10_handler") { execution = "20 us", latency = "1.5 us", during = "10 s" }
+  t:budget("flight/fw::imu_task") { period = "1 ms", jitter = "25 us", execution = "100 us", during = "10 s", margin = "10 %" }
+  t:budget("pod/spi1_handler") { execution = "0.6 us", latency = host.latency or "0.25 us", during = "10 s", margin = "10 %" }
+  t:budget("pod/exti15_10_handler") { execution = "20 us", latency = "1.5 us", during = "10 s", margin = "10 %" }
 
   t:step "take-off"
   t:command { takeoff = "1.1 m" }
@@ -99,7 +99,7 @@ function pod_receivers(name, board, windows)
       t:command { rc = { arm = true } }
       t:within("2 s", function(s) return s.told_armed == 1 end, "armed by the switch")
       if windows then windows(t) end
-      t:budget("flight/fw::gps_task") { execution = "200 us", response = "500 us" }
+      t:budget("flight/fw::gps_task") { execution = "200 us", response = "500 us", margin = "10 %" }
       t:wait "2 s"
 
       t:step "by hand"

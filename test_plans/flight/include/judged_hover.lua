@@ -1,5 +1,5 @@
 local function imu_on_spi(t)
-  t:budget("fw::imu_task") { period = "1 ms", jitter = "20 us", execution = "100 us", during = "20 s" }
+  t:budget("fw::imu_task") { period = "1 ms", jitter = "20 us", execution = "100 us", during = "20 s", margin = "10 %" }
   -- The sample bursts: an address and 14 bytes. Between them the driver checks its settings.
   t:bus { device = "imu", bytes = 15, period = "1 ms", tolerance = "20 us", during = "20 s" }
 end
@@ -35,11 +35,11 @@ function judged_hover(t, escs, imu, amps)
   -- From here to the landing nothing may slip.
   local samples = imu or imu_on_spi
   samples(t)
-  t:budget("fw::attitude_task") { execution = "300 us", response = "500 us", during = "20 s" }
-  t:budget("fw::position_task") { execution = "300 us", response = "500 us", during = "20 s" }
-  t:budget("fw::esc_task") { execution = "200 us", response = "500 us", during = "20 s" }
-  t:budget("fw::telemetry_task") { execution = "300 us", response = "500 us", during = "20 s" }
-  t:budget("cpu") { busy = "60 %", during = "20 s" }
+  t:budget("fw::attitude_task") { execution = "300 us", response = "500 us", during = "20 s", margin = "10 %" }
+  t:budget("fw::position_task") { execution = "300 us", response = "500 us", during = "20 s", margin = "10 %" }
+  t:budget("fw::esc_task") { execution = "200 us", response = "500 us", during = "20 s", margin = "10 %" }
+  t:budget("fw::telemetry_task") { execution = "300 us", response = "500 us", during = "20 s", margin = "10 %" }
+  t:budget("cpu") { busy = "60 %", during = "20 s", margin = "10 %" }
   escs(t)
   t:latency { from = "imu", through = { "fw::imu_task", "fw::attitude_task" }, to = "esc",
               at_most = "7 ms", during = "20 s" }
