@@ -226,6 +226,8 @@ Report validate_left_out(const std::vector<MeasuredBlade>& all, const KnownBlade
               {kUnjudged, kUnjudged, kUnjudged, kUnjudged, 12.0, kUnjudged, kUnjudged, kUnjudged},
               kNothing, report);
   add_summary("left out, a row in flight", flown, kAsked, kAsked, report);
+  add_slopes("left out", one, report);
+  add_slopes("left out, a row in flight", flown, report);
   add_trends(trends, report);
   report.figures.push_back({"static CT, every second speed left out, median", "%",
                             quantile(column(still, &Score::CT, false), 0.5), 3.0});
@@ -249,6 +251,7 @@ Report validate_in_view(const std::vector<MeasuredBlade>& all, const KnownBlades
         {m.name + ": static CP", "%", still.refused ? kUnjudged : still.CP, 10.0});
     report.notes.push_back(line(m.name, "known", s));
   }
+  add_slopes("known", scores, report);
   report.figures.push_back(
       {"flight CT, median", "%", quantile(column(scores, &Score::CT, false), 0.5), 10.0});
   report.figures.push_back(
@@ -286,6 +289,8 @@ Report validate_outside(const std::vector<MeasuredBlade>& strangers, const Known
               report);
   add_summary("outside, a row in flight", flown, {6.0, 8.0, 12.0, 14.0, 11.0, 12.0, 15.0, 3.0},
               kAsked, report);
+  add_slopes("outside, static rows", still, report);
+  add_slopes("outside, a row in flight", flown, report);
   return report;
 }
 

@@ -43,5 +43,38 @@ TEST(BladeScore, ARefusedOneIsMissedByNineInTenAndHasNoPartInTheMedian) {
   EXPECT_EQ(figures[8].value, 2.0);
 }
 
+// Two runs of one slope, the faster one lower as a whole: the step between them is not the slope's.
+TEST(BladeScore, SlopeOverJIsThatWithinEachRun) {
+  std::vector<MeasuredPoint> points;
+  for (const double omega : {400.0, 600.0}) {
+    const double first_J = omega == 400.0 ? 0.1 : 0.4;
+    for (int k = 0; k < 4; ++k) {
+      const double J = first_J + 0.1 * k;
+      points.push_back({omega, J, 0.1, 0.05 - 0.04 * J - (omega == 400.0 ? 0.0 : 0.01)});
+    }
+  }
+  const auto all = slope_over_J(points, &MeasuredPoint::CP, kUnjudged);
+  ASSERT_TRUE(all.has_value());
+  EXPECT_TRUE(near(*all, -0.04, round_off(64, 1.0)));
+  points[3].CP += 0.01;  // of J 0.4: beyond
+  EXPECT_TRUE(near(slope_over_J(points, &MeasuredPoint::CP, 0.35).value_or(0.0), -0.04,
+                   round_off(64, 1.0)));
+  EXPECT_FALSE(slope_over_J(points, &MeasuredPoint::CP, 0.15).has_value());  // one point
+}
+
+TEST(BladeScore, SlopesAreToldInTheMedianOfThoseThatHaveOne) {
+  auto scores = kTen;
+  for (std::size_t i = 0; i < 3; ++i) scores[i].slope_CP = 10.0 * static_cast<double>(i + 1);
+  scores[0].low_slope_CP = 2.5;
+  scores[1].refused = true;
+  Report report;
+  add_slopes("x", scores, report);
+  ASSERT_EQ(report.figures.size(), 2u);
+  EXPECT_EQ(report.figures[0].name, "x: slope of CP over J off by, median of 2");
+  EXPECT_TRUE(near(report.figures[0].value, 20.0, round_off(8, 20.0)));
+  EXPECT_EQ(report.figures[0].limit, kUnjudged);
+  EXPECT_EQ(report.figures[1].value, 2.5);
+}
+
 }  // namespace
 }  // namespace whirl::plant
