@@ -10,8 +10,8 @@ function judged_hover(t, boards, bus)
   bus(t)
   if boards then
     for _, esc in ipairs(escs) do
-      t:budget(esc .. "/fw::esc::control_task") { period = "1 ms", jitter = "50 us", response = "600 us", during = "20 s" }
-      t:budget(esc .. "/cpu") { busy = "85 %", during = "20 s" }
+      t:budget(esc .. "/fw::esc::control_task") { period = "1 ms", jitter = "50 us", response = "600 us", during = "20 s", margin = "10 %" }
+      t:budget(esc .. "/cpu") { busy = "85 %", during = "20 s", margin = "10 %" }
     end
   end
   t:latency { from = "flight/imu", through = { "flight/fw::imu_task", "flight/fw::attitude_task" },
