@@ -128,6 +128,8 @@ void read_capture(const Table& t, flight::CaptureParams& c) {
       t.quantity_or("position_noise", Dimension::length, cameras.position_noise_m, at_least(0.0));
   cameras.attitude_noise_rad =
       t.quantity_or("angle_noise", Dimension::angle, cameras.attitude_noise_rad, at_least(0.0));
+  cameras.occlusion_chance = t.quantity_or("occlusion_chance", Dimension::ratio,
+                                           cameras.occlusion_chance, between(0.0, 0.99));
 }
 
 }  // namespace

@@ -31,6 +31,7 @@ std::optional<CapturedPose> Capture::look(std::int64_t t_ns, const plant::Truth&
   const CapturedPose pose{exposed_ns, exposed_ns + params_.latency_ns, newest_->p_WB_W_m,
                           roll_pitch_yaw_rad(newest_->q_WB)};
   newest_.reset();
+  ++passed_on_;
   return pose;
 }
 

@@ -2,8 +2,9 @@
 // own rate and late.
 //
 //   In       true pose, frames W and B (plant/base/frames.hpp)
-//   Out      at most one pose per radio period, latency_ns after its exposure; none while it is
-//            occluded or out of the room (plant/sensors/motion_capture.hpp)
+//   Out      at most one pose per radio period, latency_ns after its exposure; none where all frames since
+//            the last were occluded or out of the room (plant/sensors/motion_capture.hpp): of a chance p a frame
+//            p^n of the poses, n frames in a radio period (200 Hz of 40 Hz: 5)
 #pragma once
 #include <Eigen/Geometry>
 #include <cstdint>
@@ -36,12 +37,14 @@ class Capture {
   // is asked of each frame that the cameras have taken: whether something is in their way.
   std::optional<CapturedPose> look(std::int64_t t_ns, const plant::Truth& truth,
                                    const std::function<bool()>& hidden);
+  std::int64_t passed_on() const { return passed_on_; }  // poses so far
 
  private:
   CaptureParams params_;
   plant::MotionCapture cameras_;
   std::optional<plant::CaptureFrame> newest_;  // not yet passed on
   std::int64_t asked_ = 0;                     // radio periods so far
+  std::int64_t passed_on_ = 0;
 };
 
 }  // namespace whirl::flight

@@ -57,6 +57,8 @@ void FlightWorld::name_signals() {
              [=] { return state().on_ground ? 1.0 : 0.0; });
   add_signal("touching", D::none, "1: a wall, a ceiling or the side of a box touches it",
              [=] { return state().touching ? 1.0 : 0.0; });
+  add_signal("capture_poses", D::none, "that the capture system has passed on to the radio so far",
+             [this] { return static_cast<double>(capture_.passed_on()); });
   name_fence_signals();
   if (has_load_) name_load_signals();
   name_motor_signals();

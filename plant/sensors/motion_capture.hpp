@@ -19,7 +19,7 @@ struct MotionCaptureParams {
   double period_s = 0.005;
   double position_noise_m = 3e-4;  // standard deviation per axis
   double attitude_noise_rad = 2e-3;
-  double occlusion_chance = 0.0;                                // of each frame
+  double occlusion_chance = 0.0;                                // of each frame by itself, 0 to 1
   Eigen::Vector3d low_W_m = Eigen::Vector3d(-2.5, -2.0, -3.0);  // 5 x 4 x 3 m room
   Eigen::Vector3d high_W_m = Eigen::Vector3d(2.5, 2.0, 0.1);
 };

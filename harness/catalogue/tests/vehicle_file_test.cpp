@@ -194,6 +194,17 @@ TEST(VehicleFile, CalibrationComesFromTheFileOfAStand) {
   EXPECT_FALSE(with_file("return { kind = 'vehicle' }").ok());
 }
 
+TEST(VehicleFile, OcclusionIsAShareOfTheCamerasFramesAndNeverAllOfThem) {
+  const auto chance = [](const std::string& said) {
+    const auto params = read_changed("capture = {", "capture = { " + said);
+    EXPECT_TRUE(params.ok()) << said;
+    return params.ok() ? params.value().capture.cameras.occlusion_chance : -1.0;
+  };
+  EXPECT_EQ(chance(""), 0.0);
+  EXPECT_TRUE(near(chance("occlusion_chance = \"80 %\","), 0.8, round_off(2, 1)));
+  EXPECT_TRUE(near(chance("occlusion_chance = \"99 %\","), 0.99, round_off(2, 1)));
+}
+
 TEST(VehicleFile, EachMistakeIsOneSentenceWithItsPlace) {
   struct Case {
     const char *passage, *instead, *expected;
@@ -214,6 +225,11 @@ TEST(VehicleFile, EachMistakeIsOneSentenceWithItsPlace) {
       {"0.0283 }", "}", "frontal_areas_m2: needs three, along x, y and z"},
       {"1.15 }", "-1 }", "drag_coefficients"},
       {"drag_coefficients = ", "drag_coefficient = ", "drag_coefficients"},
+      {"capture = {", "capture = { occlusion_chance = \"100 %\",",
+       "capture.occlusion_chance: '100 %' must be"},
+      {"capture = {", "capture = { occlusion_chance = \"-1 %\",",
+       "capture.occlusion_chance: '-1 %' must be"},
+      {"capture = {", "capture = { occlusion_chance = \"1 s\",", "capture.occlusion_chance"},
   };
   for (const Case& c : cases) {
     const std::string complaint = complaint_about(c.passage, c.instead);

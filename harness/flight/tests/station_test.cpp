@@ -172,6 +172,24 @@ TEST(Capture, AnOcclusionHidesItsWindowOnly) {
   EXPECT_EQ(asked, 200);  // of the cameras' frames, and of nothing else
 }
 
+// Five frames of the cameras in each period of the radio: 0.8^5 of the poses are missing, 0.328, of 4000 with a sigma
+// of 0.0074; five of them. A frame that was seen may be up to 20 ms old by then.
+TEST(Capture, RandomOcclusionTakesThePosesOfWhichNoFrameWasSeen) {
+  CaptureParams params;
+  params.cameras.occlusion_chance = 0.8;
+  Capture capture(params, 1);
+  std::int64_t poses = 0, oldest_ns = 0;
+  for (int ms = 0; ms < 100'000; ++ms) {
+    const auto pose = capture.look(ms * kMs, {}, nothing_hides);
+    if (!pose) continue;
+    ++poses;
+    oldest_ns = std::max(oldest_ns, ms * kMs - pose->exposed_ns);
+  }
+  EXPECT_TRUE(near(1.0 - static_cast<double>(poses) / 4000.0, 0.32768, stated(0.037, "5 sigma")));
+  EXPECT_EQ(oldest_ns, 20 * kMs);
+  EXPECT_EQ(capture.passed_on(), poses);
+}
+
 TEST(Capture, AnglesFollowTheAerospaceOrder) {
   using Eigen::AngleAxisd;
   const Eigen::Quaterniond q = AngleAxisd(0.3, Eigen::Vector3d::UnitZ()) *
