@@ -88,8 +88,10 @@ plan "manual landing" {
 }
 
 for _, mode in ipairs { 1, 2 } do
-  loss_by_hand("manual", "px4fmu_v1", mode, "the transmitter is switched off", function(t) t:command { rc = { on = false } } end)
-  loss_by_hand("manual", "px4fmu_v1", mode, "the receiver loses its transmitter", function(t) t:fault { kind = "rc_link_lost", device = "rc" } end)
+  loss_by_hand("manual", "px4fmu_v1", mode, "the transmitter is switched off", function(t) t:command { rc = { on = false } } end,
+    "radio control lost")
+  loss_by_hand("manual", "px4fmu_v1", mode, "the receiver loses its transmitter",
+    function(t) t:fault { kind = "rc_link_lost", device = "rc" } end, "radio control lost")
 end
 
 plan "manual, one frame in ten is nonsense" {

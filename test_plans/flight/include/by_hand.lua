@@ -1,4 +1,5 @@
 -- What the plans share that are flown by hand, whichever receiver brings the sticks; with include/moment.lua.
+include "include/fail_safe.lua"
 
 function boot_by_hand(t)
   t:within("8 s", function(s) return s.heartbeat_age_s < 1.5 end, "the first heartbeat")
@@ -31,12 +32,9 @@ function loss_by_hand(family, board, mode, name, lose, words)
       t:command { rc = { mode = mode } }
       t:wait "0.5 s"
       some_moment(t)
-      t:always("tilt"):at_most "25 deg"
       t:step "lost"
       lose(t)
-      t:within("2.5 s", function(s) return s.told_state == 3 end, "landing")
-      if words then t:told("3 s", words) end
-      t:within("15 s", function(s) return s.told_armed == 0 end, "landed and disarmed")
+      lands(t, words, 3, { noticed = "2.5 s", tilt = "25 deg", down = "15 s" })
       t:expect(t:value "height", "on its gear"):at_most "15 cm"
     end,
   }
