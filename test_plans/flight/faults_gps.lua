@@ -57,6 +57,10 @@ gps_plan("gps: a jump of 15 m is noticed and not followed", function(t)
   noticed(t, { kind = "sensor_offset", device = "gps", axis = "north", value = "15 m" })
 end)
 
+gps_plan("gps: a velocity that is 3 m/s off is noticed and not followed", function(t)
+  noticed(t, { kind = "sensor_offset", device = "gps", axis = "velocity_east", value = "3 m/s" })
+end)
+
 gps_plan("gps: a place that runs away at 3 m/s is noticed", function(t)
   noticed(t, { kind = "gnss_spoofed", device = "gps", axis = "east", value = "3 m/s" })
 end)

@@ -139,7 +139,9 @@ end)
 
 -- The card says that it has not written, or that what came was spoiled on the wire, for a second: what was in
 -- hand is written again or owned up to, and nothing else is lost.
-for _, f in ipairs { { kind = "memory_write_error", device = "card" }, { kind = "memory_crc_error", device = "card" } } do
+for _, f in ipairs {
+  { kind = "memory_write_error", device = "card" }, { kind = "memory_crc_error", device = "card" }, { kind = "spi_silent", device = "card" },
+} do
   log_plan("a card whose blocks fail for a second is written on: " .. f.kind, { "flight", "log" }, function(t)
     hover(t)
     undisturbed(t, "8 s")

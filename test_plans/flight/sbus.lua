@@ -50,13 +50,17 @@ plan "sbus, single bad frames are flown through" {
     boot_by_hand(t)
     arm_by_hand(t)
     take_off_by_hand(t)
-    local bad = { { "rc_glitch", "10 %" }, { "uart_flip", 0.005 }, { "uart_loss", 0.005 } }
+    local bad = {
+      { kind = "rc_glitch", device = "sbus", value = "10 %", duration = "4 s" },
+      { kind = "uart_flip", device = "sbus", value = 0.005, duration = "4 s" },
+      { kind = "uart_loss", device = "sbus", value = 0.005, duration = "4 s" },
+    }
     for _, f in ipairs(bad) do
-      t:fault { kind = f[1], device = "sbus", value = f[2], duration = "4 s" }
+      t:fault(f)
       local held = t:record({ "height", "tilt" }, "4 s")
-      t:expect(held:max "tilt", f[1] .. ": tilt"):at_most "8 deg"
-      t:expect(held:min "height", f[1] .. ": height"):at_least "80 cm"
-      t:expect(t:value "told_state", f[1] .. ": still flown by hand"):equal(2)
+      t:expect(held:max "tilt", f.kind .. ": tilt"):at_most "8 deg"
+      t:expect(held:min "height", f.kind .. ": height"):at_least "80 cm"
+      t:expect(t:value "told_state", f.kind .. ": still flown by hand"):equal(2)
     end
   end,
 }
