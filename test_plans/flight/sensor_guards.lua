@@ -14,15 +14,7 @@ local function comes_down_by_gyro(t, told, limit)
   t:told("3 s", told)
   stays_near(t, limit, "17 s")
   t:expect(t:value "heading_error", "heading"):within("-8 deg", "8 deg")
-  t:told("10 s", "heading by gyro for too long")
-  t:always("inside_fence"):at_least(1)
-  local tilt, sinks = t:always "tilt", t:always "climb"
-  tilt:at_most "30 deg"
-  sinks:at_least "-2 m/s"
-  t:within("40 s", function(s) return s.on_ground == 1 end, "on the ground")
-  tilt:stop()
-  sinks:stop()
-  t:within("6 s", function(s) return s.told_armed == 0 end, "disarmed")
+  lands(t, "heading by gyro for too long", 4, { noticed = "10 s", tilt = "30 deg", down = "40 s", upright = false })
 end
 
 for _, f in ipairs {
@@ -51,10 +43,8 @@ outdoors("by GPS: a heading that is wrong from the start", function(t)
   stays_near(t, "10 m", "12 s")
   stays_near(t, "10 m", "10 s")
   t:expect(t:value "heading_error", "heading"):within("-20 deg", "20 deg")
-  t:within("15 s", function(s) return s.told_state == 4 end, "failsafe landing")
-  t:within("40 s", function(s) return s.on_ground == 1 end, "on the ground")
   tilt:stop()
-  t:within("6 s", function(s) return s.told_armed == 0 end, "disarmed")
+  lands(t, "heading by gyro for too long", 4, { noticed = "15 s", tilt = "30 deg", down = "40 s", upright = false })
 end)
 
 for _, f in ipairs {
@@ -103,14 +93,6 @@ for _, f in ipairs {
     hover(t)
     some_moment(t)
     t:fault { kind = f.kind, value = f.value }
-    t:always("inside_fence"):at_least(1)
-    local tilt, sinks = t:always "tilt", t:always "climb"
-    tilt:at_most "15 deg"
-    sinks:at_least "-2 m/s"
-    t:told("3 s", "no position")
-    t:within("12 s", function(s) return s.on_ground == 1 end, "on the ground")
-    tilt:stop()
-    sinks:stop()
-    t:within("6 s", function(s) return s.told_armed == 0 end, "disarmed")
+    lands(t, "no position", 4)
   end)
 end
