@@ -160,6 +160,7 @@ Result<bench::BenchDescription> bench_named(const std::string& name, const char*
   if (!file) return file.error();
   auto bench = read_bench(shown_path(file.value()));
   if (!bench) return bench;
+  if (const auto read = read_pods(bench.value(), root); !read) return read.error();
   const auto board = find_board(bench.value().board, {bench.value().file, "board"}, root);
   if (!board) return board.error();
   if (const auto there = check_radios(board.value(), bench.value()); !there) return there.error();

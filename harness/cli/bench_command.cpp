@@ -7,15 +7,21 @@
 #include "base/whole_file.hpp"
 #include "harness/cli/bench_choice.hpp"
 #include "harness/cli/console.hpp"
+#include "harness/cli/find_board.hpp"
 #include "harness/cli/find_plans.hpp"
 #include "harness/cli/probe_command.hpp"
 #include "harness/pacing/pacer.hpp"
 #include "harness/pacing/real_time.hpp"
 #include "harness/target/bench/analyser_link.hpp"
 #include "harness/target/bench/can_check.hpp"
+#include "harness/target/bench/line_check.hpp"
 #include "harness/target/bench/mavlink_check.hpp"
+#include "harness/target/bench/pod_check.hpp"
 #include "harness/target/bench/serial_links.hpp"
+#include "harness/target/bench/serial_rack_link.hpp"
 #include "harness/target/bench/spread.hpp"
+#include "harness/target/bench/unproven.hpp"
+#include "io_bridges/board_description/line_part.hpp"
 #include "io_bridges/openocd/core_probe.hpp"
 #include "io_bridges/protocols/esc_codec.hpp"
 #include "results/parity.hpp"
@@ -37,20 +43,27 @@ void say(const std::string& name, const std::string& what) {
 
 class Check {
  public:
-  Check(const bench::BenchDescription& bench, double seconds, const Composition& composition)
-      : bench_(bench), seconds_(seconds), bridge_(composition.bridge), can_(composition.can) {}
+  Check(const bench::BenchDescription& bench, const BoardDescription& board, double seconds,
+        const Composition& composition)
+      : bench_(bench),
+        board_(board),
+        seconds_(seconds),
+        bridge_(composition.bridge),
+        can_(composition.can) {}
 
   int all() {
     for (const auto& link : bench_.bridges) check(link);
     for (const auto& link : bench_.cans) check(link);
+    for (const auto& link : bench_.pods) check(link);
     for (const auto& link : bench_.serials) check(link);
     for (const auto& instrument : bench_.instruments) check(instrument);
     if (bench_.analyser) check(*bench_.analyser);
     if (bench_.probe) check(*bench_.probe);
     check_pacer();
-    std::printf(
-        "not shown without a run: that a set-point turns the rotor, the instruments' scales and\n"
-        "zeros, what is between a bridge's or an adapter's pins and the board\n");
+    std::printf("of what is here, nobody has proven without hardware:\n");
+    for (const bench::Unproven& item : bench::unproven(bench_, ends_)) {
+      std::printf("  - %s\n", item.text().c_str());
+    }
     return missing_ == 0 ? 0 : 2;
   }
 
@@ -58,6 +71,10 @@ class Check {
   void missing(const std::string& name, const Error& error) {
     ++missing_;
     say(name, "MISSING: " + error.message());
+  }
+  void tell(const std::string& name, const Result<std::vector<std::string>>& told) {
+    if (!told) return missing(name, told.error());
+    for (const std::string& line : told.value()) say(name, line);
   }
 
   // Status reads, as the ESC's protocol has them.
@@ -99,30 +116,47 @@ class Check {
     const auto port = can_(link);
     if (!port) return missing(link.name, port.error());
     say(link.name, port.value()->version());
-    const auto told = bench::check_can_bus(
-        *port.value(), clock_,
-        {.interface = link.interface, .bit_rate_bps = link.bit_rate_bps, .seconds = seconds_});
-    if (!told) return missing(link.name, told.error());
-    for (const std::string& line : told.value()) say(link.name, line);
+    tell(link.name, bench::check_can_bus(*port.value(), clock_,
+                                         {.interface = link.interface,
+                                          .bit_rate_bps = link.bit_rate_bps,
+                                          .seconds = seconds_}));
+  }
+
+  // As in a run: a host that is late of its own accord would be counted by the pod.
+  void check(const bench::PodLink& link) {
+    pacing::take_real_time();
+    const auto told =
+        bench::check_pod({.link = link, .seconds = seconds_, .pace = bench_.pace}, can_, clock_);
+    pacing::give_back_real_time();
+    tell(link.name, told);
   }
 
   void check(const bench::SerialLink& link) {
     if (link.mavlink) return check_mavlink(link);
-    bench::BoardSerial line(link);
-    const auto opened = line.open();
-    opened ? say(link.name, link.path + " opens at " + std::to_string(link.baud) + " baud")
-           : missing(link.name, opened.error());
+    bench::LineCheckOptions options{.link = link, .seconds = seconds_};
+    options.answer_s /= std::min(bench_.pace, 1.0);
+    const BoardDevice* gps = bench::part_at(board_, link, is_gps);
+    if (gps != nullptr) {
+      options.end = bench::LineEnd::gps;
+      const auto baud = gps->value("baud");
+      if (baud) options.gps_baud = static_cast<int>(std::get<double>(*baud));
+      ends_.gps = true;
+    } else if (bench::part_at(board_, link, is_receiver) != nullptr) {
+      options.end = bench::LineEnd::receiver;
+      ends_.receiver = true;
+    } else {
+      ends_.commands = true;
+    }
+    tell(link.name, bench::check_line(options, clock_));
   }
 
   // HEARTBEAT comes once a second: five of them, or more.
   void check_mavlink(const bench::SerialLink& link) {
-    const auto told = bench::check_mavlink(
-        {.link = link,
-         .seconds = std::max(5.0 / bench_.pace, seconds_),
-         .answer_s = bench::MavlinkCheckOptions{}.answer_s / std::min(bench_.pace, 1.0)},
-        clock_);
-    if (!told) return missing(link.name, told.error());
-    for (const std::string& line : told.value()) say(link.name, line);
+    tell(link.name, bench::check_mavlink({.link = link,
+                                          .seconds = std::max(5.0 / bench_.pace, seconds_),
+                                          .answer_s = bench::MavlinkCheckOptions{}.answer_s /
+                                                      std::min(bench_.pace, 1.0)},
+                                         clock_));
   }
 
   void check(const bench::Instrument& instrument) {
@@ -203,10 +237,12 @@ class Check {
   }
 
   const bench::BenchDescription& bench_;
+  const BoardDescription& board_;
   double seconds_;
   const bench::BridgeMaker& bridge_;
   const bench::CanMaker& can_;
   pacing::MonotonicClock clock_;
+  bench::LineEnds ends_;
   int missing_ = 0;
 };
 
@@ -229,9 +265,12 @@ bool one_plan(const std::string& a, const std::string& b) {
 int bench_check_command(const BenchOptions& options, const Composition& composition) {
   const auto bench = bench_named(options.name, "whirl bench check", composition.root);
   if (!bench) return complain(bench.error());
+  const auto board =
+      find_board(bench.value().board, {bench.value().file, "board"}, composition.root);
+  if (!board) return complain(board.error());
   std::printf("%s: %s on %s\n", bench.value().file.c_str(), bench.value().name.c_str(),
               bench.value().board.c_str());
-  return Check(bench.value(), options.seconds, composition).all();
+  return Check(bench.value(), board.value(), options.seconds, composition).all();
 }
 
 int parity_command(const ParityOptions& options) {

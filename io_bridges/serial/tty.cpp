@@ -1,7 +1,10 @@
 #include "io_bridges/serial/tty.hpp"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/ioctl.h>
+#include <sys/stat.h>
+#include <sys/sysmacros.h>
 #include <unistd.h>
 
 // The kernel's own header has the free rate (BOTHER); libc's termios.h declares the same names.
@@ -37,6 +40,18 @@ Error why_not_opened(const std::string& path, int error) {
   }
 }
 
+// Root may open what is held, and has to ask. Of a pseudo-terminal the mark outlives who was killed with it, as long as its
+// other end stands: there only the lock counts, which ends with its holder.
+bool is_held(int file) {
+  constexpr unsigned kFirst_pseudo = 136, kLast_pseudo = 143;  // admin-guide/devices.txt
+  if (flock(file, LOCK_EX | LOCK_NB) != 0) return errno == EWOULDBLOCK;
+  struct stat node {};
+  int marked = 0;
+  if (fstat(file, &node) != 0 || ioctl(file, TIOCGEXCL, &marked) != 0) return false;
+  const unsigned major_number = major(node.st_rdev);
+  return marked != 0 && (major_number < kFirst_pseudo || major_number > kLast_pseudo);
+}
+
 }  // namespace
 
 Result<Tty> Tty::open(const std::string& path, int baud, TtyFrame frame) {
@@ -45,7 +60,10 @@ Result<Tty> Tty::open(const std::string& path, int baud, TtyFrame frame) {
   Tty tty(file, path, frame);
   termios2 line{};
   if (ioctl(file, TCGETS2, &line) != 0) return refused(path, "is no serial line", "");
-  // Root may open what is held: whoever holds it has to be asked for.
+  if (is_held(file)) {
+    ::close(std::exchange(tty.file_, -1));  // the mark is not ours to take away
+    return why_not_opened(path, EBUSY);
+  }
   if (ioctl(file, TIOCEXCL) != 0) return why_not_opened(path, errno);
   if (const auto set = tty.set_baud(baud); !set) return set.error();
   ioctl(file, TCFLSH, TCIOFLUSH);  // what came before us

@@ -1,7 +1,7 @@
 // A serial line of this host: /dev/ttyUSB0, /dev/ttyACM0, or the end of a pseudo-terminal.
 //
 //   Line    raw 8N1, or 8E2 as SBUS is, no flow control; any rate that the driver can make, checked to 2 %
-//   Sole    nobody else may open it while it is held (TIOCEXCL)
+//   Sole    nobody else may open it while it is held (TIOCEXCL, and a lock of the file, which tells root as well)
 //   Never   waits: what the kernel does not take now is kept and goes with the next write or flush
 //   Errors  bad_input: not there, no permission, no serial line, held by another, the rate cannot be made;
 //           host: it was unplugged

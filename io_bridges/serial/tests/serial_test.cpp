@@ -88,6 +88,19 @@ TEST(Tty, AnyRateIsSetThatTheDriverMakes) {
   }
 }
 
+// By root as well, who may open what is marked as held.
+TEST(Tty, WhatAnotherHoldsIsRefusedUntilItIsLeft) {
+  PseudoTerminal far = std::move(PseudoTerminal::open().value());
+  {
+    const auto held = Tty::open(far.path(), 9600);
+    ASSERT_TRUE(held.ok());
+    const auto second = Tty::open(far.path(), 9600);
+    ASSERT_FALSE(second.ok());
+    EXPECT_EQ(second.error().what, "another program holds it");
+  }
+  EXPECT_TRUE(Tty::open(far.path(), 9600).ok());
+}
+
 TEST(Tty, RefusesWhatIsNoSerialLineInOneSentence) {
   const ScratchFolder folder;
   const std::string file = folder.path() + "/plain";
