@@ -4,6 +4,7 @@
 //
 //   Files   wake nobody early: what has come is found when the time is over
 //   Left    a thread that is done leaves; the other one's waits then take no time
+//   Begin   where a link watches over its heartbeat by the host's own clock, begin far ahead of that one: it is never lost then
 #pragma once
 #include <array>
 #include <condition_variable>
@@ -17,6 +18,7 @@ namespace whirl {
 
 class CommonClock final : public pacing::HostClock {
  public:
+  explicit CommonClock(std::int64_t begin_ns = 1'000'000'000) : now_ns_(begin_ns) {}
   std::int64_t now_ns() const override {
     const std::scoped_lock lock(mutex_);
     return now_ns_;
@@ -52,7 +54,7 @@ class CommonClock final : public pacing::HostClock {
   const std::thread::id maker_ = std::this_thread::get_id();
   mutable std::mutex mutex_;
   std::condition_variable moved_;
-  std::int64_t now_ns_ = 1'000'000'000;
+  std::int64_t now_ns_;
   std::array<std::int64_t, 2> until_ns_{kWorks, kWorks};
 };
 

@@ -12,10 +12,6 @@ namespace whirl {
 
 class RunningStandIn {
  public:
-  RunningStandIn(World& world, BoardDescription board, const std::string& image,
-                 StandInOptions wires)
-      : RunningStandIn(world, std::make_unique<VirtualBoard>(options_of(std::move(board), image)),
-                       std::move(wires)) {}
   // clock: null: the host's.
   RunningStandIn(World& world, std::unique_ptr<Target> target, StandInOptions wires,
                  pacing::HostClock* clock = nullptr)
@@ -35,12 +31,6 @@ class RunningStandIn {
   StandIn* operator->() { return &stand_in_; }
 
  private:
-  static VirtualBoardOptions options_of(BoardDescription board, const std::string& image) {
-    VirtualBoardOptions options;
-    options.board = {std::move(board), {.image = image, .seed = 1}};
-    return options;
-  }
-
   pacing::MonotonicClock clock_;
   std::unique_ptr<Target> target_;
   StandIn stand_in_;
