@@ -23,6 +23,7 @@ std::string number(double x) {
 
 std::string percent(double share) {
   if (std::isnan(share)) return "-";
+  if (std::isinf(share)) return "from 0";
   char text[32];
   std::snprintf(text, sizeof text, "%+.2f %%", share * 100.0);
   return text;
@@ -37,6 +38,16 @@ std::string met(const ParityRow& row) {
 
 std::string marked(const ParityRow& row) {
   return percent(row.difference) + (row.marked() ? " *" : "");
+}
+
+double difference(double first, double second) {
+  const double apart = second - first;
+  if (first == 0.0 && apart == 0.0) return 0.0;
+  return apart / std::abs(first);
+}
+
+std::string limits(const ParityRow& row) {
+  return row.limits_differ() ? row.limit + "; second: " + row.second_limit + " *" : row.limit;
 }
 
 std::string named(const Report& report) {
@@ -83,7 +94,8 @@ std::vector<ParityRow> parity(const Report& first, const Report& second) {
       paired[i] = row.in_both = true;
       row.second = b.measured;
       row.second_met = b.verdict == Verdict::pass;
-      if (a.measured != 0.0) row.difference = (b.measured - a.measured) / std::abs(a.measured);
+      row.difference = difference(a.measured, b.measured);
+      if (b.limit_text() != a.limit_text()) row.second_limit = b.limit_text();
       break;
     }
     rows.push_back(std::move(row));
@@ -101,14 +113,14 @@ std::vector<ParityRow> parity(const Report& first, const Report& second) {
 std::string parity_text(const Report& first, const Report& second) {
   std::string text = first.plan + ": " + named(first) + " (" + name(first.verdict) + ") beside " +
                      named(second) + " (" + name(second.verdict) + ")\n";
-  char line[400];
+  char line[600];
   std::snprintf(line, sizeof line, "  %-44s %10s %10s %11s  %-16s %s\n", "", "first", "second",
                 "differ", "limit met by", "limit");
   text += line;
   for (const ParityRow& row : parity(first, second)) {
     std::snprintf(line, sizeof line, "  %-44.44s %10s %10s %11s  %-16s %s\n", row.name.c_str(),
                   number(row.first).c_str(), number(row.second).c_str(), marked(row).c_str(),
-                  met(row).c_str(), row.limit.c_str());
+                  met(row).c_str(), limits(row).c_str());
     text += line;
   }
   return text;
@@ -125,12 +137,14 @@ std::string parity_page(const Report& first, const Report& second) {
       ". Second: " + escaped(named(second)) + ", " + name(second.verdict) +
       (second.reason.empty() ? "" : " (" + escaped(second.reason) + ")") +
       ". Differences of more than 5 % are "
-      "marked.</p><table><tr><th>Figure<th>First<th>Second<th>Difference<th>Limit met by<th>Limit";
+      "marked, and limits that are not the "
+      "same.</p><table><tr><th>Figure<th>First<th>Second<th>Difference<th>Limit met by<th>Limit";
   for (const ParityRow& row : parity(first, second)) {
     const std::string by = met(row);
     page += "<tr><td>" + escaped(row.name) + "<td>" + number(row.first) + "<td>" +
             number(row.second) + "<td" + (row.marked() ? " class=\"no\"" : "") + ">" + marked(row) +
-            "<td" + (by == "both" ? "" : " class=\"no\"") + ">" + by + "<td>" + escaped(row.limit);
+            "<td" + (by == "both" ? "" : " class=\"no\"") + ">" + by + "<td" +
+            (row.limits_differ() ? " class=\"no\"" : "") + ">" + escaped(limits(row));
   }
   return page + "</table></html>\n";
 }

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <type_traits>
 
 #include "base/json_text.hpp"
 
@@ -10,82 +11,170 @@ namespace {
 
 using nlohmann::json;
 
-double number(const json& value) {
-  return value.is_null() ? std::nan("") : value.get<double>();
+// What is wrong, and at which key: "expectations[2].measured".
+struct WrongValue {
+  std::string key, what;
+};
+
+template <typename T>
+bool fits(const json& value) {
+  if constexpr (std::is_same_v<T, std::string>) return value.is_string();
+  if constexpr (std::is_same_v<T, bool>) return value.is_boolean();
+  if constexpr (std::is_unsigned_v<T>) return value.is_number_unsigned();
+  return value.is_number();
+}
+
+template <typename T>
+const char* word_for() {
+  if constexpr (std::is_same_v<T, std::string>) return "a text";
+  if constexpr (std::is_same_v<T, bool>) return "true or false";
+  if constexpr (std::is_unsigned_v<T>) return "a whole number";
+  return "a number";
+}
+
+const json& at(const json& from, const std::string& key) {
+  if (!from.is_object()) throw WrongValue{"", "is of type " + std::string(from.type_name())};
+  const auto found = from.find(key);
+  if (found == from.end()) throw WrongValue{key, "is missing"};
+  return *found;
+}
+
+template <typename T>
+T as(const json& value, const std::string& key) {
+  if (fits<T>(value)) return value.get<T>();
+  throw WrongValue{key, std::string("is of type ") + value.type_name() + ", and " + word_for<T>() +
+                            " is wanted"};
+}
+
+template <typename T>
+T get(const json& from, const std::string& key) {
+  return as<T>(at(from, key), key);
+}
+
+// NaN where it is null: what could not be measured.
+double number(const json& value, const std::string& key) {
+  return value.is_null() ? std::nan("") : as<double>(value, key);
+}
+
+// Each element of a list, with its own key. `read` is given the element and that key.
+template <typename Read>
+void each(const json& from, const std::string& key, Read read) {
+  const json& list = at(from, key);
+  if (!list.is_array()) {
+    throw WrongValue{key, std::string("is of type ") + list.type_name() + ", and a list is wanted"};
+  }
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    read(list[i], key + "[" + std::to_string(i) + "]");
+  }
+}
+
+// Keys within an element are told behind its own.
+template <typename Read>
+auto within(const std::string& key, Read read) {
+  try {
+    return read();
+  } catch (const WrongValue& wrong) {
+    throw WrongValue{key + (wrong.key.empty() ? "" : "." + wrong.key), wrong.what};
+  }
+}
+
+std::vector<std::string> texts(const json& from, const std::string& key) {
+  std::vector<std::string> all;
+  each(from, key, [&](const json& text, const std::string& own) {
+    all.push_back(as<std::string>(text, own));
+  });
+  return all;
 }
 
 template <typename Word>
-Word word_of(const json& value, std::initializer_list<Word> all) {
+Word word_of(const json& from, const char* key, std::initializer_list<Word> all) {
+  const auto text = get<std::string>(from, key);
   for (const Word word : all) {
-    if (value == name(word)) return word;
+    if (text == name(word)) return word;
   }
-  throw json::other_error::create(599, "'" + value.get<std::string>() + "' is no such word",
-                                  &value);
+  throw WrongValue{key, "'" + text + "' is no such word"};
 }
 
-Verdict verdict_of_word(const json& value) {
+Verdict read_verdict(const json& from) {
   return word_of(
-      value, {Verdict::pass, Verdict::fail, Verdict::inconclusive, Verdict::error, Verdict::none});
+      from, "verdict",
+      {Verdict::pass, Verdict::fail, Verdict::inconclusive, Verdict::error, Verdict::none});
 }
 
-Blame blame_of_word(const json& value) {
-  return word_of(value,
+Blame read_blame(const json& from) {
+  return word_of(from, "blame",
                  {Blame::firmware, Blame::user, Blame::host, Blame::not_shown, Blame::harness});
 }
 
-void read_limit(const json& limit, Expectation& e) {
+void read_limit(const json& from, Expectation& e) {
+  const json& limit = at(from, "limit");
   if (limit.is_array()) {
-    e.low = limit.at(0).get<double>();
-    e.high = limit.at(1).get<double>();
-  } else if (limit.is_number()) {
+    if (limit.size() != 2) throw WrongValue{"limit", "has not two numbers"};
+    e.low = as<double>(limit[0], "limit[0]");
+    e.high = as<double>(limit[1], "limit[1]");
+  } else if (!limit.is_null()) {
+    const double value = as<double>(limit, "limit");
     const bool both = e.how == "equal" || e.how == "within";
-    if (both || e.how == "at least") e.low = limit.get<double>();
-    if (both || e.how != "at least") e.high = limit.get<double>();
+    if (both || e.how == "at least") e.low = value;
+    if (both || e.how != "at least") e.high = value;
   }
 }
 
 Expectation expectation(const json& from) {
   Expectation e;
-  from.at("name").get_to(e.name);
-  e.verdict = verdict_of_word(from.at("verdict"));
-  from.at("how").get_to(e.how);
-  e.measured = number(from.at("measured"));
-  e.margin = number(from.at("margin"));
-  from.at("unit").get_to(e.unit);
-  from.at("note").get_to(e.note);
-  from.at("place").get_to(e.place);
-  from.at("signals").get_to(e.signals);
-  from.at("from_s").get_to(e.from_s);
-  from.at("to_s").get_to(e.to_s);
-  from.at("level").get_to(e.level);
-  for (const json& limit : from.at("limits_SI")) e.limits_SI.push_back(number(limit));
-  read_limit(from.at("limit"), e);
+  e.name = get<std::string>(from, "name");
+  e.verdict = read_verdict(from);
+  e.how = get<std::string>(from, "how");
+  e.measured = number(at(from, "measured"), "measured");
+  e.margin = number(at(from, "margin"), "margin");
+  e.unit = get<std::string>(from, "unit");
+  e.note = get<std::string>(from, "note");
+  e.place = get<std::string>(from, "place");
+  e.signals = texts(from, "signals");
+  e.from_s = get<double>(from, "from_s");
+  e.to_s = get<double>(from, "to_s");
+  e.level = get<bool>(from, "level");
+  each(from, "limits_SI", [&](const json& limit, const std::string& key) {
+    e.limits_SI.push_back(number(limit, key));
+  });
+  read_limit(from, e);
   return e;
+}
+
+CpuFaultRow cpu_fault(const json& from) {
+  return {get<std::string>(from, "name"), get<std::string>(from, "where"),
+          get<std::string>(from, "registers"), get<std::string>(from, "backtrace"),
+          get<double>(from, "t_s")};
 }
 
 Report report_of(const json& from) {
   Report r;
-  from.at("plan").get_to(r.plan);
-  from.at("file").get_to(r.file);
-  from.at("tags").get_to(r.tags);
-  r.verdict = verdict_of_word(from.at("verdict"));
-  r.blame = blame_of_word(from.at("blame"));
-  from.at("reason").get_to(r.reason);
-  for (const json& why : from.at("reasons")) {
-    r.reasons.push_back({blame_of_word(why.at("blame")), why.at("what")});
-  }
-  from.at("seed").get_to(r.seed);
-  from.at("digest").get_to(r.digest);
-  from.at("virtual_s").get_to(r.virtual_s);
-  from.at("host_s").get_to(r.host.total_s);
-  for (const auto& [what, version] : from.at("versions").items()) {
-    r.versions.emplace_back(what, version.get<std::string>());
-  }
-  for (const json& e : from.at("expectations")) r.expectations.push_back(expectation(e));
-  for (const json& f : from.at("cpu_faults")) {
-    r.cpu_faults.push_back({f.at("name"), f.at("where"), f.at("registers"), f.at("backtrace"),
-                            f.at("t_s").get<double>()});
-  }
+  r.plan = get<std::string>(from, "plan");
+  r.file = get<std::string>(from, "file");
+  r.tags = texts(from, "tags");
+  r.verdict = read_verdict(from);
+  r.blame = read_blame(from);
+  r.reason = get<std::string>(from, "reason");
+  each(from, "reasons", [&](const json& why, const std::string& key) {
+    within(key, [&] { r.reasons.push_back({read_blame(why), get<std::string>(why, "what")}); });
+  });
+  r.seed = get<std::uint64_t>(from, "seed");
+  r.digest = get<std::string>(from, "digest");
+  r.virtual_s = get<double>(from, "virtual_s");
+  r.host.total_s = get<double>(from, "host_s");
+  within("versions", [&] {
+    const json& versions = at(from, "versions");
+    if (!versions.is_object()) throw WrongValue{"", "is no table"};
+    for (const auto& [what, version] : versions.items()) {
+      r.versions.emplace_back(what, as<std::string>(version, what));
+    }
+  });
+  each(from, "expectations", [&](const json& e, const std::string& key) {
+    r.expectations.push_back(within(key, [&] { return expectation(e); }));
+  });
+  each(from, "cpu_faults", [&](const json& f, const std::string& key) {
+    r.cpu_faults.push_back(within(key, [&] { return cpu_fault(f); }));
+  });
   return r;
 }
 
@@ -99,8 +188,9 @@ Result<Report> read_run(std::string_view json_text) {
   }
   try {
     return report_of(run);
-  } catch (const json::exception& e) {
-    return Error{ErrorKind::internal, "run.json", e.what(), ""};
+  } catch (const WrongValue& wrong) {
+    return Error{ErrorKind::internal, "run.json", wrong.key + " " + wrong.what,
+                 "it is of another version, or was changed by hand"};
   }
 }
 

@@ -8,7 +8,8 @@
 
 namespace whirl::results {
 
-// Errors  internal: not a run.json of ours
+// Errors  internal: not a run.json of ours; a value that is missing or of another type is named with its key,
+//         "expectations[2].measured"
 Result<Report> read_run(std::string_view json_text);
 
 }  // namespace whirl::results

@@ -38,20 +38,63 @@ TEST(Parity, FiguresMeetByNameAndOrder) {
 TEST(Parity, MarksWhatMovesByMoreThanFivePercentEitherWay) {
   Report first, second;
   first.expectations = {figure("same", -20.0, true), figure("less", 20.0, true),
-                        figure("more", -20.0, true), figure("none", 0.0, true)};
+                        figure("more", -20.0, true)};
   second.expectations = {figure("same", -20.9, true), figure("less", 18.9, true),
-                         figure("more", -18.9, true), figure("none", 9.0, true)};
+                         figure("more", -18.9, true)};
   first.verdict = Verdict::pass;
   second.versions = {{"flight/image", "a"}, {"esc1/image", "b"}};
   const auto rows = parity(first, second);
   EXPECT_FALSE(rows[0].marked());
   EXPECT_TRUE(rows[1].marked());
   EXPECT_TRUE(rows[2].marked());
-  EXPECT_FALSE(rows[3].marked());  // of 0 there is no share
   const std::string text = parity_text(first, second), page = parity_page(first, second);
   EXPECT_NE(text.find("-5.50 % *"), std::string::npos);
   EXPECT_NE(page.find("class=\"no\">-5.50 % *"), std::string::npos);
   EXPECT_NE(text.find("virtual board (pass) beside 2 virtual boards"), std::string::npos) << text;
+}
+
+TEST(Parity, WhatWasZeroAndIsNotIsMarkedWithoutAShare) {
+  const double nan = std::nan("");
+  Report first, second;
+  first.expectations = {figure("up", 0.0, true),      figure("down", 0.0, true),
+                        figure("still", 0.0, true),   figure("gone", 0.0, true),
+                        figure("to zero", 3.0, true), figure("came", nan, false)};
+  second.expectations = {figure("up", 9.0, true),      figure("down", -1e-9, true),
+                         figure("still", -0.0, true),  figure("gone", nan, false),
+                         figure("to zero", 0.0, true), figure("came", 0.0, true)};
+  const auto rows = parity(first, second);
+  const bool marked[] = {true, true, false, false, true, false};
+  for (std::size_t i = 0; i < rows.size(); ++i) EXPECT_EQ(rows[i].marked(), marked[i]) << i;
+  const std::string text = parity_text(first, second), page = parity_page(first, second);
+  for (const std::string& shown : {text, page}) {
+    EXPECT_NE(shown.find("from 0 *"), std::string::npos) << shown;
+    EXPECT_NE(shown.find("+0.00 %"), std::string::npos) << shown;
+    EXPECT_NE(shown.find("-100.00 % *"), std::string::npos) << shown;
+    EXPECT_EQ(shown.find("inf"), std::string::npos) << shown;
+  }
+}
+
+TEST(Parity, LimitsThatAreNotTheSameAreBothToldAndMarked) {
+  Report first, second;
+  const auto at_most = [](const std::string& name, double high, const std::string& unit) {
+    Expectation e = figure(name, 20.0, true);
+    e.how = "at most";
+    e.high = high;
+    e.unit = unit;
+    return e;
+  };
+  first.expectations = {at_most("same", 50.0, "ms"), at_most("wider", 50.0, "ms"),
+                        at_most("other", 50.0, "ms"), at_most("alone", 50.0, "ms")};
+  second.expectations = {at_most("same", 50.0, "ms"), at_most("wider", 60.0, "ms"),
+                         at_most("other", 50.0, "s")};
+  const auto rows = parity(first, second);
+  const bool differ[] = {false, true, true, false};
+  for (std::size_t i = 0; i < rows.size(); ++i) EXPECT_EQ(rows[i].limits_differ(), differ[i]) << i;
+  EXPECT_NE(parity_text(first, second).find("at most 50 ms; second: at most 60 ms *\n"),
+            std::string::npos)
+      << parity_text(first, second);
+  EXPECT_NE(parity_page(first, second).find("class=\"no\">at most 50 ms; second: at most 60 ms *"),
+            std::string::npos);
 }
 
 TEST(Parity, PageAndTextNameWhatDiffersAndEscapeWhatUsersWrote) {

@@ -43,5 +43,31 @@ TEST(ReadRun, RefusesWhatIsNone) {
   EXPECT_FALSE(read_run(wrong).ok());
 }
 
+TEST(ReadRun, AValueOfAnotherTypeIsNamedWithItsKey) {
+  const std::string good = run_json(sample());
+  const auto refused = [&](const std::string& from, const std::string& to) {
+    std::string text = good;
+    const auto at = text.find(from);
+    EXPECT_NE(at, std::string::npos) << from;
+    text.replace(at, from.size(), to);
+    const auto read = read_run(text);
+    EXPECT_FALSE(read.ok()) << to;
+    return read.ok() ? std::string() : read.error().what;
+  };
+  EXPECT_EQ(refused("\"seed\":", "\"seed\": \"x\", \"was\":"),
+            "seed is of type string, and a whole number is wanted");
+  EXPECT_EQ(refused("\"measured\":", "\"measured\": true, \"was\":"),
+            "expectations[0].measured is of type boolean, and a number is wanted");
+  EXPECT_EQ(refused("\"limits_SI\":", "\"limits_SI\": [1, {}], \"was\":"),
+            "expectations[0].limits_SI[1] is of type object, and a number is wanted");
+  EXPECT_EQ(refused("\"expectations\":", "\"expectations\": 3, \"was\":"),
+            "expectations is of type number, and a list is wanted");
+  EXPECT_EQ(refused("\"expectations\":", "\"expectations\": [3], \"was\":"),
+            "expectations[0] is of type number");
+  EXPECT_EQ(refused("\"versions\":", "\"versions\": {\"image\": 1}, \"was\":"),
+            "versions.image is of type number, and a text is wanted");
+  EXPECT_EQ(refused("\"digest\":", "\"was\":"), "digest is missing");
+}
+
 }  // namespace
 }  // namespace whirl::results
