@@ -234,8 +234,9 @@ Result<bench::BenchDescription> read_bench(const std::string& path) {
   if (t.has("analyser")) bench.analyser = read_analyser(t.table("analyser"), bench);
   if (t.has("probe")) bench.probe = read_probe(t.table("probe"));
   for (bench::BridgeLink& link : bench.bridges) {  // a slow board answers late
-    link.timeout_ns =
-        std::llround(static_cast<double>(link.timeout_ns) / std::min(1.0, bench.pace));
+    for (std::int64_t* timeout_ns : {&link.timeout_ns, &link.urgent_timeout_ns}) {
+      *timeout_ns = std::llround(static_cast<double>(*timeout_ns) / std::min(1.0, bench.pace));
+    }
   }
   if (t.has("signals")) {
     const lua::Table names = t.table("signals");

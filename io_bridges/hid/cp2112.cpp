@@ -95,15 +95,13 @@ I2cOutcome Cp2112::recover() {
     if (!status(report, transfer)) return transfer.outcome;
     if (report[1] != kBusy) return I2cOutcome::done;
     if (!out(HidReport{kCancel, 0x01}, transfer)) return transfer.outcome;
-    port_->pause_ns(10'000'000);
+    port_->pause_ns(pause_after_cancel_ns());
   }
   return I2cOutcome::busy;
 }
 
 void Cp2112::run(std::uint8_t address, std::span<const std::uint8_t> write, std::size_t read,
                  I2cTransfer& transfer) {
-  const auto bits = static_cast<std::int64_t>(9 * (write.size() + read + 2));
-  deadline_ns_ = port_->now_ns() + settings_.timeout_ns + bits * 1'000'000'000 / settings_.speed_Hz;
   if (!request(address, write, read, transfer) || !finished(transfer)) return;
   if (read > 0) fetch(read, transfer);
 }
@@ -164,8 +162,7 @@ bool Cp2112::finished(I2cTransfer& transfer) {
     if (status0 != kBusy && status0 != kIdle) {
       return fail(transfer, outcome_of(status1), "status1 " + std::to_string(status1));
     }
-    if (port_->now_ns() > deadline_ns_)
-      return fail(transfer, I2cOutcome::timed_out, "status0 " + std::to_string(status0));
+    if (late()) return fail(transfer, I2cOutcome::timed_out, "status0 " + std::to_string(status0));
   }
 }
 
@@ -183,8 +180,7 @@ bool Cp2112::fetch(std::size_t count, I2cTransfer& transfer) {
     }
     transfer.bytes.insert(transfer.bytes.end(), report.begin() + 3,
                           report.begin() + 3 + static_cast<int>(got));
-    if (port_->now_ns() > deadline_ns_)
-      return fail(transfer, I2cOutcome::timed_out, "what was read does not come");
+    if (late()) return fail(transfer, I2cOutcome::timed_out, "what was read does not come");
   }
   return true;
 }

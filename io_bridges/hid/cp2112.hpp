@@ -29,7 +29,7 @@ class Cp2112 : public I2cBridge {
 
  private:
   Cp2112(std::unique_ptr<HidPort> port, const I2cBridgeSettings& settings)
-      : port_(std::move(port)), settings_(settings) {}
+      : I2cBridge(settings), port_(std::move(port)) {}
 
   void run(std::uint8_t address, std::span<const std::uint8_t> write, std::size_t read,
            I2cTransfer& transfer) override;
@@ -44,8 +44,6 @@ class Cp2112 : public I2cBridge {
   bool fetch(std::size_t count, I2cTransfer& transfer);
 
   std::unique_ptr<HidPort> port_;
-  I2cBridgeSettings settings_;
-  std::int64_t deadline_ns_ = 0;
   int revision_ = 0;
 };
 

@@ -48,10 +48,14 @@ bool I2cBridge::fail(I2cTransfer& transfer, I2cOutcome outcome, std::string told
 }
 
 I2cTransfer I2cBridge::transfer(std::uint8_t address, std::span<const std::uint8_t> write,
-                                std::size_t read) {
+                                std::size_t read, bool urgent) {
   WHIRL_CHECK(address < 128 && (!write.empty() || read > 0), int{address}, write.size(), read);
   I2cTransfer transfer;
   transfer.begin_ns = now_ns();
+  urgent_ = urgent;
+  const auto bits = static_cast<std::int64_t>(9 * (write.size() + read + 2));
+  deadline_ns_ = transfer.begin_ns + (urgent ? settings_.urgent_timeout_ns : settings_.timeout_ns) +
+                 bits * 1'000'000'000 / settings_.speed_Hz;
   run(address, write, read, transfer);
   transfer.end_ns = now_ns();
   const I2cOutcome outcome = transfer.outcome;
@@ -59,6 +63,7 @@ I2cTransfer I2cBridge::transfer(std::uint8_t address, std::span<const std::uint8
       outcome != I2cOutcome::refused) {
     recover();
   }
+  urgent_ = false;
   return transfer;
 }
 

@@ -6,9 +6,13 @@
 //   Outcome  told by the bridge itself. After any but done and the NACKs' clean end the bridge is brought
 //            back by recover() before transfer() returns. unplugged: this object serves no more
 //            (plugged_bridge.hpp opens the next one)
+//   Stop     a caller that may have to stop at any time says so by stop_when(): asked after each report, true ends what is
+//            open, and the bridge is brought back without the pauses of a bus that has time. An urgent transfer, that
+//            of the stop itself, goes on, with a time-out of its own
 //   Threads  none; one caller
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -45,6 +49,8 @@ struct I2cTransfer {
 struct I2cBridgeSettings {
   int speed_Hz = 400'000;
   std::int64_t timeout_ns = 200'000'000;  // of a transfer, beyond its bytes' time
+  std::int64_t urgent_timeout_ns =
+      8'000'000;  // of an urgent one: two questions by full-speed USB, twice
 };
 
 class I2cBridge {
@@ -52,7 +58,8 @@ class I2cBridge {
   virtual ~I2cBridge() = default;
 
   // Pre: address < 128, and something to write or to read.
-  I2cTransfer transfer(std::uint8_t address, std::span<const std::uint8_t> write, std::size_t read);
+  I2cTransfer transfer(std::uint8_t address, std::span<const std::uint8_t> write, std::size_t read,
+                       bool urgent = false);
   I2cTransfer write(std::uint8_t address, std::span<const std::uint8_t> bytes) {
     return transfer(address, bytes, 0);
   }
@@ -61,12 +68,16 @@ class I2cBridge {
   // An error: what ended it.
   Result<std::vector<std::uint8_t>> scan();
 
+  void stop_when(std::function<bool()> stopped) { stopped_ = std::move(stopped); }
+
   virtual Result<Done> set_speed(int speed_Hz) = 0;
   // Ends what runs; done when the engine is idle and both lines are high.
   virtual I2cOutcome recover() = 0;
   virtual std::string label() const = 0;  // "MCP2221A"
 
  protected:
+  explicit I2cBridge(const I2cBridgeSettings& settings) : settings_(settings) {}
+
   // Fills in bytes, outcome and told.
   virtual void run(std::uint8_t address, std::span<const std::uint8_t> write, std::size_t read,
                    I2cTransfer& transfer) = 0;
@@ -74,6 +85,22 @@ class I2cBridge {
 
   // For run(): the transfer ends so. Returns false, for `return fail(...)`.
   static bool fail(I2cTransfer& transfer, I2cOutcome outcome, std::string told = {});
+  // For run(), after each report that did not end the transfer: it has no time left, or is not wanted any more.
+  bool late() const { return now_ns() > deadline_ns_ || given_up(); }
+  bool given_up() const { return !urgent_ && stopped(); }
+  // For recover(): between two cancels. EasyMCP2221 leaves 10 ms, Linux's driver 1 ms between reports.
+  std::int64_t pause_after_cancel_ns() const {
+    return urgent_ || stopped() ? 1'000'000 : 10'000'000;
+  }
+
+  I2cBridgeSettings settings_;
+
+ private:
+  bool stopped() const { return stopped_ && stopped_(); }
+
+  std::function<bool()> stopped_;
+  std::int64_t deadline_ns_ = 0;
+  bool urgent_ = false;
 };
 
 enum class BridgeKind : std::uint8_t { mcp2221a, cp2112 };

@@ -18,7 +18,6 @@ constexpr std::size_t kPayload = 60;
 constexpr std::size_t kLongest = 65535;
 constexpr std::uint8_t kNothing = 127;  // as the count of bytes: none yet, or none at all
 constexpr std::int64_t kAnswer_ns = 4'000'000'000;  // as Linux waits for an answer
-constexpr std::int64_t kPause_ns = 10'000'000;      // between two cancels, as EasyMCP2221
 
 std::string hex(const char* what, std::uint8_t value) {
   char text[48];
@@ -71,7 +70,7 @@ I2cOutcome Mcp2221::recover() {
       return report[22] != 0 && report[23] != 0 ? I2cOutcome::busy : I2cOutcome::bus_stuck;
     Report cancel{kStatus, 0, kCancel};
     if (!command(cancel, transfer)) return transfer.outcome;
-    if (i > 0) port_->pause_ns(kPause_ns);
+    if (i > 0) port_->pause_ns(pause_after_cancel_ns());
   }
   return report[22] != 0 && report[23] != 0 ? I2cOutcome::done : I2cOutcome::bus_stuck;
 }
@@ -82,8 +81,6 @@ void Mcp2221::run(std::uint8_t address, std::span<const std::uint8_t> write, std
     fail(transfer, I2cOutcome::refused, "more than 65535 bytes");
     return;
   }
-  const auto bits = static_cast<std::int64_t>(9 * (write.size() + read + 2));
-  deadline_ns_ = port_->now_ns() + settings_.timeout_ns + bits * 1'000'000'000 / settings_.speed_Hz;
   const bool both = !write.empty() && read > 0;
   if (!write.empty() && !send(both ? kWriteNoStop : kWrite, address, write, transfer)) return;
   if (read > 0) receive(both ? kReadRepeated : kRead, address, read, transfer);
@@ -163,6 +160,7 @@ bool Mcp2221::send(std::uint8_t code, std::uint8_t address, std::span<const std:
                   static_cast<std::uint8_t>(address << 1)};
     std::copy(piece.begin(), piece.end(), report.begin() + 4);
     if (!accepted(report, transfer)) return false;
+    if (at + kPayload < bytes.size() && given_up()) return fail(transfer, I2cOutcome::timed_out);
   }
   return sent(code == kWrite, bytes.size(), transfer);
 }
@@ -202,7 +200,7 @@ bool Mcp2221::receive(std::uint8_t code, std::uint8_t address, std::size_t count
         return fail(transfer, I2cOutcome::timed_out, "it gives more than asked for");
       transfer.bytes.insert(transfer.bytes.end(), report.begin() + 4,
                             report.begin() + 4 + static_cast<int>(got));
-      if (got > 0) continue;
+      if (got > 0 && (transfer.bytes.size() == count || !given_up())) continue;
     } else if (got != kNothing) {
       return fail(transfer, I2cOutcome::timed_out, hex("a count of bytes of", report[3]));
     }

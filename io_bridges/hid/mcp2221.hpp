@@ -4,7 +4,7 @@
 //            bus is never faster than asked for, whichever is right (3 % slower at 400 kHz at worst)
 //   Length   65535 bytes each way, 60 a report
 //   Outcomes address and data NACK, bus stuck, busy, time-out. Lost arbitration has no code of its own
-//   Recovery cancel, up to three times with 10 ms between, until the engine is idle. An engine that has never
+//   Recovery cancel, up to three times with 10 ms between (1 ms when stopped), until the engine is idle. An engine that has never
 //            been used hangs on a cancel: none is sent to an idle one
 //   Source   Linux hid-mcp2221.c (commands, states), EasyMCP2221 (states, undocumented bytes). Not from the
 //            data sheet, and not tried on a chip: bytes 8..23 of the status answer
@@ -35,7 +35,7 @@ class Mcp2221 : public I2cBridge {
   using Report = std::array<std::uint8_t, 64>;
 
   Mcp2221(std::unique_ptr<HidPort> port, const I2cBridgeSettings& settings)
-      : port_(std::move(port)), settings_(settings) {}
+      : I2cBridge(settings), port_(std::move(port)) {}
 
   void run(std::uint8_t address, std::span<const std::uint8_t> write, std::size_t read,
            I2cTransfer& transfer) override;
@@ -49,12 +49,9 @@ class Mcp2221 : public I2cBridge {
   bool sent(bool stops, std::size_t count, I2cTransfer& transfer);
   bool receive(std::uint8_t code, std::uint8_t address, std::size_t count, I2cTransfer& transfer);
   bool engine_failed(std::uint8_t state, I2cTransfer& transfer);
-  bool late() const { return port_->now_ns() > deadline_ns_; }
   void drain();
 
   std::unique_ptr<HidPort> port_;
-  I2cBridgeSettings settings_;
-  std::int64_t deadline_ns_ = 0;
   bool owes_answer_ = false;  // one may still come for a command that was given up
 };
 

@@ -41,7 +41,7 @@ outdoors("by GPS: a heading that is wrong from the start", function(t)
   local tilt = t:always "tilt"
   tilt:at_most "40 deg"
   stays_near(t, "10 m", "12 s")
-  stays_near(t, "10 m", "10 s")
+  stays_near(t, "10 m", "5 s")
   t:expect(t:value "heading_error", "heading"):within("-20 deg", "20 deg")
   tilt:stop()
   lands(t, "heading by gyro for too long", 4, { noticed = "15 s", tilt = "30 deg", down = "40 s", upright = false })

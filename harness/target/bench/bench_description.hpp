@@ -31,6 +31,7 @@ struct BridgeLink {  // USB to I2C
   double rate_Hz = 100e3;
   std::int64_t timeout_ns =
       20'000'000;  // of the host; the ESC's longest answer takes one millisecond
+  std::int64_t urgent_timeout_ns = 8'000'000;  // of the stop's zero
 };
 
 struct CanBusLink {             // a network interface of SocketCAN

@@ -28,7 +28,9 @@ std::chrono::steady_clock::time_point at(std::int64_t host_ns) {
 }  // namespace
 
 BridgeThread::BridgeThread(BridgeOptions options, std::unique_ptr<I2cPort> port)
-    : options_(std::move(options)), port_(std::move(port)) {}
+    : options_(std::move(options)), port_(std::move(port)) {
+  options_.safe.urgent = true;
+}
 
 BridgeThread::~BridgeThread() {
   close();
@@ -40,6 +42,10 @@ Result<Done> BridgeThread::open() {
   woken_ = ::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
   WHIRL_CHECK(woken_ >= 0);
   heard_host_ns_ = now_host_ns();
+  port_->stop_when([this] {
+    const std::scoped_lock lock(mutex_);
+    return is_safe(now_host_ns());
+  });
   thread_ = std::thread([this] { work(); });
   return Done{};
 }
@@ -70,20 +76,24 @@ Result<Done> BridgeThread::serve(std::int64_t now_host_ns, Arrivals& arrivals) {
   return Done{};
 }
 
-bool BridgeThread::next(std::unique_lock<std::mutex>& lock, Order& order, bool& is_safe) {
+bool BridgeThread::is_safe(std::int64_t now_host_ns) {
+  const bool silent =
+      options_.heartbeat_ns > 0 && now_host_ns >= heard_host_ns_ + options_.heartbeat_ns;
+  if (!safe_ && silent) {
+    safe_ = alone_ = true;
+    orders_.clear();
+    next_safe_ns_ = now_host_ns;
+  }
+  return safe_;
+}
+
+bool BridgeThread::next(std::unique_lock<std::mutex>& lock, Order& order) {
   for (;;) {
     if (ending_) return false;
     const std::int64_t now = now_host_ns();
-    const std::int64_t silent_from = heard_host_ns_ + options_.heartbeat_ns;
-    if (options_.heartbeat_ns > 0 && !safe_ && now >= silent_from) {
-      safe_ = alone_ = true;
-      orders_.clear();
-      next_safe_ns_ = now;
-    }
-    std::int64_t wake_ns = safe_                       ? next_safe_ns_
-                           : options_.heartbeat_ns > 0 ? silent_from
+    std::int64_t wake_ns = is_safe(now)                ? next_safe_ns_
+                           : options_.heartbeat_ns > 0 ? heard_host_ns_ + options_.heartbeat_ns
                                                        : kNever_ns;
-    is_safe = safe_;
     if (safe_ && now >= next_safe_ns_) {
       next_safe_ns_ = now + kSafe_every_ns;
       order = {now, 0, options_.safe};
@@ -108,12 +118,11 @@ bool BridgeThread::next(std::unique_lock<std::mutex>& lock, Order& order, bool& 
 void BridgeThread::work() {
   std::unique_lock lock(mutex_);
   Order order;
-  bool is_safe = false;
-  while (next(lock, order, is_safe)) {
+  while (next(lock, order)) {
     lock.unlock();
     const auto outcome = port_->transfer(order.transfer);
     lock.lock();
-    if (!is_safe) answer(order, outcome);
+    if (!order.transfer.urgent) answer(order, outcome);
     if (outcome) continue;
     error_ = outcome.error();
     std::ignore = ::eventfd_write(woken_, 1);

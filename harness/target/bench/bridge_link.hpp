@@ -5,7 +5,8 @@
 //   Late       an order that waits behind a slow one is not dropped: how late it was, its reply's time tells
 //   Heartbeat  without a turn of the bench's loop for so long the thread makes safe by itself
 //   Safe       `safe` goes out at once and then every 10 ms, for the far end's watchdog asks for set-points;
-//              and once more when the link is closed
+//              and once more when the link is closed. A transfer that is open then is ended: nobody waits for a target
+//              that does not answer
 #pragma once
 #include <condition_variable>
 #include <deque>
@@ -24,6 +25,7 @@ struct Transfer {
   std::uint8_t address = 0;
   std::vector<std::uint8_t> write;
   std::uint16_t read = 0;
+  bool urgent = false;  // it is not ended by stop_when(), and has a short time-out
 };
 
 struct TransferOutcome {
@@ -39,6 +41,8 @@ class I2cPort {
   virtual Result<Done> open() = 0;
   // Errors  host: the bridge was unplugged, or does not answer
   virtual Result<TransferOutcome> transfer(const Transfer& transfer) = 0;
+  // Once, when it is open. Asked while a transfer is: true ends it as timed out, unless it is urgent.
+  virtual void stop_when(std::function<bool()> /*stopped*/) {}
   virtual void close() = 0;
   virtual std::string version() const = 0;  // "MCP2221A 0002137245, firmware 1.2"
 };
@@ -75,8 +79,10 @@ class BridgeThread final : public Link {
   };
   void work();
   // Waits for the next thing to do; none: the end.
-  bool next(std::unique_lock<std::mutex>& lock, Order& order, bool& is_safe);
+  bool next(std::unique_lock<std::mutex>& lock, Order& order);
   void answer(const Order& order, const Result<TransferOutcome>& outcome);
+  // Pre: the mutex is held. True: it is safe, or has just become so, for nobody has turned the loop.
+  bool is_safe(std::int64_t now_host_ns);
 
   BridgeOptions options_;
   std::unique_ptr<I2cPort> port_;
