@@ -1,6 +1,7 @@
 #include "harness/catalogue/bench_file.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <set>
@@ -25,6 +26,48 @@ void read_can(const lua::Table& t, bench::CanBusLink& link) {
   link.interface = t.text("interface");
   link.bit_rate_bps = static_cast<std::uint32_t>(
       t.quantity_or("rate", Dimension::baud, link.bit_rate_bps, lua::between(10e3, 1e6)));
+}
+
+std::optional<std::array<std::uint8_t, 16>> unique_id_of(const std::string& hex) {
+  std::array<std::uint8_t, 16> id{};
+  if (hex.size() != 2 * id.size()) return std::nullopt;
+  for (std::size_t i = 0; i < id.size(); ++i) {
+    const char* begin = hex.data() + 2 * i;
+    const auto [end, error] = std::from_chars(begin, begin + 2, id[i], 16);
+    if (error != std::errc{} || end != begin + 2) return std::nullopt;
+  }
+  return id;
+}
+
+void read_allocation(const lua::Table& t, bench::CanBusLink& link) {
+  constexpr std::uint8_t kHighest = 125;  // 126 and 127 are tools'
+  const auto id_of = [&](const lua::Table& table, const std::string& key, std::uint8_t usual) {
+    return static_cast<std::uint8_t>(table.integer_or(key, usual, 1, kHighest));
+  };
+  bench::NodeIds& ids = link.ids;
+  ids.lowest = id_of(t, "lowest", ids.lowest);
+  ids.highest = id_of(t, "highest", ids.highest);
+  if (ids.lowest > ids.highest) t.refuse("highest", "is below lowest");
+  if (t.has("node")) link.allocator = id_of(t, "node", kHighest);
+  if (!t.has("ids")) return;
+  const lua::Table kept = t.table("ids");
+  std::set<int> given;
+  for (const std::string& key : kept.keys()) {
+    const auto unique_id = unique_id_of(key);
+    const std::uint8_t id = id_of(kept, key, kHighest);
+    if (!unique_id) {
+      kept.refuse(key, "is no unique id: 16 bytes in hex", "whirl bench check tells a node's");
+    } else if (std::any_of(ids.kept.begin(), ids.kept.end(),
+                           [&](const auto& one) { return one.first == *unique_id; })) {
+      kept.refuse(key, "is there twice");  // in capitals, and not
+    } else if (!given.insert(id).second) {
+      kept.refuse(key, "has node id " + std::to_string(id) + ", which another one has");
+    } else if (link.allocator == id) {
+      kept.refuse(key, "has node id " + std::to_string(id) + ", which is the allocator's own");
+    } else {
+      ids.kept.emplace_back(*unique_id, id);
+    }
+  }
 }
 
 // Its line has a rate of its own.
@@ -59,6 +102,7 @@ void read_link(const lua::Table& t, bench::BenchDescription& bench) {
     bench::CanBusLink link;
     read_can(t, link);
     link.bus = port;
+    if (t.has("allocation")) read_allocation(t.table("allocation"), link);
     bench.cans.push_back(std::move(link));
   } else {
     t.refuse("bus", "'" + bus + "' is no bus that a bench can join", "i2c1.., usart1.., can1..");

@@ -30,6 +30,22 @@ Result<Done> check_can(const plan::Plan& plan, std::uint16_t can,
                  "links = { { bus = \"" + bus + "\", interface = \"can0\" } }");
 }
 
+// Of a stand this host is the allocator, as node 10; of a vehicle it is a node of its own where the file says which.
+Result<Done> check_allocators(const plan::Plan& plan, const bench::BenchDescription& bench) {
+  for (const bench::CanBusLink& link : bench.cans) {
+    const bool asks = link.ids.lowest != 1 || link.ids.highest != 125 || !link.ids.kept.empty();
+    if (plan.stand && link.allocator) {
+      return refused(bench.file, link.name + ": allocation.node is of a vehicle's bus",
+                     "leave it out: on a stand this host gives ids as node 10");
+    }
+    if (!plan.stand && asks && !link.allocator) {
+      return refused(bench.file, link.name + ": allocation names no node that gives the ids",
+                     "node = 11, where the flight controller gives none itself");
+    }
+  }
+  return Done{};
+}
+
 // The world's end of each bus of the board, where the bench has something in its place.
 Result<Done> check_links(const plan::Plan& plan, const BoardDescription& board,
                          const bench::BenchDescription& bench, const std::string& root) {
@@ -208,6 +224,7 @@ Result<bench::BenchDescription> bench_for(const plan::Plan& plan, const std::vec
                                    bench.value().name + " there is " + bench.value().board);
   }
   if (const auto there = check_radios(board, bench.value()); !there) return there.error();
+  if (const auto good = check_allocators(plan, bench.value()); !good) return good.error();
   const auto joined = plan.stand ? check_links(plan, board, bench.value(), root)
                                  : check_flight_links(board, bench.value());
   if (!joined) return joined.error();

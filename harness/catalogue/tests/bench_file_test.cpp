@@ -102,6 +102,43 @@ TEST(BenchFile, ALineIsSaidToCarryMavlink) {
   EXPECT_NE(other.error().message().find("kind"), std::string::npos) << other.error().message();
 }
 
+TEST(BenchFile, IdsForNodesWithoutOneAreByUniqueIdOrOfARange) {
+  const auto of = [](const std::string& allocation) {
+    return bench_of(with("{ name = \"terminal\"",
+                         "{ name = \"bus\", bus = \"can1\", interface = \"can0\", allocation = { " +
+                             allocation + " } },\n    { name = \"terminal\""));
+  };
+  const std::string id = "00112233445566778899aabbCCddeeff";
+  const auto got = of("lowest = 100, node = 11, ids = { [\"" + id + "\"] = 20 }");
+  ASSERT_TRUE(got) << got.error().message();
+  const bench::CanBusLink& link = got.value().cans.at(0);
+  EXPECT_EQ(link.ids.lowest, 100);
+  EXPECT_EQ(link.ids.highest, 125);
+  EXPECT_EQ(link.allocator, 11);
+  ASSERT_EQ(link.ids.kept.size(), 1u);
+  EXPECT_EQ(link.ids.kept[0].second, 20);
+  EXPECT_EQ(link.ids.kept[0].first[12], 0xCC);
+  EXPECT_EQ(link.ids.kept[0].first[1], 0x11);
+  const std::pair<std::string, std::string> cases[] = {
+      {"lowest = 0", "lowest"},
+      {"highest = 126", "highest"},
+      {"lowest = 20, highest = 19", "below lowest"},
+      {"ids = { [\"0011\"] = 20 }", "16 bytes in hex"},
+      {"ids = { [\"" + id.substr(0, 30) + "zz\"] = 20 }", "16 bytes in hex"},
+      {"ids = { [\"" + id + "\"] = 126 }", "126"},
+      {"ids = { [\"" + id + "\"] = 20, [\"" + std::string(32, '1') + "\"] = 20 }",
+       "another one has"},
+      {"ids = { [\"" + id + "\"] = 20, [\"00112233445566778899AABBCCDDEEFF\"] = 21 }", "twice"},
+      {"node = 11, ids = { [\"" + id + "\"] = 11 }", "allocator's own"},
+      {"colour = 1", "colour"},
+  };
+  for (const auto& [text, word] : cases) {
+    const auto refused = of(text);
+    ASSERT_FALSE(refused) << text;
+    EXPECT_NE(refused.error().message().find(word), std::string::npos) << refused.error().message();
+  }
+}
+
 TEST(BenchFile, APodsHostIsOnALineOrOnCan) {
   const auto line = bench_of(
       with("{ name = \"terminal\"",

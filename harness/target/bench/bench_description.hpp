@@ -5,10 +5,12 @@
 //   Instruments  lines of text with numbers, each a signal: load cell, tachometer, meters
 //   Safety       limits on signals, a limit on time, the phrase that who runs it has to say
 #pragma once
+#include <array>
 #include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/units.hpp"
@@ -34,10 +36,18 @@ struct BridgeLink {  // USB to I2C
   std::int64_t urgent_timeout_ns = 8'000'000;  // of the stop's zero
 };
 
+struct NodeIds {  // that this host gives to nodes which have none
+  std::uint8_t lowest = 1, highest = 125;
+  std::vector<std::pair<std::array<std::uint8_t, 16>, std::uint8_t>> kept = {};  // by unique id
+};
+
 struct CanBusLink {             // a network interface of SocketCAN
   std::string name, interface;  // "bus", "can0"
   std::uint16_t bus = 1;
   std::uint32_t bit_rate_bps = 1'000'000;  // that it must have; a virtual one has none
+  NodeIds ids = {};
+  std::optional<std::uint8_t> allocator =
+      {};  // of a vehicle's bus: this host's node that gives them
 };
 
 struct PodLink {  // a pod's host, on a serial line or on CAN

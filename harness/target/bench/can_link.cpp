@@ -17,6 +17,7 @@ namespace dc = io::dronecan;
 
 constexpr std::int64_t kZeros_every_ns = 10'000'000;
 constexpr std::int64_t kRetry_ns = 200'000;  // a frame of eight bytes takes 130 us at 1 Mbit/s
+constexpr std::size_t kMost_of_node = 128;   // who asks and asks must not have it grow
 constexpr int kMost_arrivals = 256;          // of a turn: who floods the bus must not hold the loop
 constexpr std::uint8_t kPriority =
     5;  // the set-points' own, so that these come behind none of them
@@ -45,6 +46,16 @@ Result<Done> CanLink::open() {
   return Done{};
 }
 
+void CanLink::keep_time(BenchTime time) {
+  const std::scoped_lock lock(mutex_);
+  virtual_ns_ = std::move(time.virtual_ns);
+  node_.emplace(BusNodeOptions{.node = options_.node, .arms = true, .ids = options_.link.ids},
+                [this](const io::CanFrame& frame) {
+                  if (!safe_ && node_waiting_.size() < kMost_of_node)
+                    node_waiting_.push_back(frame);
+                });
+}
+
 bool CanLink::take(const io::Reader& order, std::int64_t due_host_ns) {
   if (order.header().kind != io::Kind::can_order || order.header().port != options_.link.bus) {
     return false;
@@ -56,6 +67,7 @@ bool CanLink::take(const io::Reader& order, std::int64_t due_host_ns) {
 
 std::int64_t CanLink::next_due_host_ns() const {
   const std::scoped_lock lock(mutex_);
+  if (!node_waiting_.empty()) return retry_host_ns_;
   if (orders_.empty()) return kNever_ns;
   return std::max(orders_.front().due_host_ns, retry_host_ns_);
 }
@@ -64,9 +76,15 @@ Result<Done> CanLink::serve(std::int64_t now_host_ns, Arrivals& arrivals) {
   {
     const std::scoped_lock lock(mutex_);
     heard_host_ns_ = now_host_ns;
+    turn_node(now_host_ns);
     if (const auto sent = send_due(now_host_ns); !sent) return sent;
   }
   return take_in(arrivals);
+}
+
+void CanLink::turn_node(std::int64_t now_host_ns) {
+  if (safe_) node_waiting_.clear();
+  if (node_ && !safe_) node_->poll(virtual_ns_(now_host_ns));
 }
 
 Result<Done> CanLink::send_due(std::int64_t now_host_ns) {
@@ -78,6 +96,13 @@ Result<Done> CanLink::send_due(std::int64_t now_host_ns) {
       return Done{};
     }
     orders_.pop_front();
+  }
+  for (; !node_waiting_.empty(); node_waiting_.pop_front()) {
+    const auto sent = send(node_waiting_.front());
+    if (!sent) return sent.error();
+    if (sent.value()) continue;
+    retry_host_ns_ = now_host_ns + kRetry_ns;
+    break;
   }
   return Done{};
 }
@@ -96,6 +121,9 @@ Result<Done> CanLink::take_in(Arrivals& arrivals) {
     if (!got) return got.error();
     if (!got.value()) break;
     const io::CanArrival& arrival = *got.value();
+    if (const std::scoped_lock lock(mutex_); node_ && !arrival.own) {
+      node_->on_frame(arrival.frame, virtual_ns_(arrival.host_ns));
+    }
     io::CanRecord record;
     record.start_ns = arrival.host_ns;
     record.frame = io::to_message(arrival.frame);
@@ -134,6 +162,7 @@ void CanLink::make_safe() {
   if (safe_ || !end_.is_open()) return;
   safe_ = true;
   orders_.clear();
+  node_waiting_.clear();
   send_zeros();
   next_safe_ns_ = host_now_ns() + kZeros_every_ns;
   changed_.notify_one();
@@ -147,6 +176,7 @@ void CanLink::work() {
     if (!safe_ && options_.heartbeat_ns > 0 && now_ns >= silent_from_ns) {
       safe_ = alone_ = true;
       orders_.clear();
+      node_waiting_.clear();
       next_safe_ns_ = now_ns;
     }
     if (safe_ && now_ns >= next_safe_ns_) {
@@ -167,6 +197,15 @@ void CanLink::work() {
 bool CanLink::heartbeat_lost() const {
   const std::scoped_lock lock(mutex_);
   return alone_;
+}
+
+std::vector<std::string> CanLink::findings() const {
+  auto all = end_.findings();
+  if (!node_) return all;
+  for (const std::string& finding : node_->findings()) {
+    all.push_back(options_.link.interface + ": " + finding);
+  }
+  return all;
 }
 
 void CanLink::close() {

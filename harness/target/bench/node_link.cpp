@@ -17,13 +17,20 @@ NodeLink::NodeLink(NodeOptions options, CanMaker maker)
       end_(options_.link, std::move(maker), options_.log),
       rack_(options_.link.bus, options_.link.bit_rate_bps, options_.seed,
             [this](const io::CanFrame& frame) {
-              if (safe_) return;
-              if (waiting_.size() < kMost_waiting) {
-                waiting_.push_back(frame);
-              } else {
-                ++dropped_;
-              }
-            }) {}
+              node_.on_own(frame);
+              add_waiting(frame);
+            }),
+      node_({.node = options_.link.allocator, .ids = options_.link.ids},
+            [this](const io::CanFrame& frame) { add_waiting(frame); }) {}
+
+void NodeLink::add_waiting(const io::CanFrame& frame) {
+  if (safe_) return;
+  if (waiting_.size() < kMost_waiting) {
+    waiting_.push_back(frame);
+  } else {
+    ++dropped_;
+  }
+}
 
 Result<Done> NodeLink::open() {
   const std::string wire = "can" + std::to_string(options_.link.bus);
@@ -38,12 +45,14 @@ Result<Done> NodeLink::take_in(std::int64_t /*now_host_ns*/) {
     if (!got.value()) break;
     if (got.value()->own) continue;
     advance(got.value()->host_ns);
+    node_.on_frame(got.value()->frame, virtual_ns(got.value()->host_ns));
     rack_.give(got.value()->frame);
   }
   return Done{};
 }
 
 Result<Done> NodeLink::send_waiting(std::int64_t now_host_ns) {
+  node_.poll(virtual_ns(now_host_ns));
   for (; !waiting_.empty(); waiting_.pop_front()) {
     const auto sent = end_.send(waiting_.front());
     if (!sent) return sent.error();
@@ -66,6 +75,9 @@ void NodeLink::make_safe() {
 
 std::vector<std::string> NodeLink::findings() const {
   auto all = end_.findings();
+  for (const std::string& finding : node_.findings()) {
+    all.push_back(options_.link.interface + ": " + finding);
+  }
   if (dropped_ > 0) {
     all.push_back(std::to_string(dropped_) + " frames of the nodes found no room at " +
                   options_.link.interface);

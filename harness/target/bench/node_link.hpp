@@ -3,11 +3,14 @@
 //
 //   Frames   of ours take their time in the nodes' own bus model, then on copper: on a wire of 1 Mbit/s they are heard
 //            0.13 ms later than on a virtual board. In the run's messages they have the times of the model
+//   Node     whom the bus has is watched for two of one id and for restarts (bus_node.hpp); where the bench file names an
+//            allocator, this host is that node as well
 //   Full     at most 64 frames wait for the controller; those that find no room are dropped, counted and told
 //   Errors   bad_input: the board has no device on that bus; host: bus-off, or the adapter is gone
 #pragma once
 #include <deque>
 
+#include "harness/target/bench/bus_node.hpp"
 #include "harness/target/bench/can_end.hpp"
 #include "harness/target/bench/rack_link.hpp"
 #include "io_bridges/rack/can_rack.hpp"
@@ -44,7 +47,10 @@ class NodeLink final : public RackLink {
 
   NodeOptions options_;
   CanEnd end_;
+  void add_waiting(const io::CanFrame& frame);
+
   rack::CanRack rack_;
+  BusNode node_;
   std::deque<io::CanFrame> waiting_;  // for the controller
   std::int64_t retry_host_ns_ = 0;
   std::uint64_t dropped_ = 0;

@@ -39,6 +39,7 @@ class RackLink : public Link {
   Result<Done> build(const BoardDescription& board, const rack::DeviceTypes& types,
                      const std::string& wire);
   void advance(std::int64_t host_ns);  // the parts, to that time of the host
+  std::int64_t virtual_ns(std::int64_t host_ns) const { return time_.virtual_ns(host_ns); }
   void add_pod_findings(std::vector<std::string>& findings) const;
 
  private:

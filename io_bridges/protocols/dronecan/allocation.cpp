@@ -35,21 +35,26 @@ std::optional<Allocation> Allocator::on_request(const Allocation& request, std::
   return answer;
 }
 
+void Allocator::keep(const UniqueId& id, std::uint8_t node_id) {
+  taken_.set(node_id & 0x7F);
+  given_.emplace_back(id, node_id);
+}
+
 std::uint8_t Allocator::choose(const UniqueId& id, std::uint8_t wanted) {
   const auto known =
       std::find_if(given_.begin(), given_.end(), [&](const auto& one) { return one.first == id; });
   if (known != given_.end()) return known->second;
-  const int from = wanted == 0 ? kHighest_id : std::min<int>(wanted, kHighest_id);
+  const int from = wanted == 0 ? highest_ : std::clamp(wanted, lowest_, highest_);
   const auto give = [&](int node_id) {
     if (taken_.test(static_cast<std::size_t>(node_id))) return false;
     taken_.set(static_cast<std::size_t>(node_id));
     given_.emplace_back(id, static_cast<std::uint8_t>(node_id));
     return true;
   };
-  for (int node_id = from; node_id >= 1; --node_id) {
+  for (int node_id = from; node_id >= lowest_; --node_id) {
     if (give(node_id)) return given_.back().second;
   }
-  for (int node_id = from + 1; node_id <= kHighest_id; ++node_id) {
+  for (int node_id = from + 1; node_id <= highest_; ++node_id) {
     if (give(node_id)) return given_.back().second;
   }
   return 0;

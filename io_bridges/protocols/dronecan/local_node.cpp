@@ -24,13 +24,9 @@ void LocalNode::poll(std::int64_t now_ns) {
 }
 
 const Transfer* LocalNode::on_frame(const CanFrame& frame, std::int64_t now_ns) {
+  watch_.on_frame(frame, now_ns);
   const Transfer* transfer = assembler_.take(frame, now_ns);
   if (transfer == nullptr) return nullptr;
-  if (const auto status = transfer->header.type_id == NodeStatus::kType.id
-                              ? read<NodeStatus>(*transfer)
-                              : std::nullopt) {
-    watch_.on_status(transfer->header.source, *status, now_ns);
-  }
   if (transfer->header.kind == Kind::request &&
       transfer->header.type_id == GetNodeInfoRequest::kType.id) {
     answer(transfer->header, now_ns);

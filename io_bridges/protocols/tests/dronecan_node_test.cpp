@@ -91,6 +91,51 @@ TEST(DronecanNodeWatch, TellsTwoNodesOfOneIdFromARestart) {
   EXPECT_TRUE(watch.node(20).two_of_one_id);
 }
 
+TEST(DronecanAllocator, KeepsToItsRangeButForIdsThatAreKept) {
+  Allocator allocator(100, 101);
+  allocator.keep(unique(9), 101);
+  allocator.keep(unique(8), 20);
+  EXPECT_EQ(ask(allocator, unique(1), 0), 100);
+  EXPECT_EQ(ask(allocator, unique(2), kSecond), 0);
+  EXPECT_EQ(ask(allocator, unique(9), 2 * kSecond), 101);
+  EXPECT_EQ(ask(allocator, unique(8), 3 * kSecond, 100), 20);
+}
+
+CanFrame status_frame(std::uint32_t uptime_s, std::uint8_t transfer_id) {
+  const Payload payload = encode(at(uptime_s));
+  const Header header{.type_id = 341, .source = 20, .transfer_id = transfer_id};
+  return frames_of(header, NodeStatus::kType.signature, payload.bytes()).front();
+}
+
+// Switched on together, or a second apart: their uptimes say nothing.
+TEST(DronecanNodeWatch, TellsTwoNodesOfOneIdThatStartedTogether) {
+  for (const int ahead : {0, 1, 2}) {
+    NodeWatch watch;
+    for (std::uint8_t s = 0; s < 10; ++s) {
+      watch.on_frame(status_frame(s, s), s * kSecond);
+      if (s >= ahead) {
+        watch.on_frame(status_frame(s - ahead, s - ahead), s * kSecond + 400 * kMillisecond);
+      }
+    }
+    EXPECT_TRUE(watch.node(20).two_of_one_id) << ahead;
+  }
+}
+
+TEST(DronecanNodeWatch, OneNodeIsNotTwoForAFrameDeliveredTwiceNorForLostOnesNorForJumpsOfItsIds) {
+  NodeWatch watch;
+  std::uint8_t jumping = 0;
+  NodeWatch jumps;
+  for (std::uint8_t s = 0; s < 100; ++s) {
+    if (s % 7 == 3) continue;  // lost
+    watch.on_frame(status_frame(s, s & 31), s * kSecond);
+    watch.on_frame(status_frame(s, s & 31), s * kSecond + kMillisecond / 5);
+    jumping = (jumping + 27) & 31;
+    jumps.on_frame(status_frame(s, jumping), s * kSecond);
+  }
+  EXPECT_FALSE(watch.node(20).two_of_one_id);
+  EXPECT_FALSE(jumps.node(20).two_of_one_id);
+}
+
 TEST(DronecanNodeWatch, ANodeIsOfflineAfterThreeSeconds) {
   NodeWatch watch;
   EXPECT_FALSE(watch.online(20, 0));

@@ -8,7 +8,9 @@
 #include "harness/pacing/host_clock.hpp"
 #include "io_bridges/messages/can_message.hpp"
 #include "io_bridges/protocols/dronecan/esc.hpp"
+#include "io_bridges/protocols/dronecan/local_node.hpp"
 #include "io_bridges/protocols/dronecan/types.hpp"
+#include "io_bridges/protocols/dronecan/vehicle_state.hpp"
 #include "io_bridges/socketcan/tests/memory_can.hpp"
 
 namespace whirl::bench {
@@ -44,6 +46,9 @@ struct Rig {
     r.next();
     return link.take(r, due_ns);
   }
+  void begin() {
+    link.keep_time({[this](std::int64_t) { return run_ns; }, [](std::int64_t) { return 0; }});
+  }
   Result<Done> serve() { return link.serve(clock_ns(), arrivals); }
   // As an ESC that holds the last command: its receiver refuses what repeats a transfer id.
   std::vector<int> commands_taken() {
@@ -61,6 +66,7 @@ struct Rig {
     while (bus.seen().size() < n) pacing::MonotonicClock().sleep_until(clock_ns() + kMillisecond);
   }
 
+  std::int64_t run_ns = 0;  // virtual
   io::MemoryCan bus{clock_ns};
   CanLink link;
   Arrivals arrivals;
@@ -147,6 +153,71 @@ TEST(CanLink, TheZerosAreOfBothKindsOfCommandForAllEscs) {
   }
   EXPECT_GE(raw, 1);
   EXPECT_GE(speeds, 1);
+}
+
+// What the nodes of the bus hear of this host, of type `Message`.
+template <typename Message>
+std::vector<Message> heard(Rig& rig) {
+  dc::Assembler assembler(dc::known_type);
+  std::vector<Message> all;
+  for (const auto& [t_ns, frame] : rig.bus.seen()) {
+    const auto* transfer = assembler.take(frame, t_ns);
+    if (transfer == nullptr || transfer->header.type_id != Message::kType.id ||
+        transfer->header.kind != Message::kType.kind || transfer->header.source != 10) {
+      continue;
+    }
+    all.push_back(*dc::decode<Message>(transfer->payload));
+  }
+  return all;
+}
+
+TEST(CanLink, IsANodeThatArmsFromTheRunsBeginUntilItIsSafe) {
+  Rig rig;
+  rig.order(raw_command(0, 0));
+  ASSERT_TRUE(rig.serve().ok());
+  EXPECT_TRUE(heard<dc::NodeStatus>(rig).empty());  // the run has not begun
+  rig.begin();
+  rig.run_ns = 1'100 * kMillisecond;
+  ASSERT_TRUE(rig.serve().ok());
+  rig.run_ns = 2'200 * kMillisecond;
+  ASSERT_TRUE(rig.serve().ok());
+  EXPECT_EQ(heard<dc::NodeStatus>(rig).size(), 2u);
+  EXPECT_EQ(heard<dc::NodeStatus>(rig).back().uptime_s, 1u);
+  ASSERT_EQ(heard<dc::ArmingStatus>(rig).size(), 2u);
+  EXPECT_EQ(heard<dc::ArmingStatus>(rig).back().status, 255);
+
+  rig.bus.full = true;  // an order to arm waits
+  rig.run_ns = 3'300 * kMillisecond;
+  ASSERT_TRUE(rig.serve().ok());
+  rig.bus.full = false;
+  rig.link.make_safe();
+  rig.run_ns = 4'400 * kMillisecond;
+  ASSERT_TRUE(rig.serve().ok());
+  rig.link.close();
+  const auto arming = heard<dc::ArmingStatus>(rig);
+  ASSERT_GE(arming.size(), 3u);
+  EXPECT_TRUE(std::all_of(arming.begin() + 2, arming.end(),
+                          [](const dc::ArmingStatus& a) { return a.status == 0; }));
+  EXPECT_EQ(heard<dc::NodeStatus>(rig).size(), 2u);
+}
+
+TEST(CanLink, AnswersWhoItIsAndFindsARestart) {
+  Rig rig;
+  rig.begin();
+  dc::LocalNode esc(20, "org.example.esc", [&](const io::CanFrame& f) { rig.bus.put(f); });
+  esc.request(dc::GetNodeInfoRequest{}, 10);
+  esc.broadcast(dc::NodeStatus{.uptime_s = 100}, 24);
+  esc.broadcast(dc::NodeStatus{.uptime_s = 3}, 24);
+  ASSERT_TRUE(rig.serve().ok());
+  ASSERT_TRUE(rig.serve().ok());
+  EXPECT_EQ(heard<dc::GetNodeInfoRequest>(rig).size(), 2u);  // of who appeared, and restarted
+  const auto answers = heard<dc::GetNodeInfoResponse>(rig);
+  ASSERT_EQ(answers.size(), 1u);
+  EXPECT_EQ(answers[0].name_text(), "whirl.bench");
+  rig.link.close();
+  const auto findings = rig.link.findings();
+  ASSERT_EQ(findings.size(), 1u);
+  EXPECT_NE(findings[0].find("can0: node 20 restarted 1 times"), std::string::npos);
 }
 
 TEST(CanLink, ALostHeartbeatSendsZerosByItself) {

@@ -35,8 +35,8 @@ BoardDescription pods_board() {
 // The host's clock and virtual time run as one, but for what is said of them.
 struct Rig {
   explicit Rig(std::uint16_t bus = 2, BoardDescription board = board_with_an_esc(),
-               bool pod = false)
-      : link({.link = {"bus", "can0", bus},
+               bool pod = false, std::optional<std::uint8_t> allocator = {})
+      : link({.link = {.name = "bus", .interface = "can0", .bus = bus, .allocator = allocator},
               .board = std::move(board),
               .types = rack::device_types(),
               .pod = pod ? std::optional(PodPlaces{}) : std::nullopt},
@@ -147,6 +147,38 @@ TEST(NodeLink, ABusWithoutDevicesIsRefused) {
   ASSERT_FALSE(opened.ok());
   EXPECT_EQ(opened.error().kind, ErrorKind::bad_input);
   EXPECT_NE(opened.error().what.find("no device on can1"), std::string::npos);
+}
+
+TEST(NodeLink, FindsANodeThatHasTheIdOfAPlayedOne) {
+  Rig rig;
+  ASSERT_TRUE(rig.link.open().ok());
+  rig.serve_until(130 * kMs);
+  const auto header = dc::parse_can_id(rig.wire.seen().front().second.id);
+  ASSERT_TRUE(header);
+  io::CanFrame theirs = command(400);
+  theirs.id = dc::can_id({.type_id = 1030, .priority = 5, .source = header->source}, {});
+  rig.wire.put(theirs);
+  rig.serve_until(131 * kMs);
+  rig.link.close();
+  const auto findings = rig.link.findings();
+  ASSERT_EQ(findings.size(), 1u);
+  EXPECT_NE(findings[0].find("can0: another node has id " + std::to_string(header->source)),
+            std::string::npos)
+      << findings[0];
+}
+
+TEST(NodeLink, OnlyANamedAllocatorSpeaksOfItself) {
+  for (const bool named : {false, true}) {
+    Rig rig(2, board_with_an_esc(), false, named ? std::optional<std::uint8_t>(11) : std::nullopt);
+    ASSERT_TRUE(rig.link.open().ok());
+    rig.serve_until(130 * kMs);
+    const auto seen = rig.wire.seen();
+    const auto statuses = std::count_if(seen.begin(), seen.end(), [](const auto& one) {
+      const auto header = dc::parse_can_id(one.second.id);
+      return header && header->source == 11 && header->type_id == 341;
+    });
+    EXPECT_EQ(statuses, named ? 1 : 0);
+  }
 }
 
 TEST(NodeLink, APodsHostOnCanTellsItsPartsAndWhatThePodSays) {
