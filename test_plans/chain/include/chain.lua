@@ -21,8 +21,10 @@ end
 -- (plant/remote_powertrain.hpp): k R dt d^2 / 2 for each shaft and step, 60 mohm x 1 ms / 2 here, beside what begin and end
 -- leave. In a hover a shaft's current of 1.35 A changes from step to step by no more than the charge of one of its 2.8
 -- commutations in 1 ms, 0.5 A: 30 mW of 84 W. Four starts with jumps of 10 A are 2 x 24 mJ of 2 kJ. So 0.04 %.
-function judged_energy(t)
-  t:expect(t:value("exchange_share"), "energy between the pack and the boards' power stages"):at_most "0.04 %"
-  t:expect(t:value("exchange_of_bound"), "the same, of what the currents allow"):at_most "100 %"
-  t:expect(t:value("stage_gap_share"), "energy that the power stages' books do not name"):at_most "0.01 %"
+-- `name`: what these figures' names begin with.
+function judged_energy(t, name)
+  name = name or ""
+  t:expect(t:value("exchange_share"), name .. "energy between the pack and the boards' power stages"):at_most "0.04 %"
+  t:expect(t:value("exchange_of_bound"), name .. "the same, of what the currents allow"):at_most "100 %"
+  t:expect(t:value("stage_gap_share"), name .. "energy that the power stages' books do not name"):at_most "0.01 %"
 end

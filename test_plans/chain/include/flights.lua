@@ -6,7 +6,7 @@ escs = { "esc1", "esc2", "esc3", "esc4" }
 -- other flights are; `whirl parity` lays the two side by side. `run` is told whether the controllers are boards.
 function chain_plan(name, more, run)
   plan(name) {
-    nodes = chain_nodes(more.watch, more.of_escs, more.can), wires = chain_wires(more.can), vehicle = "hp_quad",
+    nodes = chain_nodes(more.watch, more.of_escs, more.can), wires = chain_wires(more.can), vehicle = more.vehicle or "hp_quad",
     tags = more.tags or { "chain", "nightly" }, timeout = more.timeout or "60 s",
     run = function(t)
       run(t, true)
@@ -15,7 +15,7 @@ function chain_plan(name, more, run)
   }
   if not more.parity then return end
   plan(name .. ", native controllers") {
-    nodes = { chain_nodes(more.watch, nil, more.can)[1] }, vehicle = "hp_quad",
+    nodes = { chain_nodes(more.watch, nil, more.can)[1] }, vehicle = more.vehicle or "hp_quad",
     tags = { "parity" }, timeout = more.timeout or "60 s", run = function(t) run(t, false) end,
   }
 end
