@@ -85,9 +85,21 @@ const BoardDevice* power_stage(const BoardDescription& board) {
   return nullptr;
 }
 
-// Boards in the place of motor controllers turn the vehicle's shafts: all of them, or none.
+// The ESC of a vehicle's motor that is a board, as this run's copy has it. params: with its copy drawn.
+stand::VehiclesEsc esc_of(const BoardDescription& board, int motor, std::uint64_t seed,
+                          const flight::FlightParams& params) {
+  const BoardDevice* stage = power_stage(board);
+  WHIRL_CHECK(stage != nullptr, board.name);
+  return stand::draw_esc({.motor = motor,
+                          .shaft = params.vehicle.motor_of(static_cast<std::size_t>(motor) - 1),
+                          .shunt = params.esc.shunt,
+                          .tolerance = params.tolerance},
+                         board, stage->motor, seed);
+}
+
+// Boards in the place of motor controllers turn the vehicle's shafts: all of them, or none. What was drawn of them is told.
 Result<std::vector<flight::FarShaft>> far_shafts(const cli::Setup& setup,
-                                                 const flight::FlightParams& params) {
+                                                 flight::FlightParams& params) {
   const auto wrong = [&](const std::string& what, const std::string& cure) {
     return Error{ErrorKind::bad_input, setup.plan.place, what, cure};
   };
@@ -101,6 +113,9 @@ Result<std::vector<flight::FarShaft>> far_shafts(const cli::Setup& setup,
     }
     shafts.at(static_cast<std::size_t>(far.motor) - 1) = {static_cast<std::uint8_t>(far.node),
                                                           static_cast<std::uint16_t>(stage->motor)};
+    for (DrawnPart& part : esc_of(*far.board, far.motor, setup.seed, params).drawn) {
+      params.drawn.push_back(std::move(part));
+    }
     ++found;
   }
   if (found == 0) return std::vector<flight::FarShaft>{};
@@ -213,9 +228,8 @@ Result<Done> set_copy(const cli::Setup& setup, BoardDescription& board) {
   if (setup.motor == 0) return Done{};
   const BoardDevice* stage = power_stage(setup.board);
   WHIRL_CHECK(stage != nullptr, setup.board.name);  // the world was made with it
-  const plant::MotorParams& motor =
-      params.value().vehicle.motor_of(static_cast<std::size_t>(setup.motor) - 1);
-  return stand::set_stage(board, stage->motor, stand::stage_of(motor, params.value().esc.shunt));
+  return stand::set_esc(board, stage->motor,
+                        esc_of(setup.board, setup.motor, setup.seed, params.value()));
 }
 
 Result<std::unique_ptr<Target>> make_target(const cli::Setup& setup,

@@ -10,7 +10,7 @@ using Law = Spread::Law;
 
 constexpr double kG_mps2 = 9.80665;
 
-constexpr const char* kVehicleGroups[] = {"motors", "rotors", "body", "imu", "clock"};
+constexpr const char* kVehicleGroups[] = {"motors", "rotors", "body", "imu", "clock", "escs"};
 
 constexpr PartNumber kEach[] = {
     parts::torque_constant("motors"),
