@@ -123,7 +123,7 @@ void read_flight(const lua::Table& t, plant::PropellerDescription& d) {
 
 // What a fitted blade has in its traits already.
 void refuse_without_polars(const lua::Table& t) {
-  for (const char* key : {"material", "induced_factor", "stall_delay"}) {
+  for (const char* key : {"material", "thickness", "induced_factor", "stall_delay"}) {
     if (!t.has(key)) continue;
     t.refuse(key, "goes with polars", "without polars it is part of what is fitted; leave it out");
   }

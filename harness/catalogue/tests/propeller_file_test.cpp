@@ -88,7 +88,10 @@ TEST_F(PropellerFile, SlipsOfThePenAreRefused) {
                   "\"e63.polar\" } },")
                 .find("goes without polars"),
             std::string::npos);
-  EXPECT_NE(fault("material = \"nylon\",").find("goes with polars"), std::string::npos);
+  for (const char* line : {"material = \"nylon\",", "thickness = 0.08,", "induced_factor = 1.1,",
+                           "stall_delay = false,"}) {
+    EXPECT_NE(fault(line).find("goes with polars"), std::string::npos) << line;
+  }
   EXPECT_NE(fault("static = { { rpm = 6000, CT = 0.161 } }, tip_twist_correction = \"2 deg\",")
                 .find("does not go with static"),
             std::string::npos);
