@@ -158,6 +158,7 @@ Report report_of(const json& from) {
   each(from, "reasons", [&](const json& why, const std::string& key) {
     within(key, [&] { r.reasons.push_back({read_blame(why), get<std::string>(why, "what")}); });
   });
+  if (from.contains("doubts")) r.doubts = texts(from, "doubts");  // older runs have none
   r.seed = get<std::uint64_t>(from, "seed");
   r.digest = get<std::string>(from, "digest");
   r.virtual_s = get<double>(from, "virtual_s");

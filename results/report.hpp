@@ -127,7 +127,8 @@ struct Report {
   HostTimes host;
   std::string timing_profile;  // "8 ns per instruction"
   std::vector<std::pair<std::string, std::string>> versions;
-  std::vector<PartRow> parts;  // empty: the drawing itself
+  std::vector<PartRow> parts;       // empty: the drawing itself
+  std::vector<std::string> doubts;  // what speaks against a part's file; no verdict follows from it
   std::vector<Expectation> expectations;
   std::vector<Histogram> histograms;
   std::vector<TaskRow> tasks;

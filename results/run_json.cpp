@@ -122,6 +122,7 @@ std::string run_json(const Report& r) {
     out["parts"].push_back(
         {{"name", part.name}, {"value", number(part.value)}, {"unit", part.unit}});
   }
+  out["doubts"] = r.doubts;
   out["expectations"] = ordered_json::array();
   for (const Expectation& e : r.expectations) out["expectations"].push_back(expectation(e));
   out["tasks"] = ordered_json::array();

@@ -172,9 +172,8 @@ Result<PropellerFile> fitted(plant::PropellerDescription d) {
   d.known = std::move(known.value());
   auto fit = plant::fit_blade(std::move(d));
   if (!fit) return fit.error();
-  PropellerFile read{fit.value().blade, {}};
-  read.fit = std::move(fit.value());
-  return read;
+  const auto blade = fit.value().blade;
+  return PropellerFile{blade, std::make_shared<const plant::FittedBlade>(std::move(fit.value()))};
 }
 
 }  // namespace
@@ -193,7 +192,14 @@ Result<PropellerFile> read_propeller_file(const std::string& path) {
   }
   auto blade = plant::make_fitted_blade(std::move(d));
   if (!blade) return blade.error();
-  return PropellerFile{blade.value(), {}};
+  return PropellerFile{blade.value(), nullptr};
+}
+
+std::vector<std::string> PropellerFile::doubts() const {
+  std::vector<std::string> all;
+  if (fit == nullptr) return all;
+  for (const std::string& doubt : fit->doubts) all.push_back(plant::name(*blade) + ": " + doubt);
+  return all;
 }
 
 Result<std::shared_ptr<const plant::Blade>> read_propeller(const std::string& path) {

@@ -3,8 +3,8 @@
 // the file, then in plant/data/polars of the house.
 #pragma once
 #include <memory>
-#include <optional>
 #include <string>
+#include <vector>
 
 #include "base/result.hpp"
 #include "plant/rotor/blade.hpp"
@@ -14,7 +14,9 @@ namespace whirl::catalogue {
 
 struct PropellerFile {
   std::shared_ptr<const plant::Blade> blade;
-  std::optional<plant::FittedBlade> fit;  // where the file names no polars
+  std::shared_ptr<const plant::FittedBlade> fit;  // where the file names no polars, else null
+  // What speaks against the file, each with the propeller's name before it.
+  std::vector<std::string> doubts() const;
 };
 Result<PropellerFile> read_propeller_file(const std::string& path);
 // The blade alone.

@@ -16,6 +16,7 @@ Result<flight::FlightParams> read_stand_drive(const std::string& calibration,
   drive.vehicle.motor = stand::motor_of(stand.value().stage);
   drive.vehicle.battery = stand.value().battery;
   drive.blade = stand.value().blade;
+  drive.doubts = stand.value().doubts;
   drive.controller = flight::names_of(flight::controller_types()).front();
   if (const auto good = plant::validate(drive.vehicle.motor, calibration); !good) {
     return good.error();

@@ -106,9 +106,10 @@ Result<stand::StandParams> read_stand(const lua::Table& t, const std::string& pr
   p.esc.i2c = static_cast<std::uint16_t>(t.integer_or("i2c", p.esc.i2c, 1, 3));
   p.esc.serial = static_cast<std::uint16_t>(t.integer_or("serial", p.esc.serial, 1, 8));
   if (const auto good = t.finish(); !good) return good.error();
-  auto blade = read_propeller(propellers + "/" + prop + ".lua");
-  if (!blade) return blade.error();
-  p.blade = blade.value();
+  const auto turned = read_propeller_file(propellers + "/" + prop + ".lua");
+  if (!turned) return turned.error();
+  p.blade = turned.value().blade;
+  p.doubts = turned.value().doubts();
   return p;
 }
 

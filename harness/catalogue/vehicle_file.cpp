@@ -162,9 +162,11 @@ Result<flight::FlightParams> read_vehicle(const std::string& path, const Setting
   const std::string propeller = t.text("propeller");
   if (const auto good = t.finish(); !good) return good.error();
 
-  auto blade = read_propeller(t.sibling(propeller));
-  if (!blade) return blade.error();
-  p.blade = blade.value();
+  const auto turned = read_propeller_file(t.sibling(propeller));
+  if (!turned) return turned.error();
+  p.blade = turned.value().blade;
+  p.fit = turned.value().fit;
+  p.doubts = turned.value().doubts();
   for (plant::RotorMount& mount : p.vehicle.airframe.rotors) {
     mount.radius_m = plant::radius_m(*p.blade);
   }

@@ -1,5 +1,6 @@
 #include "harness/cli/calibrate_command.hpp"
 #include "base/output_file.hpp"
+#include "base/text.hpp"
 
 #include <cstdio>
 #include <filesystem>
@@ -56,6 +57,9 @@ Result<Calibration> on_the_stand(const catalogue::CalibrationFile& file,
   const calibrate::Setup& setup = file.setup;
   Parts parts;
   if (auto good = compose(file, composition, parts); !good) return good.error();
+  for (const std::string& doubt : parts.world->doubts()) {
+    std::fprintf(stderr, "whirl: doubt: %s\n", printable_line(doubt).c_str());
+  }
   calibrate::Bench bench(*parts.world, *parts.target, setup.serial);
   if (auto started = bench.start(); !started) return started.error();
   const auto progress = [&](const std::string& words) {

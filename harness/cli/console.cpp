@@ -121,6 +121,7 @@ std::string outcome(const Finished& finished) {
   }
   text += "\n";
   text += reason_lines(r);
+  for (const std::string& doubt : r.doubts) text += set_in("doubt: " + doubt);
   for (const results::CpuFaultRow& f : r.cpu_faults) text += set_in(f.backtrace);
   for (const auto& e : r.expectations) {
     if (e.verdict != results::Verdict::pass) text += expectation_line(e);

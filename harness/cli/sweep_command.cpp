@@ -52,6 +52,8 @@ struct Swept {
   bool good = true;
 };
 
+constexpr const char *kDoubts = "Doubts", *kOf_propeller = "of its propeller";
+
 template <typename File>
 Result<std::vector<File>> read_all(const std::vector<std::string>& paths,
                                    Result<File> (*read)(const std::string&)) {
@@ -95,9 +97,10 @@ Result<Swept> sweep_propeller(const std::string& path, const std::vector<std::st
   const auto& blade = read.value().blade;
   Swept swept{plant::name(*blade),    {}, {}, "Fitted on its static rows, and how sure",
               "trait, 90 % interval", {}};
-  if (read.value().fit) swept.lines = sweep::fit_lines(*read.value().fit);
+  const plant::FittedBlade* fit = read.value().fit.get();
+  if (fit != nullptr) swept.lines = sweep::fit_lines(*fit);
   auto forward = sweep::forward_sweep(
-      blade, read.value().fit, measured.value(),
+      blade, fit, measured.value(),
       options.speed_radps > 0.0 ? options.speed_radps : options.top_speed_radps);
   judge(forward.flight, swept);
   swept.charts = std::move(forward.charts);
@@ -136,7 +139,12 @@ Result<Swept> sweep_stand(const std::string& path, const std::vector<std::string
   if (!measured) return measured.error();
   auto result = sweep::stand_sweep(stand.value(), options, measured.value());
   if (!result) return result.error();
-  Swept swept{stand.value().name, std::move(result.value().charts), {}, "", "", {}};
+  Swept swept{stand.value().name,
+              std::move(result.value().charts),
+              sweep::doubt_lines(stand.value().doubts),
+              kDoubts,
+              kOf_propeller,
+              {}};
   for (const sweep::Allowed& allowed : sweep::kStand_allowed) {
     const auto off = result.value().off_percent.find(allowed.what);
     if (off == result.value().off_percent.end()) continue;
@@ -161,8 +169,12 @@ Result<Swept> sweep_file(const std::string& path, const std::vector<std::string>
   }
   const auto vehicle = catalogue::read_vehicle(path);
   if (!vehicle) return vehicle.error();
-  return Swept{
-      vehicle.value().name, sweep::vehicle_sweep(vehicle.value(), options), {}, "", "", {}};
+  return Swept{vehicle.value().name,
+               sweep::vehicle_sweep(vehicle.value(), options),
+               sweep::doubt_lines(vehicle.value().doubts),
+               kDoubts,
+               kOf_propeller,
+               {}};
 }
 
 // Ten rows of each curve are enough for a terminal; the page and the CSV have all.

@@ -121,6 +121,7 @@ class Run {
     for (const DrawnPart& part : parts_.world.drawn_parts()) {
       record_.report.parts.push_back({part.name, part.value, part.unit});
     }
+    record_.report.doubts = parts_.world.doubts();
     file_row();
     return true;
   }

@@ -16,6 +16,10 @@
 #include "plant/rotor/blade.hpp"
 #include "plant/vehicle.hpp"
 
+namespace whirl::plant {
+struct FittedBlade;  // fitted_blade.hpp
+}
+
 namespace whirl::flight {
 
 // What of the ground the board can hear.
@@ -42,8 +46,10 @@ struct FlightParams {
   std::string name;
   plant::VehicleParams vehicle;
   std::shared_ptr<const plant::Blade> blade;
-  std::string controller = "esc_core";  // of each motor: the name of a ControllerType
-  EscParams esc;                        // esc_core's
+  std::shared_ptr<const plant::FittedBlade> fit;  // how sure its propeller is; null: it has no band
+  std::vector<std::string> doubts;                // of its propeller's file
+  std::string controller = "esc_core";            // of each motor: the name of a ControllerType
+  EscParams esc;                                  // esc_core's
   std::optional<StillAirRun> still_air;
   std::vector<fw::esc::Calibration>
       calibrations;                    // by motor, what came of it; empty: esc.calibration

@@ -39,6 +39,7 @@ FlightWorld::FlightWorld(const FlightParams& params, plant::RotorSet rotors, std
       obstacles_(params.vehicle.obstacles),
       seed_(seed),
       drawn_(params.drawn),
+      doubts_(params.doubts),
       capture_(params.capture, seed),
       drag_truth_(params.vehicle.airframe),
       transmitter_(params.ears.receivers_board) {

@@ -65,6 +65,7 @@ class FlightWorld : public World {
   Result<bool> take_fault(const FaultSpec& fault) override;
   std::vector<std::uint32_t> applied_faults() const override { return faults_.acted(); }
   const std::vector<DrawnPart>& drawn_parts() const override { return drawn_; }
+  const std::vector<std::string>& doubts() const override { return doubts_; }
   std::string status() const override;
 
   const plant::VehicleState& truth() const { return vehicle_.state(); }
@@ -136,6 +137,7 @@ class FlightWorld : public World {
   const std::vector<plant::Obstacle> obstacles_;
   std::uint64_t seed_;
   std::vector<DrawnPart> drawn_;
+  std::vector<std::string> doubts_;
   std::optional<Hand> hand_;
   Capture capture_;
   Station station_;

@@ -21,6 +21,7 @@ namespace whirl::stand {
 
 struct StandParams {
   std::shared_ptr<const plant::Blade> blade;
+  std::vector<std::string> doubts;       // of its propeller's file
   std::optional<plant::Atmosphere> air;  // none: 1.225 kg/m3, as propellers' tables are reduced to
   plant::BatteryParams battery;
   plant::LoadCellParams cell;

@@ -36,6 +36,7 @@ class StandWorld : public World {
   Result<bool> take_fault(const FaultSpec& fault) override;
   std::vector<std::uint32_t> applied_faults() const override { return faults_.acted(); }
   const std::vector<DrawnPart>& drawn_parts() const override { return params_.drawn; }
+  const std::vector<std::string>& doubts() const override { return params_.doubts; }
   Result<double> shortest_rise_s(double from_N, double to_N, double current_A) const override;
   std::string status() const override;
   Result<Done> say(const std::string& line) override { return master_.ask(line); }

@@ -18,10 +18,10 @@ using results::ChartCurve;
 
 struct Teller {
   const std::shared_ptr<const plant::Blade>& blade;
-  const std::optional<plant::FittedBlade>& fit;
+  const plant::FittedBlade* fit;
 
   std::vector<Prediction> tell(const std::vector<MeasuredPoint>& where) const {
-    if (fit) return plant::predict(fit->axial, fit->belief, where);
+    if (fit != nullptr) return plant::predict(fit->axial, fit->belief, where);
     std::vector<Prediction> told;
     told.reserve(where.size());
     for (const MeasuredPoint& p : where) {
@@ -107,7 +107,7 @@ void add_over_J(const Teller& teller, const std::vector<MeasuredFile>& measured,
       x.push_back(end * i / 24.0);
       where.push_back({omega, x.back(), 0, 0});
     }
-    pair.draw(rpm_text(omega), x, teller.tell(where), teller.fit.has_value());
+    pair.draw(rpm_text(omega), x, teller.tell(where), teller.fit != nullptr);
   };
   for (const MeasuredFile& file : measured) {
     std::vector<MeasuredPoint> flying;
@@ -158,7 +158,7 @@ void add_over_speed(const Teller& teller, const std::vector<MeasuredFile>& measu
     }
     char name[16];
     std::snprintf(name, sizeof name, "J = %.1f", J);
-    pair.draw(name, x, teller.tell(where), teller.fit.has_value() && J == 0.0);
+    pair.draw(name, x, teller.tell(where), teller.fit != nullptr && J == 0.0);
   }
   BandTally T, P;
   for (const MeasuredFile& file : measured) {
@@ -186,8 +186,8 @@ void add_over_speed(const Teller& teller, const std::vector<MeasuredFile>& measu
 }  // namespace
 
 ForwardSweep forward_sweep(const std::shared_ptr<const plant::Blade>& blade,
-                           const std::optional<plant::FittedBlade>& fit,
-                           const std::vector<MeasuredFile>& measured, double speed_radps) {
+                           const plant::FittedBlade* fit, const std::vector<MeasuredFile>& measured,
+                           double speed_radps) {
   const Teller teller{blade, fit};
   double top = speed_radps;
   for (const MeasuredFile& file : measured) {
@@ -196,7 +196,7 @@ ForwardSweep forward_sweep(const std::shared_ptr<const plant::Blade>& blade,
   ForwardSweep sweep;
   add_over_J(teller, measured, speed_radps, sweep);
   add_over_speed(teller, measured, top, sweep);
-  if (fit) {
+  if (fit != nullptr) {
     std::string& note = sweep.charts.front().note;
     for (const std::string& doubt : fit->doubts) note += (note.empty() ? "" : "; ") + doubt;
   }

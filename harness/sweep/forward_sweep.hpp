@@ -5,7 +5,6 @@
 //           or take no power are drawn and not judged
 #pragma once
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include "harness/sweep/measured.hpp"
@@ -24,10 +23,10 @@ struct ForwardSweep {
   std::vector<results::Chart> charts;
   ForwardJudged flight, at_rest;
 };
-// `fit` where the file names no polars. Speeds: of the measured files, else speed_radps.
+// `fit`: null where the file names polars. Speeds: of the measured files, else speed_radps.
 ForwardSweep forward_sweep(const std::shared_ptr<const plant::Blade>& blade,
-                           const std::optional<plant::FittedBlade>& fit,
-                           const std::vector<MeasuredFile>& measured, double speed_radps);
+                           const plant::FittedBlade* fit, const std::vector<MeasuredFile>& measured,
+                           double speed_radps);
 
 // What was chosen and what is doubted, for the terminal and the page.
 std::vector<std::string> fit_lines(const plant::FittedBlade& fit);

@@ -9,9 +9,14 @@
 //   Hover      the bus carries all motors and the avionics; the pack has rested, its relaxation is not
 //              in the voltage, but is in the time to empty
 //   Error      hover's current against the same ESCs in flight within 1 % (tests/sweep_test.cpp)
+//   Band       of hover: 90 % of the power that lifts its weight, by the propeller's traits and their discrepancy
+//              (blade_fit.hpp), through motor, ESC and pack; what is uncertain of these is not in it, nor that the
+//              speed moves with thrust's own error
 //   Left out   in the time to empty: climbs, gusts, a reserve, a firmware that lands before
 #pragma once
 #include <memory>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "base/result.hpp"
@@ -32,6 +37,9 @@ std::vector<results::Chart> propeller_sweep(const std::shared_ptr<const plant::B
 std::vector<results::Chart> vehicle_sweep(const flight::FlightParams& vehicle,
                                           const Options& options);
 
+// What speaks against its propeller's file, for the terminal and the page.
+std::vector<std::string> doubt_lines(const std::vector<std::string>& doubts);
+
 // One motor and propeller on their feed: over voltage, and the propeller.
 std::vector<results::Chart> drive_sweep(const flight::FlightParams& drive, const Options& options);
 
@@ -50,10 +58,16 @@ Result<DrivePoint> drive_for_thrust(const flight::FlightParams& vehicle, double 
 Result<DrivePoint> drive_at_speed(const flight::FlightParams& drive, double speed_radps,
                                   double bus_V);
 
+// What the propeller's 90 % band leaves open of hover: its power at that thrust, at the mean speed.
+struct HoverBand {
+  double least_A = 0.0, most_A = 0.0;  // infinite: it does not hover
+  double shortest_s = 0.0, longest_s = 0.0;
+};
 struct HoverPoint {
   DrivePoint each;  // motor
   double bus_V = 0.0, total_A = 0.0;
-  double until_empty_s = 0.0;  // from full
+  double until_empty_s = 0.0;     // from full
+  std::optional<HoverBand> band;  // where the propeller has one
 };
 // bus_V: 0 for the full pack's under that load, or what a supply holds.
 Result<HoverPoint> hover_point(const flight::FlightParams& vehicle, double bus_V);

@@ -1,10 +1,13 @@
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/rpm.hpp"
 #include "harness/flight/controllers.hpp"
 #include "harness/sweep/steady_motor.hpp"
 #include "harness/sweep/sweep.hpp"
 #include "plant/battery/battery.hpp"
+#include "plant/rotor/fitted_blade.hpp"
 #include "plant/rotor/rotor.hpp"
 
 namespace whirl::sweep {
@@ -66,6 +69,12 @@ Chart hover_chart(const flight::FlightParams& vehicle, const std::vector<DrivePo
   report("hover: shaft torque", hover.torque_Nm, "N m");
   report("hover: from the pack, all of it", found.value().total_A, "A");
   report("hover: time until the pack is empty", found.value().until_empty_s / 60.0, "min");
+  if (const auto& band = found.value().band) {
+    report("hover: from the pack, by the propeller's 90 % band at least", band->least_A, "A");
+    report("hover: from the pack, by the propeller's 90 % band at most", band->most_A, "A");
+    report("hover: time until empty, by that band at least", band->shortest_s / 60.0, "min");
+    report("hover: time until empty, by that band at most", band->longest_s / 60.0, "min");
+  }
   return chart;
 }
 
@@ -213,6 +222,17 @@ Result<DrivePoint> drive_at_speed(const flight::FlightParams& drive, double spee
   return drive_rotor(drive, point, point.loads.thrust_N, bus_V);
 }
 
+namespace {
+
+// Of what is known of a rotor: more or less power for the same thrust.
+RotorPoint at_power(RotorPoint rotor, double factor) {
+  rotor.loads.shaft_torque_Nm *= factor;
+  rotor.loads.shaft_power_W *= factor;
+  return rotor;
+}
+
+}  // namespace
+
 Result<HoverPoint> hover_point(const flight::FlightParams& vehicle, double bus_V) {
   const plant::Battery full = rested(vehicle.vehicle.battery, 0.0);
   const double source_V = bus_V > 0.0 ? bus_V : full.open_circuit_V();
@@ -220,9 +240,30 @@ Result<HoverPoint> hover_point(const flight::FlightParams& vehicle, double bus_V
                           static_cast<double>(vehicle.vehicle.airframe.rotors.size());
   const RotorPoint rotor = rotor_for(vehicle, thrust_N, no_load_radps(vehicle, source_V));
   const double ohm = bus_V > 0.0 ? 0.0 : full.series_resistance_ohm();
-  auto hover = hover_from(vehicle, rotor, thrust_N, source_V, ohm);
-  if (hover) hover.value().until_empty_s = until_empty_s(vehicle, rotor, thrust_N);
+  const auto whole = [&](const RotorPoint& point) {
+    auto hover = hover_from(vehicle, point, thrust_N, source_V, ohm);
+    if (hover) hover.value().until_empty_s = until_empty_s(vehicle, point, thrust_N);
+    return hover;
+  };
+  auto hover = whole(rotor);
+  if (!hover || vehicle.fit == nullptr) return hover;
+  const double half =
+      plant::kNine_in_ten *
+      plant::lifting_power_deviation(vehicle.fit->axial, vehicle.fit->belief, rotor.speed_radps);
+  const auto less = whole(at_power(rotor, std::max(0.05, 1.0 - half)));
+  const auto more = whole(at_power(rotor, 1.0 + half));
+  HoverBand& band = hover.value().band.emplace();
+  if (less) band.least_A = less.value().total_A, band.longest_s = less.value().until_empty_s;
+  band.most_A = more ? more.value().total_A : std::numeric_limits<double>::infinity();
+  if (more) band.shortest_s = more.value().until_empty_s;
   return hover;
+}
+
+std::vector<std::string> doubt_lines(const std::vector<std::string>& doubts) {
+  std::vector<std::string> lines;
+  lines.reserve(doubts.size());
+  for (const std::string& doubt : doubts) lines.push_back("doubt: " + doubt);
+  return lines;
 }
 
 namespace {

@@ -55,6 +55,12 @@ class World {
     return nothing;
   }
 
+  // What speaks against a part's file, and so against what is simulated with it; empty: nothing.
+  virtual const std::vector<std::string>& doubts() const {
+    static const std::vector<std::string> nothing;
+    return nothing;
+  }
+
   // How fast the thrust of this copy could rise, 10 to 90 %, in the air that there is, were this current in its
   // windings throughout.
   // Errors  bad_input: no rise, or beyond that current; not one rotor's world

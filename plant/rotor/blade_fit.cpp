@@ -132,4 +132,16 @@ std::vector<Prediction> predict(const AxialBlade& blade, const TraitBelief& beli
   return out;
 }
 
+double lifting_power_deviation(const AxialBlade& blade, const TraitBelief& belief,
+                               double omega_radps) {
+  const std::vector<MeasuredPoint> still = {{omega_radps, 0.0, 0.0, 0.0}};
+  const Eigen::VectorXd here = answers(blade, belief.mean, still);
+  const Slopes J = slopes(blade, belief.mean, still, here);
+  const TraitVector slope = J.row(1).transpose() / here[1] - 1.5 * J.row(0).transpose() / here[0];
+  const double by_traits = slope.dot(belief.covariance * slope);
+  const double own = std::hypot(kPower_off, 1.5 * kThrust_off);
+  const double strange = belief.strange_make ? std::max(kStrange_thrust, kStrange_power) : 1.0;
+  return strange * std::sqrt(by_traits + own * own);
+}
+
 }  // namespace whirl::plant

@@ -59,4 +59,9 @@ struct Prediction {
 std::vector<Prediction> predict(const AxialBlade& blade, const TraitBelief& belief,
                                 const std::vector<MeasuredPoint>& where);
 
+// Of the shaft power that lifts a given thrust at rest, CP / CT^(3/2): one standard deviation over its mean. What the
+// traits do to both is counted together; the discrepancies of CT and CP are taken as independent.
+double lifting_power_deviation(const AxialBlade& blade, const TraitBelief& belief,
+                               double omega_radps);
+
 }  // namespace whirl::plant

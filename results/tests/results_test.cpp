@@ -97,6 +97,18 @@ TEST(RunJson, WritesNullForWhatCouldNotBeMeasured) {
   EXPECT_EQ(json["verdict"], "fail");
 }
 
+TEST(RunJson, DoubtsAreToldThereAndOnThePageAndNoVerdictFollowsFromThem) {
+  Report r = sample();
+  r.expectations.pop_back();
+  conclude(r);
+  ASSERT_EQ(r.verdict, Verdict::pass);
+  r.doubts = {"propeller: of a make that nobody measured"};
+  conclude(r);
+  EXPECT_EQ(r.verdict, Verdict::pass);
+  EXPECT_EQ(parse_json(run_json(r))["doubts"][0], r.doubts[0]);
+  EXPECT_NE(page_html(r, Curves{}).find(r.doubts[0]), std::string::npos);
+}
+
 // All bytes, as firmware may send them through t:ask: every file stays well-formed and keeps them
 // apart.
 TEST(Results, AnyBytesGiveWellFormedFiles) {

@@ -8,7 +8,10 @@
 
 #include "base/near.hpp"
 #include "base/scratch_folder.hpp"
+#include "harness/catalogue/stand_table.hpp"
+#include "harness/flight/flight_world.hpp"
 #include "harness/flight/tests/paths.hpp"
+#include "harness/stand/stand_world.hpp"
 
 namespace whirl::catalogue {
 namespace {
@@ -60,6 +63,55 @@ TEST(VehicleFile, HpQuadIsTheVehicleOfTheThesis) {
   EXPECT_EQ(c.arming_voltage_V, 15.7f);
   EXPECT_FALSE(c.identified);
   EXPECT_EQ(params.value().esc.pole_pairs, 7);
+}
+
+// A propeller's file whose static power is of something else: half as much again as its shape takes.
+std::string file_of_doubtful_propeller(const ScratchFolder& folder) {
+  std::stringstream text;
+  text << std::ifstream(kVehicles + "../propellers/gwssf_11x4.7.lua").rdbuf();
+  std::string changed = text.str();
+  std::size_t rows = 0;
+  for (auto at = changed.find("CP = "); at != std::string::npos; at = changed.find("CP = ", at)) {
+    at += 5;
+    const double CP = std::stod(changed.substr(at));
+    changed.replace(at, changed.find_first_of(" ,}", at) - at, std::to_string(1.5 * CP));
+    ++rows;
+  }
+  EXPECT_GT(rows, 0u);
+  const std::string path = folder.file("doubtful.lua");
+  std::ofstream(path) << changed;
+  return path;
+}
+
+void expect_doubt(const std::vector<std::string>& doubts) {
+  ASSERT_FALSE(doubts.empty());
+  bool told = false;
+  for (const std::string& doubt : doubts) {
+    told = told || doubt.find("static power is +") != std::string::npos;
+    EXPECT_EQ(doubt.find("GWS"), 0u) << doubt;  // whose it is
+  }
+  EXPECT_TRUE(told) << doubts.front();
+}
+
+TEST(VehicleFile, DoubtsOfItsPropellerStayWithTheVehicleAndReachItsRun) {
+  const ScratchFolder folder;
+  const auto own = read_changed("../propellers/hk_10x4.5.lua", file_of_doubtful_propeller(folder));
+  ASSERT_TRUE(own.ok()) << own.error().message();
+  expect_doubt(own.value().doubts);
+  EXPECT_NE(own.value().fit, nullptr);
+  expect_doubt(flight::FlightWorld(own.value(), 1).doubts());
+  EXPECT_TRUE(read_vehicle(kVehicles + "hp_quad.lua").value().doubts.empty());
+}
+
+TEST(StandFile, DoubtsOfItsPropellerStayWithTheStandAndReachItsRun) {
+  const ScratchFolder folder;
+  file_of_doubtful_propeller(folder);
+  auto table = lua::read_text("return { prop = 'doubtful', battery = '4s_2200' }", "stand");
+  ASSERT_TRUE(table.ok());
+  const auto own = read_stand(table.value(), folder.path());
+  ASSERT_TRUE(own.ok()) << own.error().message();
+  expect_doubt(own.value().doubts);
+  expect_doubt(stand::StandWorld(own.value(), 1).doubts());
 }
 
 // 1.5/pi x 7 x 523.6 rad/s x 20 uH = 35 mohm of commutation at 5000 rpm.

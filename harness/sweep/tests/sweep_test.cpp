@@ -4,8 +4,10 @@
 #include <numbers>
 
 #include "base/near.hpp"
+#include "harness/catalogue/propeller_file.hpp"
 #include "harness/catalogue/vehicle_file.hpp"
 #include "harness/flight/controllers.hpp"
+#include "plant/rotor/fitted_blade.hpp"
 #include "plant/rotor/rotor.hpp"
 
 namespace whirl::sweep {
@@ -102,6 +104,32 @@ TEST(Sweep, HoverDrawsWhatTheVehiclesOwnControllersDrawInFlight) {
   EXPECT_TRUE(near(hover.value().total_A, means.battery_A,
                    stated(0.01 * means.battery_A,
                           "half of it the thrust's; the rest noise, counts of PWM, relaxation")));
+}
+
+// More torque at one speed: copper loss grows with its square, all else with less.
+TEST(Sweep, ThePropellersBandReachesHoversCurrentAndTheTimeToEmpty) {
+  const auto prop = catalogue::read_propeller_file(std::string(WHIRL_ROOT) +
+                                                   "/test_plans/propellers/gwssf_11x4.7.lua");
+  ASSERT_TRUE(prop.ok()) << prop.error().message();
+  flight::FlightParams own = quad();
+  EXPECT_FALSE(hover_point(own, 0.0).value().band);  // its polars have none
+  own.blade = prop.value().blade;
+  own.fit = prop.value().fit;
+  const auto hover = hover_point(own, 0.0).value();
+  ASSERT_TRUE(hover.band);
+  const double half = 1.645 * plant::lifting_power_deviation(own.fit->axial, own.fit->belief,
+                                                             hover.each.speed_radps);
+  const double avionics_A = own.vehicle.avionics_current_A;
+  const double more = (hover.band->most_A - avionics_A) / (hover.total_A - avionics_A);
+  const double less = (hover.band->least_A - avionics_A) / (hover.total_A - avionics_A);
+  EXPECT_GT(more, 1.0 + 0.8 * half);
+  EXPECT_LT(more, (1.0 + half) * (1.0 + half));
+  EXPECT_LT(less, 1.0 - 0.8 * half);
+  EXPECT_GT(less, (1.0 - half) * (1.0 - half));
+  EXPECT_TRUE(near(hover.band->shortest_s / hover.until_empty_s, hover.total_A / hover.band->most_A,
+                   stated(0.05, "sag of the pack")));
+  EXPECT_TRUE(near(hover.band->longest_s / hover.until_empty_s, hover.total_A / hover.band->least_A,
+                   stated(0.05, "sag of the pack")));
 }
 
 // The current rises as the pack's voltage falls.

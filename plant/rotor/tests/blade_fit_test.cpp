@@ -1,5 +1,6 @@
 // A blade whose section is fitted: the fast solver against the rotor, what a fit finds and what it doubts.
 #include <fstream>
+#include <random>
 #include <sstream>
 
 #include "base/near.hpp"
@@ -152,6 +153,41 @@ TEST(BladeFit, AMakeThatNobodyMeasuredHasAWiderBandAndSaysSo) {
     ASSERT_FALSE(strange.doubts.empty());
     EXPECT_NE(strange.doubts.back().find("make"), std::string::npos);
   }
+}
+
+// Drawn from the belief, blades that lift one thrust, each at the speed that it takes for it.
+TEST(BladeFit, PowerOfAThrustIsAsUncertainAsBladesDrawnFromTheBeliefSpread) {
+  PropellerDescription d = slow_flyer();
+  d.static_points = rows_of(d, usual());
+  const auto fit = fit_blade(d).value();
+  const double wanted =
+      axial_coefficients(fit.axial, fit.belief.mean, 500.0, 0.0).CT * 500.0 * 500.0;
+  const TraitMatrix root = fit.belief.covariance.llt().matrixL();
+  std::mt19937_64 chance(1);
+  std::normal_distribution<double> normal;
+  constexpr int kBlades = 400;
+  double sum = 0.0, squares = 0.0;
+  for (int i = 0; i < kBlades; ++i) {
+    TraitVector z;
+    for (int k = 0; k < kTraits; ++k) z[k] = normal(chance);
+    const TraitVector traits = fit.belief.mean + root * z;
+    double omega = 500.0, CP = 0.0;
+    for (int round = 0; round < 6; ++round) {
+      const auto k = axial_coefficients(fit.axial, traits, omega, 0.0);
+      omega = std::sqrt(wanted / k.CT), CP = k.CP;
+    }
+    const double power = std::log(CP * omega * omega * omega);
+    sum += power, squares += power * power;
+  }
+  const double spread = std::sqrt(squares / kBlades - sum / kBlades * sum / kBlades);
+  const double own = std::hypot(0.041, 1.5 * 0.033);
+  EXPECT_TRUE(near(lifting_power_deviation(fit.axial, fit.belief, 500.0), std::hypot(spread, own),
+                   stated(0.06 * std::hypot(spread, own), "400 blades; slopes instead of curves")));
+  TraitBelief strange = fit.belief;
+  strange.strange_make = true;
+  EXPECT_TRUE(near(lifting_power_deviation(fit.axial, strange, 500.0),
+                   1.45 * lifting_power_deviation(fit.axial, fit.belief, 500.0),
+                   round_off(8, 0.1)));
 }
 
 // A stand's power in the wrong unit or of the ESC's input: drag alone would swallow it.
