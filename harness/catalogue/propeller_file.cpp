@@ -173,7 +173,8 @@ Result<PropellerFile> fitted(plant::PropellerDescription d) {
   auto fit = plant::fit_blade(std::move(d));
   if (!fit) return fit.error();
   const auto blade = fit.value().blade;
-  return PropellerFile{blade, std::make_shared<const plant::FittedBlade>(std::move(fit.value()))};
+  return PropellerFile{blade, std::make_shared<const plant::FittedBlade>(std::move(fit.value())),
+                       nullptr};
 }
 
 }  // namespace
@@ -190,15 +191,18 @@ Result<PropellerFile> read_propeller_file(const std::string& path) {
     if (!polar) return polar.error();
     d.sections.push_back({r, polar.value()});
   }
-  auto blade = plant::make_fitted_blade(std::move(d));
-  if (!blade) return blade.error();
-  return PropellerFile{blade.value(), nullptr};
+  auto twist = plant::make_fitted_blade(std::move(d));
+  if (!twist) return twist.error();
+  const auto blade = twist.value().blade;
+  return PropellerFile{blade, nullptr,
+                       std::make_shared<const plant::TwistedBlade>(std::move(twist.value()))};
 }
 
 std::vector<std::string> PropellerFile::doubts() const {
   std::vector<std::string> all;
-  if (fit == nullptr) return all;
-  for (const std::string& doubt : fit->doubts) all.push_back(plant::name(*blade) + ": " + doubt);
+  for (const std::string& doubt : fit != nullptr ? fit->doubts : twist->doubts) {
+    all.push_back(plant::name(*blade) + ": " + doubt);
+  }
   return all;
 }
 

@@ -14,7 +14,8 @@ namespace whirl::catalogue {
 
 struct PropellerFile {
   std::shared_ptr<const plant::Blade> blade;
-  std::shared_ptr<const plant::FittedBlade> fit;  // where the file names no polars, else null
+  std::shared_ptr<const plant::FittedBlade> fit;     // where the file names no polars, else null
+  std::shared_ptr<const plant::TwistedBlade> twist;  // where it does, else null
   // What speaks against the file, each with the propeller's name before it.
   std::vector<std::string> doubts() const;
 };

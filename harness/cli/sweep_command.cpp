@@ -77,15 +77,15 @@ std::string said(const char* format, ...) {
 }
 
 // Nine in ten left-out propellers are within this.
-void judge(const sweep::ForwardJudged& flight, Swept& swept) {
+void judge(const sweep::ForwardJudged& flight, bool has_band, Swept& swept) {
   if (flight.points == 0) return;
   constexpr double kMost_CT = 12.0, kMost_CP = 14.0;
   swept.good = flight.CT_percent <= kMost_CT && flight.CP_percent <= kMost_CP;
-  swept.verdict = said(
-      "in flight CT %.1f %% (at most %g), CP %.1f %% (at most %g), %d points; inside the "
-      "90 %% band: %.0f %% and %.0f %%",
-      flight.CT_percent, kMost_CT, flight.CP_percent, kMost_CP, flight.points,
-      flight.CT_inside_percent, flight.CP_inside_percent);
+  swept.verdict = said("in flight CT %.1f %% (at most %g), CP %.1f %% (at most %g), %d points",
+                       flight.CT_percent, kMost_CT, flight.CP_percent, kMost_CP, flight.points);
+  if (!has_band) return;
+  swept.verdict += said("; inside the 90 %% band: %.0f %% and %.0f %%", flight.CT_inside_percent,
+                        flight.CP_inside_percent);
 }
 
 Result<Swept> sweep_propeller(const std::string& path, const std::vector<std::string>& files,
@@ -95,14 +95,19 @@ Result<Swept> sweep_propeller(const std::string& path, const std::vector<std::st
   const auto measured = read_all(files, sweep::read_measured);
   if (!measured) return measured.error();
   const auto& blade = read.value().blade;
-  Swept swept{plant::name(*blade),    {}, {}, "Fitted on its static rows, and how sure",
-              "trait, 90 % interval", {}};
-  const plant::FittedBlade* fit = read.value().fit.get();
-  if (fit != nullptr) swept.lines = sweep::fit_lines(*fit);
+  const sweep::SweptPropeller propeller{blade, read.value().fit.get(), read.value().twist.get()};
+  Swept swept{plant::name(*blade), {}, {}, "", "", {}};
+  if (propeller.fit != nullptr) {
+    swept.title = "Fitted on its static rows, and how sure", swept.head = "trait, 90 % interval";
+    swept.lines = sweep::fit_lines(*propeller.fit);
+  } else {
+    swept.title = "Sections and twist", swept.head = "as named, and as found on static thrust";
+    swept.lines = sweep::twist_lines(*propeller.twist);
+  }
   auto forward = sweep::forward_sweep(
-      blade, fit, measured.value(),
+      propeller, measured.value(),
       options.speed_radps > 0.0 ? options.speed_radps : options.top_speed_radps);
-  judge(forward.flight, swept);
+  judge(forward.flight, propeller.fit != nullptr, swept);
   swept.charts = std::move(forward.charts);
   for (auto& chart : sweep::propeller_sweep(blade, options))
     swept.charts.push_back(std::move(chart));

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <numbers>
 
 #include "base/rpm.hpp"
 #include "harness/sweep/tally.hpp"
+#include "plant/rotor/polar.hpp"
 #include "plant/rotor/twist_fit.hpp"
 
 namespace whirl::sweep {
@@ -17,11 +19,20 @@ using results::Chart;
 using results::ChartCurve;
 
 struct Teller {
-  const std::shared_ptr<const plant::Blade>& blade;
-  const plant::FittedBlade* fit;
+  const SweptPropeller& prop;
+  std::shared_ptr<const plant::Blade> least_drag, most_drag;  // null: no section states an error
 
+  explicit Teller(const SweptPropeller& propeller) : prop(propeller) {
+    if (prop.twist == nullptr || prop.twist->drag_within == 0.0) return;
+    least_drag = plant::with_section_drag(*prop.twist, -1);
+    most_drag = plant::with_section_drag(*prop.twist, +1);
+  }
   std::vector<Prediction> tell(const std::vector<MeasuredPoint>& where) const {
-    if (fit != nullptr) return plant::predict(fit->axial, fit->belief, where);
+    if (prop.fit != nullptr) return plant::predict(prop.fit->axial, prop.fit->belief, where);
+    return by(prop.blade, where);
+  }
+  static std::vector<Prediction> by(const std::shared_ptr<const plant::Blade>& blade,
+                                    const std::vector<MeasuredPoint>& where) {
     std::vector<Prediction> told;
     told.reserve(where.size());
     for (const MeasuredPoint& p : where) {
@@ -57,19 +68,27 @@ struct Pair {  // CT and CP charts side by side
         CP{group, "CP = P / (rho n3 D5)", x_label, "CP", "", "", {}, {}} {}
 
   void draw(const std::string& name, const std::vector<double>& x,
-            const std::vector<Prediction>& told, bool band) {
-    ChartCurve t{name, x, {}}, p{name, x, {}};
+            const std::vector<Prediction>& told, bool faint = false) {
+    ChartCurve t{name, x, {}, false, faint}, p = t;
     for (const Prediction& k : told) t.y.push_back(k.mean.CT), p.y.push_back(k.mean.CP);
     CT.curves.push_back(t), CP.curves.push_back(p);
-    if (!band) return;
+  }
+  // With what is known of how far it may be off.
+  void draw_with_band(const std::string& name, const std::vector<double>& x,
+                      const std::vector<MeasuredPoint>& where, const Teller& teller) {
+    const auto told = teller.tell(where);
+    draw(name, x, told);
+    if (teller.least_drag != nullptr) {
+      draw(name + ", least drag", x, Teller::by(teller.least_drag, where), true);
+      draw(name + ", most drag", x, Teller::by(teller.most_drag, where), true);
+    }
+    if (teller.prop.fit == nullptr) return;
     for (const double side : {-plant::kNine_in_ten, plant::kNine_in_ten}) {
-      ChartCurve tb{"", x, {}, false, true}, pb{"", x, {}, false, true};
-      if (side > 0) tb.name = pb.name = name + ", 90 % band";
-      for (const Prediction& k : told) {
-        tb.y.push_back(k.mean.CT + side * k.deviation.CT);
-        pb.y.push_back(k.mean.CP + side * k.deviation.CP);
+      auto edge = told;
+      for (Prediction& k : edge) {
+        k.mean.CT += side * k.deviation.CT, k.mean.CP += side * k.deviation.CP;
       }
-      CT.curves.push_back(tb), CP.curves.push_back(pb);
+      draw(name + (side < 0 ? ", 90 % band, lower" : ", 90 % band, upper"), x, edge, true);
     }
   }
   void mark(const std::string& name, const std::vector<double>& x,
@@ -107,7 +126,7 @@ void add_over_J(const Teller& teller, const std::vector<MeasuredFile>& measured,
       x.push_back(end * i / 24.0);
       where.push_back({omega, x.back(), 0, 0});
     }
-    pair.draw(rpm_text(omega), x, teller.tell(where), teller.fit != nullptr);
+    pair.draw_with_band(rpm_text(omega), x, where, teller);
   };
   for (const MeasuredFile& file : measured) {
     std::vector<MeasuredPoint> flying;
@@ -158,7 +177,11 @@ void add_over_speed(const Teller& teller, const std::vector<MeasuredFile>& measu
     }
     char name[16];
     std::snprintf(name, sizeof name, "J = %.1f", J);
-    pair.draw(name, x, teller.tell(where), teller.fit != nullptr && J == 0.0);
+    if (J == 0.0) {
+      pair.draw_with_band(name, x, where, teller);
+    } else {
+      pair.draw(name, x, teller.tell(where));
+    }
   }
   BandTally T, P;
   for (const MeasuredFile& file : measured) {
@@ -185,10 +208,9 @@ void add_over_speed(const Teller& teller, const std::vector<MeasuredFile>& measu
 
 }  // namespace
 
-ForwardSweep forward_sweep(const std::shared_ptr<const plant::Blade>& blade,
-                           const plant::FittedBlade* fit, const std::vector<MeasuredFile>& measured,
-                           double speed_radps) {
-  const Teller teller{blade, fit};
+ForwardSweep forward_sweep(const SweptPropeller& propeller,
+                           const std::vector<MeasuredFile>& measured, double speed_radps) {
+  const Teller teller{propeller};
   double top = speed_radps;
   for (const MeasuredFile& file : measured) {
     for (const MeasuredPoint& p : file.points) top = std::max(top, p.omega_radps);
@@ -196,19 +218,54 @@ ForwardSweep forward_sweep(const std::shared_ptr<const plant::Blade>& blade,
   ForwardSweep sweep;
   add_over_J(teller, measured, speed_radps, sweep);
   add_over_speed(teller, measured, top, sweep);
-  if (fit != nullptr) {
-    std::string& note = sweep.charts.front().note;
-    for (const std::string& doubt : fit->doubts) note += (note.empty() ? "" : "; ") + doubt;
-  }
+  std::vector<std::string> doubts;
+  if (propeller.fit != nullptr) doubts = propeller.fit->doubts;
+  if (propeller.twist != nullptr) doubts = propeller.twist->doubts;
+  std::string& note = sweep.charts.front().note;
+  for (const std::string& doubt : doubts) note += (note.empty() ? "" : "; ") + doubt;
   return sweep;
 }
 
-std::vector<std::string> fit_lines(const plant::FittedBlade& fit) {
+namespace {
+
+std::string left_over_line(double thrust_off, double power_off) {
+  char text[80];
+  std::snprintf(text, sizeof text, "static rows leave over: CT %.1f %%, CP %.1f %%",
+                100.0 * thrust_off, 100.0 * power_off);
+  return text;
+}
+
+}  // namespace
+
+std::vector<std::string> twist_lines(const plant::TwistedBlade& twist) {
   std::vector<std::string> lines;
   char text[160];
-  std::snprintf(text, sizeof text, "static rows leave over: CT %.1f %%, CP %.1f %%",
-                100.0 * fit.thrust_off, 100.0 * fit.power_off);
+  const double deg = twist.tip_twist_rad * 180.0 / std::numbers::pi;
+  std::snprintf(text, sizeof text, "tip twist: %+.2f deg, %s", deg,
+                twist.found ? "found on the static rows" : "as the file gives it: no static rows");
   lines.emplace_back(text);
+  if (twist.found) {
+    lines.push_back(left_over_line(twist.thrust_off, twist.power_off));
+    std::snprintf(text, sizeof text, "static thrust answers to twist: %.1f %% per degree",
+                  100.0 * twist.answer_per_deg);
+    lines.emplace_back(text);
+  }
+  for (const plant::SectionStation& s : twist.description.sections) {
+    const double within = s.polar->drag_within();
+    std::snprintf(text, sizeof text, "section from r = %.2f: %s, ", s.r_over_R,
+                  s.polar->name().substr(0, 60).c_str());
+    lines.push_back(std::string(text) +
+                    (within > 0.0
+                         ? "drag within " + std::to_string(std::lround(100.0 * within)) + " %"
+                         : "no error of its drag is stated"));
+  }
+  for (const std::string& doubt : twist.doubts) lines.push_back("doubt: " + doubt);
+  return lines;
+}
+
+std::vector<std::string> fit_lines(const plant::FittedBlade& fit) {
+  std::vector<std::string> lines = {left_over_line(fit.thrust_off, fit.power_off)};
+  char text[160];
   for (int i = 0; i < plant::kTraits; ++i) {
     std::snprintf(text, sizeof text, "%s: %.3g, +- %.2g (90 %%)",
                   std::string(plant::kTrait_names[static_cast<std::size_t>(i)]).c_str(),

@@ -1,5 +1,7 @@
 // A propeller along its shaft over J: CT and CP with their 90 % band, measured points laid over.
 //
+//   Polars  a file that names its sections has no such band; where their drag is computed, what its stated error
+//           leaves open is drawn instead, and no point is counted as inside of it
 //   Judged  sum of |error| over sum of |measured| (WMAPE) and the mean of the errors with their sign over the mean of the
 //           measured, per file and over all; points at J up to 0.1 as static, points that give no thrust
 //           or take no power are drawn and not judged
@@ -23,12 +25,18 @@ struct ForwardSweep {
   std::vector<results::Chart> charts;
   ForwardJudged flight, at_rest;
 };
-// `fit`: null where the file names polars. Speeds: of the measured files, else speed_radps.
-ForwardSweep forward_sweep(const std::shared_ptr<const plant::Blade>& blade,
-                           const plant::FittedBlade* fit, const std::vector<MeasuredFile>& measured,
-                           double speed_radps);
+// A propeller as its file was read: fitted on its traits, or of named polars.
+struct SweptPropeller {
+  std::shared_ptr<const plant::Blade> blade;
+  const plant::FittedBlade* fit = nullptr;     // null where the file names polars
+  const plant::TwistedBlade* twist = nullptr;  // null where it does not
+};
+// Speeds: of the measured files, else speed_radps.
+ForwardSweep forward_sweep(const SweptPropeller& propeller,
+                           const std::vector<MeasuredFile>& measured, double speed_radps);
 
 // What was chosen and what is doubted, for the terminal and the page.
 std::vector<std::string> fit_lines(const plant::FittedBlade& fit);
+std::vector<std::string> twist_lines(const plant::TwistedBlade& twist);
 
 }  // namespace whirl::sweep

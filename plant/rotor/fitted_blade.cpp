@@ -12,12 +12,6 @@
 namespace whirl::plant {
 namespace {
 
-constexpr double kMost_left = 0.10;
-constexpr double kLowest_twist_deg = -1.0;
-constexpr double kHighest_twist_deg = 4.0;
-constexpr double kRefused_beyond_deg = 2.0;
-constexpr double kLeast_answer =
-    0.01;  // of thrust, per degree of tip twist; healthy blades: 0.03 to 0.06
 constexpr double kStrange = 0.75;
 constexpr double kSurprising = 3.0;  // standard deviations
 
@@ -105,28 +99,16 @@ std::optional<Error> refusal(const PropellerDescription& d, const FittedBlade& f
 
 void note_doubts(const PropellerDescription& d, FittedBlade& fit) {
   const double twist = fit.belief.mean[tip_twist_deg];
+  const auto doubt = [&fit](const std::string& text) {
+    if (!text.empty()) fit.doubts.push_back(text);
+  };
   if (d.static_points.empty()) {
     fit.doubts.emplace_back("no static rows: its angles may be off by -1 to 4 deg, see the band");
   } else {
-    const double answer = answer_to_twist(fit, d.static_points.back().omega_radps);
-    if (answer < kLeast_answer) {
-      fit.doubts.push_back(said(
-          "static thrust hardly answers to twist (%.1f %% per degree): the blade is stalled at "
-          "rest, and its angles stay a guess",
-          100.0 * answer));
-    }
+    doubt(answer_doubt(answer_to_twist(fit, d.static_points.back().omega_radps)));
   }
-  if (twist < kLowest_twist_deg || twist > kHighest_twist_deg) {
-    fit.doubts.push_back(
-        said("tip twist of %+.1f deg lies outside -1 to 4 deg: measure the angles "
-             "again",
-             twist));
-  }
-  if (fit.power_off > kMost_left) {
-    fit.doubts.push_back(
-        said("static power is left over by %.0f %%: no section met thrust and power",
-             100.0 * fit.power_off));
-  }
+  doubt(twist_doubt(twist));
+  doubt(power_doubt(fit.power_off));
   if (fit.flight_thrust_off > kMost_left) {
     fit.doubts.push_back(said("thrust in flight is left over by %.0f %%: check J, rpm and the unit",
                               100.0 * fit.flight_thrust_off));

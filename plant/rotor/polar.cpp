@@ -48,9 +48,21 @@ SectionCoefficients on_curve(const PolarCurve& curve, double alpha_rad) {
 
 }  // namespace
 
-PolarFamily::PolarFamily(std::string name, std::vector<PolarCurve> curves, double lift_below)
-    : name_(std::move(name)), curves_(std::move(curves)), lift_below_(lift_below) {
+PolarFamily::PolarFamily(std::string name, std::vector<PolarCurve> curves, double lift_below,
+                         double drag_within)
+    : name_(std::move(name)),
+      curves_(std::move(curves)),
+      lift_below_(lift_below),
+      drag_within_(drag_within) {
   WHIRL_CHECK(!curves_.empty());
+}
+
+PolarFamily PolarFamily::with_drag(double factor) const {
+  PolarFamily scaled = *this;
+  for (PolarCurve& curve : scaled.curves_) {
+    for (PolarRow& row : curve.rows) row.cd *= factor;
+  }
+  return scaled;
 }
 
 SectionCoefficients PolarFamily::at(double alpha_rad, double reynolds) const {

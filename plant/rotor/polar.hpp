@@ -36,8 +36,9 @@ struct SectionCoefficients {
 class PolarFamily {
  public:
   // Curves ascending in Reynolds number, each ascending in alpha; checked by read_polar().
-  // Below the first curve lift falls as Re^lift_below.
-  PolarFamily(std::string name, std::vector<PolarCurve> curves, double lift_below = 0.1);
+  // Below the first curve lift falls as Re^lift_below; drag is known within its share drag_within.
+  PolarFamily(std::string name, std::vector<PolarCurve> curves, double lift_below = 0.1,
+              double drag_within = 0.0);
 
   SectionCoefficients at(double alpha_rad, double reynolds) const;
 
@@ -50,15 +51,19 @@ class PolarFamily {
 
   const std::string& name() const { return name_; }
   const std::vector<PolarCurve>& curves() const { return curves_; }
+  double drag_within() const { return drag_within_; }  // 0: nothing is stated
+  // The same with all given drag times this.
+  PolarFamily with_drag(double factor) const;
 
  private:
   std::string name_;
   std::vector<PolarCurve> curves_;
   double lift_below_;
+  double drag_within_;
 };
 
 // Text of a .polar file: "section NAME", then blocks "reynolds RE" of rows "alpha_deg cl cd".
-// Before them "below N" may give lift_below. '#' starts a comment. `place` is the file's name for errors.
+// Before them "below N" may give lift_below, "drag_within N" the share by which a computed section's drag may be off. '#' starts a comment. `place` is the file's name for errors.
 Result<PolarFamily> read_polar(std::string_view text, std::string_view place);
 
 }  // namespace whirl::plant

@@ -34,6 +34,7 @@ struct Reader {
   std::string name;
   std::vector<PolarCurve> curves;
   double lift_below = 0.1;
+  double drag_within = 0.0;
 
   Error fault(int line, std::string what, std::string cure) const {
     return {ErrorKind::bad_input, place + ":" + std::to_string(line), std::move(what),
@@ -41,6 +42,7 @@ struct Reader {
   }
   std::optional<Error> read(int line, const std::vector<std::string_view>& words);
   std::optional<Error> take_below(int line, const std::vector<std::string_view>& words);
+  std::optional<Error> take_within(int line, const std::vector<std::string_view>& words);
   std::optional<Error> take_row(int line, const std::vector<std::string_view>& words);
   std::optional<Error> take_reynolds(int line, const std::vector<std::string_view>& words);
   std::optional<Error> check_last(int line) const;
@@ -53,6 +55,7 @@ std::optional<Error> Reader::read(int line, const std::vector<std::string_view>&
     return {};
   }
   if (words[0] == "below") return take_below(line, words);
+  if (words[0] == "drag_within") return take_within(line, words);
   return words[0] == "reynolds" ? take_reynolds(line, words) : take_row(line, words);
 }
 
@@ -62,6 +65,16 @@ std::optional<Error> Reader::take_below(int line, const std::vector<std::string_
     return fault(line, "below wants one number from 0 to 1", "the power of Re that lift follows");
   }
   lift_below = *value;
+  return {};
+}
+
+std::optional<Error> Reader::take_within(int line, const std::vector<std::string_view>& words) {
+  const auto value = words.size() == 2 ? number(words[1]) : std::nullopt;
+  if (!value || !(*value >= 0.0 && *value < 1.0)) {
+    return fault(line, "drag_within wants one number from 0 to below 1",
+                 "the share by which drag may be off, e.g. drag_within 0.22");
+  }
+  drag_within = *value;
   return {};
 }
 
@@ -110,7 +123,7 @@ std::optional<Error> Reader::check_last(int line) const {
 }  // namespace
 
 Result<PolarFamily> read_polar(std::string_view text, std::string_view place) {
-  Reader reader{std::string(place), "", {}, 0.1};
+  Reader reader{std::string(place), "", {}};
   int line = 0;
   while (!text.empty()) {
     const auto end = text.find('\n');
@@ -125,7 +138,8 @@ Result<PolarFamily> read_polar(std::string_view text, std::string_view place) {
     return reader.fault(line, "no polar in this file", "give reynolds blocks of alpha_deg cl cd");
   }
   if (reader.name.empty()) reader.name = std::string(place);
-  return PolarFamily(std::move(reader.name), std::move(reader.curves), reader.lift_below);
+  return PolarFamily(std::move(reader.name), std::move(reader.curves), reader.lift_below,
+                     reader.drag_within);
 }
 
 }  // namespace whirl::plant

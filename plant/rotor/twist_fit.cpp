@@ -1,15 +1,16 @@
 #include "plant/rotor/twist_fit.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "base/angles.hpp"
 #include "plant/rotor/blade_rings.hpp"
+#include "plant/rotor/polar.hpp"
 #include "plant/rotor/rotor.hpp"
 
 namespace whirl::plant {
 namespace {
-
-constexpr double kMost_rad = 8.0 * kPi / 180.0;
 
 constexpr double kScan_rad = 0.5 * kPi / 180.0;
 
@@ -23,7 +24,53 @@ double excess(const Blade& blade, double twist_rad, const std::vector<StaticPoin
   return sum;
 }
 
+bool beyond(double twist_rad) {
+  const double deg = twist_rad / kDeg;
+  return deg < kLowest_twist_deg - kRefused_beyond_deg - 1e-9 ||
+         deg > kHighest_twist_deg + kRefused_beyond_deg + 1e-9;
+}
+
+std::string said(const char* format, double value) {
+  char text[160];
+  std::snprintf(text, sizeof text, format, value);
+  return text;
+}
+
+void add_left_over(const std::vector<StaticPoint>& points, TwistedBlade& made) {
+  double thrust = 0.0, power = 0.0, thrust_off = 0.0, power_off = 0.0;
+  for (const StaticPoint& p : points) {
+    const auto k = propeller_coefficients(made.blade, p.omega_radps, 0.0);
+    thrust += p.thrust_coefficient;
+    thrust_off += std::abs(k.CT - p.thrust_coefficient);
+    if (p.power_coefficient == 0.0) continue;
+    power += p.power_coefficient;
+    power_off += std::abs(k.CP - p.power_coefficient);
+  }
+  made.thrust_off = thrust > 0.0 ? thrust_off / thrust : 0.0;
+  made.power_off = power > 0.0 ? power_off / power : 0.0;
+}
+
 }  // namespace
+
+std::string twist_doubt(double twist_deg) {
+  if (twist_deg >= kLowest_twist_deg && twist_deg <= kHighest_twist_deg) return "";
+  return said("tip twist of %+.1f deg lies outside -1 to 4 deg: measure the angles again",
+              twist_deg);
+}
+
+std::string answer_doubt(double share_per_deg) {
+  if (share_per_deg >= kLeast_answer) return "";
+  return said(
+      "static thrust hardly answers to twist (%.1f %% per degree): the blade is stalled at rest, "
+      "and its angles stay a guess",
+      100.0 * share_per_deg);
+}
+
+std::string power_doubt(double share_left) {
+  if (share_left <= kMost_left) return "";
+  return said("static power is left over by %.0f %%: no section met thrust and power",
+              100.0 * share_left);
+}
 
 PropellerCoefficients propeller_coefficients(const std::shared_ptr<const Blade>& blade,
                                              double omega_radps, double advance_ratio) {
@@ -51,13 +98,13 @@ Result<double> fit_tip_twist_rad(PropellerDescription d, const std::vector<Stati
   const double step = too_little ? kScan_rad : -kScan_rad;
   double near = 0.0;
   double far = step;
-  while (std::abs(far) <= kMost_rad && (excess(blade, far, points) < 0.0) == too_little) {
+  while (!beyond(far) && (excess(blade, far, points) < 0.0) == too_little) {
     near = far;
     far += step;
   }
-  if (std::abs(far) > kMost_rad) {
+  if (beyond(far)) {
     return Error{ErrorKind::bad_input, d.place,
-                 "static thrust is not met by any tip twist within 8 deg",
+                 "static thrust is not met by any tip twist from -3 to 6 deg",
                  "check diameter, chord, angle and the unit of the thrust"};
   }
   while (std::abs(far - near) > 1e-4) {
@@ -67,13 +114,44 @@ Result<double> fit_tip_twist_rad(PropellerDescription d, const std::vector<Stati
   return 0.5 * (near + far);
 }
 
-Result<std::shared_ptr<const Blade>> make_fitted_blade(PropellerDescription d) {
-  if (!d.static_points.empty()) {
+Result<TwistedBlade> make_fitted_blade(PropellerDescription d) {
+  TwistedBlade made;
+  made.found = !d.static_points.empty();
+  if (made.found) {
     const auto twist = fit_tip_twist_rad(d, d.static_points);
     if (!twist) return twist.error();
     d.tip_twist_correction_rad = twist.value();
   }
-  return make_blade(d);
+  made.tip_twist_rad = d.tip_twist_correction_rad;
+  made.description = d;
+  const auto blade = make_blade(d);
+  if (!blade) return blade.error();
+  made.blade = blade.value();
+  for (const SectionStation& s : d.sections) {
+    made.drag_within = std::max(made.drag_within, s.polar->drag_within());
+  }
+  const auto doubt = [&made](const std::string& text) {
+    if (!text.empty()) made.doubts.push_back(text);
+  };
+  doubt(twist_doubt(made.tip_twist_rad / kDeg));
+  if (!made.found) return made;
+  add_left_over(d.static_points, made);
+  const double omega = d.static_points.back().omega_radps;
+  made.answer_per_deg = propeller_coefficients(twisted(*made.blade, kDeg), omega, 0.0).CT /
+                            propeller_coefficients(made.blade, omega, 0.0).CT -
+                        1.0;
+  doubt(answer_doubt(made.answer_per_deg));
+  doubt(power_doubt(made.power_off));
+  return made;
+}
+
+std::shared_ptr<const Blade> with_section_drag(const TwistedBlade& made, int side) {
+  PropellerDescription d = made.description;
+  for (SectionStation& s : d.sections) {
+    s.polar = std::make_shared<const PolarFamily>(
+        s.polar->with_drag(1.0 + side * s.polar->drag_within()));
+  }
+  return make_blade(d).value();
 }
 
 }  // namespace whirl::plant

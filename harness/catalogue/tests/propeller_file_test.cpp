@@ -81,6 +81,24 @@ TEST_F(PropellerFile, ARowInFlightMovesTheBladeTowardsIt) {
   }
 }
 
+TEST_F(PropellerFile, DoubtsOfNamedPolarsAreThoseOfStaticRows) {
+  const ScratchFolder folder;
+  const auto doubts = [&](const char* CP) {
+    std::ofstream(folder.file("p.lua"))
+        << "return { kind = \"propeller\", name = \"mine\", blades = 2, diameter = \"10 in\", mass "
+           "= "
+           "\"9 g\", polars = { { r = 0.2, file = \"bw3.polar\" }, { r = 0.9, file = \"e63.polar\" "
+           "} }, static = { { rpm = 6000, CT = 0.14, CP = "
+        << CP << " } }, " << kStations << " }\n";
+    const auto read = read_propeller_file(folder.file("p.lua"));
+    EXPECT_TRUE(read.ok()) << (read.ok() ? "" : read.error().message());
+    return read.ok() ? read.value().doubts() : std::vector<std::string>{};
+  };
+  std::string all;
+  for (const std::string& doubt : doubts("0.12")) all += doubt + "\n";
+  EXPECT_NE(all.find("mine: static power is left over by"), std::string::npos) << all;
+}
+
 TEST_F(PropellerFile, SlipsOfThePenAreRefused) {
   EXPECT_NE(fault("flight = { { rpm = 6000, CT = 0.1 } },").find("J"), std::string::npos);
   EXPECT_NE(fault("flight = { { rpm = 6000, J = 0, CT = 0.1 } },").find("J"), std::string::npos);

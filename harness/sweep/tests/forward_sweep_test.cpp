@@ -49,7 +49,7 @@ TEST(ForwardSweep, PointsOnTheCurveHaveNoErrorAndShiftedOnesTheirShift) {
   for (std::size_t i = 0; i < told.size(); ++i) {
     file.points[i].CT = told[i].mean.CT, file.points[i].CP = 1.25 * told[i].mean.CP;
   }
-  const ForwardSweep sweep = forward_sweep(prop.value().blade, fit.get(), {file}, 600.0);
+  const ForwardSweep sweep = forward_sweep({prop.value().blade, fit.get()}, {file}, 600.0);
   EXPECT_EQ(sweep.flight.points, 2);
   EXPECT_TRUE(near(sweep.flight.CT_percent, 0.0, stated(1e-9, "the same curve")));
   EXPECT_TRUE(near(sweep.flight.CP_percent, 20.0, stated(1e-9, "0.25 of 1.25")));

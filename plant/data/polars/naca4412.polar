@@ -2,6 +2,8 @@
 # Source: XFLR5 (XFOIL), free transition, Ncrit 6, Mach 0
 # Columns: angle of attack in degrees, lift and drag coefficient. One block per Reynolds number.
 section naca4412
+# Of computed sections at these Reynolds numbers 12 to 22 % (README.md).
+drag_within 0.22
 
 reynolds 30000
  -15.000   -0.4209   0.18542

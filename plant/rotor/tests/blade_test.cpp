@@ -102,11 +102,90 @@ TEST(Blade, TwistFitFindsTheTwistThatMadeTheThrust) {
   EXPECT_TRUE(near(fit_tip_twist_rad(d, points).value(), 1.7 * kDeg, stated(1e-4, "bisection")));
   d.tip_twist_correction_rad = 0.0;
   d.static_points = points;
-  EXPECT_TRUE(near(propeller_coefficients(make_fitted_blade(d).value(), 450.0, 0.0).CT,
+  EXPECT_TRUE(near(propeller_coefficients(make_fitted_blade(d).value().blade, 450.0, 0.0).CT,
                    points[1].thrust_coefficient, stated(1e-4, "bisection")));
   points[0].thrust_coefficient = 5.0;
   EXPECT_FALSE(fit_tip_twist_rad(d, points).ok());
   EXPECT_FALSE(fit_tip_twist_rad(d, {}).ok());
+}
+
+// What a stand would show of the blade, turned by this at the tip.
+std::vector<StaticPoint> stand_rows(PropellerDescription d, double twist_deg, double power = 1.0) {
+  d.tip_twist_correction_rad = twist_deg * kDeg;
+  const auto blade = make_blade(d).value();
+  std::vector<StaticPoint> rows;
+  for (const double w : {350.0, 450.0, 550.0}) {
+    const auto k = propeller_coefficients(blade, w, 0.0);
+    rows.push_back({w, k.CT, power * k.CP});
+  }
+  return rows;
+}
+
+Result<TwistedBlade> on_rows(double twist_deg, double power = 1.0) {
+  PropellerDescription d = good();
+  d.static_points = stand_rows(d, twist_deg, power);
+  return make_fitted_blade(d);
+}
+
+TEST(TwistedBlade, SoundRowsLeaveNothingOverAndNothingIsDoubted) {
+  const auto made = on_rows(1.7).value();
+  EXPECT_TRUE(made.found);
+  EXPECT_TRUE(near(made.tip_twist_rad, 1.7 * kDeg, stated(1e-4, "bisection")));
+  EXPECT_TRUE(near(made.thrust_off, 0.0, stated(1e-3, "bisection")));
+  EXPECT_TRUE(near(made.power_off, 0.0, stated(1e-3, "bisection")));
+  EXPECT_GT(made.answer_per_deg, 0.03);  // of a healthy blade
+  EXPECT_LT(made.answer_per_deg, 0.06);
+  EXPECT_TRUE(made.doubts.empty()) << made.doubts.front();
+}
+
+TEST(TwistedBlade, PowerThatItsSectionsDoNotTakeIsDoubted) {
+  const auto made = on_rows(1.7, 1.25).value();
+  EXPECT_TRUE(near(made.power_off, 0.2, stated(1e-3, "0.25 of 1.25")));
+  ASSERT_EQ(made.doubts.size(), 1u);
+  EXPECT_NE(made.doubts[0].find("static power is left over by 20 %"), std::string::npos);
+  EXPECT_TRUE(on_rows(1.7, 1.09).value().doubts.empty());
+}
+
+TEST(TwistedBlade, TwistOutsideMinus1To4DegIsDoubtedAndBeyond2MoreRefused) {
+  for (const auto& [deg, doubts] : {std::pair(3.8, 0u), {4.3, 1u}, {5.5, 1u}, {-1.5, 1u}}) {
+    const auto made = on_rows(deg).value();
+    ASSERT_EQ(made.doubts.size(), doubts) << deg;
+    if (doubts > 0) EXPECT_NE(made.doubts[0].find("tip twist of"), std::string::npos);
+  }
+  for (const double deg : {6.3, -3.3}) EXPECT_FALSE(on_rows(deg).ok()) << deg;
+  PropellerDescription given = good();
+  given.tip_twist_correction_rad = 5.0 * kDeg;
+  const auto made = make_fitted_blade(given).value();
+  EXPECT_FALSE(made.found);
+  EXPECT_EQ(made.doubts.size(), 1u);
+}
+
+// Lift at its end over most of the blade: thrust cannot tell the angle.
+TEST(TwistedBlade, AStalledBladeIsDoubted) {
+  PropellerDescription d = good();
+  for (PropellerStation& s : d.stations) s.angle_rad += 14.0 * kDeg;
+  d.static_points = stand_rows(d, 0.0);
+  const auto made = make_fitted_blade(d).value();
+  EXPECT_LT(made.answer_per_deg, kLeast_answer);
+  ASSERT_FALSE(made.doubts.empty());
+  EXPECT_NE(made.doubts[0].find("hardly answers to twist"), std::string::npos) << made.doubts[0];
+}
+
+// Profile power is a third to a half of the whole at rest, of which the computed section has its share.
+TEST(TwistedBlade, StatedErrorOfComputedDragOpensItsPower) {
+  const auto made = make_fitted_blade(good()).value();
+  EXPECT_TRUE(near(made.drag_within, 0.22, round_off(1, 0.22)));  // e63.polar
+  const auto CP = [](const std::shared_ptr<const Blade>& blade) {
+    return propeller_coefficients(blade, 450.0, 0.0).CP;
+  };
+  const double middle = CP(made.blade);
+  EXPECT_LT(CP(with_section_drag(made, -1)), 0.99 * middle);
+  EXPECT_GT(CP(with_section_drag(made, -1)), 0.85 * middle);
+  EXPECT_GT(CP(with_section_drag(made, +1)), 1.01 * middle);
+  EXPECT_LT(CP(with_section_drag(made, +1)), 1.15 * middle);
+  PropellerDescription measured = good();
+  for (SectionStation& s : measured.sections) s.polar = section("bw3");
+  EXPECT_EQ(make_fitted_blade(measured).value().drag_within, 0.0);
 }
 
 }  // namespace

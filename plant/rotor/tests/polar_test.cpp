@@ -55,6 +55,20 @@ TEST(Polar, FaultsAreNamedWithTheirLine) {
   EXPECT_FALSE(read_polar("", "x.polar").ok());
 }
 
+TEST(Polar, ErrorOfItsDragIsReadAndDragScales) {
+  EXPECT_EQ(read_polar(kSmall, "x").value().drag_within(), 0.0);
+  const auto p = read_polar(std::string("drag_within 0.2\n") + kSmall, "x.polar").value();
+  EXPECT_EQ(p.drag_within(), 0.2);
+  const auto more = p.with_drag(1.5);
+  EXPECT_EQ(more.at(0.0, 50000).cl, p.at(0.0, 50000).cl);
+  EXPECT_TRUE(near(more.at(0.0, 50000).cd, 1.5 * p.at(0.0, 50000).cd, round_off(4, 0.05)));
+  EXPECT_EQ(
+      error_of("drag_within 1\n"),
+      "x.polar:1: drag_within wants one number from 0 to below 1 (the share by which drag may "
+      "be off, e.g. drag_within 0.22)");
+  EXPECT_EQ(error_of("drag_within -0.1\n").substr(0, 9), "x.polar:1");
+}
+
 TEST(Polar, EveryFamilyOfTheHouseReads) {
   for (const char* name : {"bw3", "clark_y", "e63", "goe417a", "naca4412", "naca6409"}) {
     const auto p = section(name);
