@@ -79,6 +79,14 @@ void read_stations(const lua::Table& t, plant::PropellerDescription& d) {
   }
 }
 
+// An ideal rotor lifts with CT^(3/2) sqrt(2 / pi): no propeller takes less.
+void check_ideal(const lua::Table& row, const plant::StaticPoint& p) {
+  const double ideal = std::pow(p.thrust_coefficient, 1.5) * std::sqrt(2.0 / std::numbers::pi);
+  if (p.power_coefficient == 0.0 || p.power_coefficient >= ideal) return;
+  row.refuse(row.has("power") ? "power" : "CP", "is less than an ideal rotor takes for that thrust",
+             "check its unit, the density and the diameter; power is that of the shaft");
+}
+
 // CT and CP, or newtons and watts at the density of that day.
 void read_static(const lua::Table& t, plant::PropellerDescription& d) {
   if (!t.has("static")) return;
@@ -101,6 +109,7 @@ void read_static(const lua::Table& t, plant::PropellerDescription& d) {
     } else if (s.has("CP")) {
       p.power_coefficient = s.number("CP", lua::above(0.0));
     }
+    check_ideal(s, p);
     d.static_points.push_back(p);
   }
 }
@@ -117,6 +126,10 @@ void read_flight(const lua::Table& t, plant::PropellerDescription& d) {
     p.advance_ratio = s.number("J", lua::between(0.05, 2.0));
     p.thrust_coefficient = s.number("CT", lua::above(0.0));
     if (s.has("CP")) p.power_coefficient = s.number("CP", lua::above(0.0));
+    if (p.power_coefficient > 0.0 && p.advance_ratio * p.thrust_coefficient > p.power_coefficient) {
+      s.refuse("CP", "is less than thrust times speed",
+               "an efficiency above 1: check J, CT and CP");
+    }
     d.flight_points.push_back(p);
   }
 }

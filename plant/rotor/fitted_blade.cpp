@@ -14,6 +14,8 @@ namespace {
 
 constexpr double kStrange = 0.75;
 constexpr double kSurprising = 3.0;  // standard deviations
+// Power is then about twice what the shape takes: a wrong unit, a wrong column.
+constexpr double kGross = 8.0;
 
 std::string said(const char* format, double a, double b = 0.0) {
   char text[160];
@@ -97,6 +99,19 @@ std::optional<Error> refusal(const PropellerDescription& d, const FittedBlade& f
   return {};
 }
 
+std::optional<Error> gross(const PropellerDescription& d, const FittedBlade& fit) {
+  for (const auto& [what, sigmas] :
+       {std::pair("thrust", fit.thrust_surprise), std::pair("power", fit.power_surprise)}) {
+    if (std::abs(sigmas) <= kGross) continue;
+    return Error{
+        ErrorKind::bad_input, d.place,
+        std::string("static ") + what +
+            said(" is %+.1f standard deviations off what blades of this shape take", sigmas),
+        "check its unit, the density and the diameter; power is that of the shaft"};
+  }
+  return {};
+}
+
 void note_doubts(const PropellerDescription& d, FittedBlade& fit) {
   const double twist = fit.belief.mean[tip_twist_deg];
   const auto doubt = [&fit](const std::string& text) {
@@ -156,6 +171,7 @@ Result<FittedBlade> fit_blade(PropellerDescription d) {
   fit.power_off = still.CP;
   fit.flight_thrust_off = left_over(fit, in_flight(d.flight_points)).CT;
   if (auto no = refusal(d, fit)) return *no;
+  if (auto no = gross(d, fit)) return *no;
   note_doubts(d, fit);
   d.traits = std::make_shared<const TraitBelief>(fit.belief);
   const auto made = make_blade(d);

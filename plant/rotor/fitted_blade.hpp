@@ -2,7 +2,8 @@
 //
 //   In       description.known, stations, static_points and flight_points (CP where measured); no sections
 //   Out      the blade to fly, how sure its traits are, what the static rows leave over, and what to doubt
-//   Refused  static thrust that is left over by more than 10 %, tip twist beyond -3 to 6 deg
+//   Refused  static thrust that is left over by more than 10 %, tip twist beyond -3 to 6 deg; static rows more than 8
+//            standard deviations off what blades of this shape give (of the 44 and the fifteen of data/outside none is: plant/validation/left_out.hpp)
 //   Warned   tip twist outside -1 to 4 deg; static power or thrust in flight left over by more than 10 %; thrust that hardly
 //            answers to twist (stalled at rest); no static rows; rows that blades of this shape do not give (3
 //            standard deviations); a shape like none that was measured; a make of which none was

@@ -110,6 +110,17 @@ TEST_F(PropellerFile, SlipsOfThePenAreRefused) {
                            "stall_delay = false,"}) {
     EXPECT_NE(fault(line).find("goes with polars"), std::string::npos) << line;
   }
+  // sqrt(2 / pi) 0.161^(3/2) = 0.0515; 1 W instead of 95. J CT = 0.0564.
+  EXPECT_NE(fault("static = { { rpm = 6000, CT = 0.161, CP = 0.051 } },").find("an ideal rotor"),
+            std::string::npos);
+  EXPECT_EQ(fault("static = { { rpm = 6000, CT = 0.161, CP = 0.08 }, { rpm = 6000, thrust = "
+                  "\"7.5 N\", power = \"1 W\" } },"),
+            "my_prop.lua:2: static[2].power: is less than an ideal rotor takes for that thrust "
+            "(check its unit, the density and the diameter; power is that of the shaft)");
+  EXPECT_NE(fault("static = { { rpm = 6000, CT = 0.161, CP = 0.08 } }, flight = { { rpm = 6000, J "
+                  "= 0.4, CT = 0.141, CP = 0.056 } },")
+                .find("an efficiency above 1"),
+            std::string::npos);
   EXPECT_NE(fault("static = { { rpm = 6000, CT = 0.161 } }, tip_twist_correction = \"2 deg\",")
                 .find("does not go with static"),
             std::string::npos);

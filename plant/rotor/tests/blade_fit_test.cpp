@@ -202,6 +202,17 @@ TEST(BladeFit, RowsThatBladesOfTheShapeDoNotGiveAreDoubted) {
       << fit.value().doubts.back();
 }
 
+// Drag would swallow three times the power, and leave 7 % of it over.
+TEST(BladeFit, RowsFarOffWhatTheShapeGivesAreRefused) {
+  PropellerDescription d = slow_flyer();
+  d.static_points = rows_of(d, usual());
+  for (StaticPoint& p : d.static_points) p.power_coefficient *= 3.0;
+  const auto fit = fit_blade(d);
+  ASSERT_FALSE(fit.ok());
+  EXPECT_NE(fit.error().message().find("static power is +"), std::string::npos)
+      << fit.error().message();
+}
+
 TEST(BladeFit, WhatNoBladeOfTheShapeGivesIsRefused) {
   PropellerDescription d = slow_flyer();
   d.static_points = {{500.0, 0.9, 0.0}};
