@@ -29,7 +29,7 @@ ordered_json chart_json(const Chart& chart) {
                       {"source", chart.source},   {"note", chart.note}};
   out["curves"] = out["figures"] = ordered_json::array();
   for (const ChartCurve& c : chart.curves) {
-    out["curves"].push_back({{"name", c.name},
+    out["curves"].push_back({{"name", c.in_legend ? c.name : ""},
                              {"x", numbers(c.x)},
                              {"y", numbers(c.y)},
                              {"marks", c.marks},
@@ -84,6 +84,55 @@ std::string figures_text(const std::vector<Chart>& charts) {
       }
       text += "\n";
     }
+  }
+  return text;
+}
+
+namespace {
+
+// A name may hold what separates fields and lines.
+std::string field(const std::string& text) {
+  if (text.find_first_of(";\"\r\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + "\"";
+}
+
+std::string row(std::initializer_list<std::string> fields) {
+  std::string line;
+  for (const std::string& text : fields) line += (line.empty() ? "" : ";") + field(text);
+  return line + "\n";
+}
+
+std::string nine_digits(double x) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.9g", x);
+  return text;
+}
+
+}  // namespace
+
+std::string curves_csv(const std::vector<Chart>& charts) {
+  std::string text = "group;chart;curve;x_label;x;y_label;y\n";
+  for (const Chart& chart : charts) {
+    for (const ChartCurve& curve : chart.curves) {
+      for (std::size_t i = 0; i < curve.x.size(); ++i) {
+        text += row({chart.group, chart.title, curve.name, chart.x_label, nine_digits(curve.x[i]),
+                     chart.y_label, nine_digits(curve.y[i])});
+      }
+    }
+  }
+  return text;
+}
+
+std::string figures_csv(const std::vector<Chart>& charts) {
+  std::string text = "group;chart;figure;value;unit;limit;note\n";
+  for (const Chart& chart : charts) {
+    for (const ChartFigure& f : chart.figures) {
+      text += row({chart.group, chart.title, f.name, nine_digits(f.measured), f.unit,
+                   std::isinf(f.limit) ? "" : nine_digits(f.limit), ""});
+    }
+    if (!chart.note.empty()) text += row({chart.group, chart.title, "", "", "", "", chart.note});
   }
   return text;
 }

@@ -11,6 +11,7 @@ struct ChartCurve {
   std::vector<double> x, y;
   bool marks = false;  // points of a reference instead of a line
   bool faint = false;  // one of many: thin and pale
+  bool in_legend = true;
 };
 
 struct ChartFigure {
@@ -41,5 +42,9 @@ std::string charts_html(const std::string& title, const std::string& about,
                         const std::vector<Chart>& charts,
                         const std::vector<ChartTable>& tables = {});
 std::string figures_text(const std::vector<Chart>& charts);  // a line per figure
+// Fields apart by ';', a field that holds one in quotes (RFC 4180).
+std::string curves_csv(const std::vector<Chart>& charts);  // group;chart;curve;x_label;x;y_label;y
+std::string figures_csv(
+    const std::vector<Chart>& charts);  // group;chart;figure;value;unit;limit;note
 
 }  // namespace whirl::results

@@ -11,10 +11,12 @@ struct SweepOptions {
   std::string file;   // a propeller, motor, stand or vehicle
   std::string speed;  // "4500 rpm"; empty: three quarters of the top
   std::string top_speed = "6000 rpm";
-  std::string voltage;                // of the bus; empty: the full pack
-  std::vector<std::string> measured;  // of all but a vehicle: files to lay over
-  std::string seeds;                  // "1..100": the spread of its copies instead
-  std::string tolerance;              // of these; empty: the file's, or typical
+  std::vector<std::string> speeds;     // "4500 rpm", ...: of a propeller's curves over J
+  std::vector<double> advance_ratios;  // of its curves over speed; empty: 0, 0.2, 0.4
+  std::string voltage;                 // of the bus; empty: the full pack
+  std::vector<std::string> measured;   // of all but a vehicle: files to lay over
+  std::string seeds;                   // "1..100": the spread of its copies instead
+  std::string tolerance;               // of these; empty: the file's, or typical
 };
 int sweep_command(const SweepOptions& options, const Composition& composition);
 

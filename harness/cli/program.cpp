@@ -142,6 +142,15 @@ CLI::App* add_sweep(CLI::App& app, SweepOptions& options) {
                      "of the sweeps over inflow and advance: \"4500 rpm\"");
   sweeps->add_option("--top-speed", options.top_speed,
                      "end of the static sweep (default 6000 rpm)");
+  sweeps
+      ->add_option("--speeds", options.speeds,
+                   "of a propeller's curves over J: \"3000 rpm,4500 rpm\" (default: those of the "
+                   "measured files, or half, three quarters and all of the top)")
+      ->delimiter(',');
+  sweeps
+      ->add_option("--J", options.advance_ratios,
+                   "V/(n D) of a propeller's curves over speed (default 0,0.2,0.4)")
+      ->delimiter(',');
   sweeps->add_option("--voltage", options.voltage,
                      "of the bus (default: the full pack; a motor alone: 11.1 V): \"16.4 V\"");
   sweeps->add_option(
@@ -151,7 +160,8 @@ CLI::App* add_sweep(CLI::App& app, SweepOptions& options) {
   auto* seeds = sweeps->add_option("--seeds", options.seeds,
                                    "instead of curves, what its copies of these seeds are: 1..100");
   seeds->check(seeds_complaint);
-  for (const char* other : {"--speed", "--top-speed", "--voltage", "--measured"}) {
+  for (const char* other :
+       {"--speed", "--top-speed", "--speeds", "--J", "--voltage", "--measured"}) {
     seeds->excludes(sweeps->get_option(other));
   }
   sweeps

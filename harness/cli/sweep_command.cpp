@@ -1,7 +1,6 @@
 #include <cstdarg>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 
 #include "base/output_file.hpp"
 #include "base/text.hpp"
@@ -28,6 +27,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
+std::string said(const char* format, ...) __attribute__((format(printf, 1, 2)));
+std::string said(const char* format, ...) {
+  char text[300];
+  va_list list;
+  va_start(list, format);
+  std::vsnprintf(text, sizeof text, format, list);
+  va_end(list);
+  return text;
+}
+
 Result<sweep::Options> read_options(const SweepOptions& given) {
   sweep::Options options;
   const auto speed = [](const std::string& text, const char* option, double& into) {
@@ -40,7 +49,29 @@ Result<sweep::Options> read_options(const SweepOptions& given) {
                                        "1000 V", options.bus_V)}) {
     if (!done) return done.error();
   }
+  for (const std::string& text : given.speeds) {
+    if (const auto done = speed(text, "--speeds", options.speeds_radps.emplace_back()); !done) {
+      return done.error();
+    }
+  }
+  for (const double J : given.advance_ratios) {
+    if (J >= 0.0 && J <= 2.0) continue;
+    return Error{ErrorKind::bad_input, "--J", said("%g is outside 0 to 2", J), "J = V/(n D)"};
+  }
+  if (!given.advance_ratios.empty()) options.advance_ratios = given.advance_ratios;
   return options;
+}
+
+// What only a propeller along its shaft has.
+Result<Done> check_kind(const SweepOptions& given, const std::string& kind) {
+  if (kind == "propeller") return Done{};
+  for (const auto& [option, is_given] : {std::pair("--speeds", !given.speeds.empty()),
+                                         std::pair("--J", !given.advance_ratios.empty())}) {
+    if (!is_given) continue;
+    return Error{ErrorKind::bad_input, option, given.file + " is a " + kind,
+                 "it is of a propeller's file; of the others --speed, --top-speed, --voltage"};
+  }
+  return Done{};
 }
 
 struct Swept {
@@ -64,16 +95,6 @@ Result<std::vector<File>> read_all(const std::vector<std::string>& paths,
     files.push_back(std::move(file.value()));
   }
   return files;
-}
-
-std::string said(const char* format, ...) __attribute__((format(printf, 1, 2)));
-std::string said(const char* format, ...) {
-  char text[300];
-  va_list list;
-  va_start(list, format);
-  std::vsnprintf(text, sizeof text, format, list);
-  va_end(list);
-  return text;
 }
 
 // Nine in ten left-out propellers are within this.
@@ -104,9 +125,7 @@ Result<Swept> sweep_propeller(const std::string& path, const std::vector<std::st
     swept.title = "Sections and twist", swept.head = "as named, and as found on static thrust";
     swept.lines = sweep::twist_lines(*propeller.twist);
   }
-  auto forward = sweep::forward_sweep(
-      propeller, measured.value(),
-      options.speed_radps > 0.0 ? options.speed_radps : options.top_speed_radps);
+  auto forward = sweep::forward_sweep(propeller, measured.value(), options);
   judge(forward.flight, propeller.fit != nullptr, swept);
   swept.charts = std::move(forward.charts);
   for (auto& chart : sweep::propeller_sweep(blade, options))
@@ -188,6 +207,9 @@ void print_curves(const std::vector<results::Chart>& charts) {
   for (const results::Chart& chart : charts) {
     if (chart.group != group) std::printf("\n%s\n", chart.group.c_str());
     group = chart.group;
+    if (!chart.note.empty()) {
+      std::printf("  note on %s: %s\n", chart.title.c_str(), printable_line(chart.note).c_str());
+    }
     for (const results::ChartCurve& curve : chart.curves) {
       std::printf("  %s (%s): %s\n", chart.title.c_str(), curve.name.c_str(),
                   chart.y_label.c_str());
@@ -199,34 +221,6 @@ void print_curves(const std::vector<results::Chart>& charts) {
       std::printf("\n");
     }
   }
-}
-
-// A name may hold what separates fields and lines: RFC 4180 puts such a field into quotes.
-std::string csv_field(const std::string& text) {
-  if (text.find_first_of(";\"\r\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + "\"";
-}
-
-Result<Done> write_csv(const std::string& path, const std::vector<results::Chart>& charts) {
-  std::ofstream out(path, std::ios::binary);
-  out << "group;chart;curve;x_label;x;y_label;y\n";
-  char numbers[2][40];
-  for (const results::Chart& chart : charts) {
-    for (const results::ChartCurve& curve : chart.curves) {
-      for (std::size_t i = 0; i < curve.x.size(); ++i) {
-        std::snprintf(numbers[0], sizeof numbers[0], "%.9g", curve.x[i]);
-        std::snprintf(numbers[1], sizeof numbers[1], "%.9g", curve.y[i]);
-        for (const std::string& text : {chart.group, chart.title, curve.name, chart.x_label}) {
-          out << csv_field(text) << ';';
-        }
-        out << numbers[0] << ';' << csv_field(chart.y_label) << ';' << numbers[1] << '\n';
-      }
-    }
-  }
-  if (!out.flush()) return Error{ErrorKind::host, path, "cannot be written", ""};
-  return Done{};
 }
 
 fs::path folder_of(const std::string& file, const Composition& composition) {
@@ -250,7 +244,8 @@ Result<Done> put_out(const Swept& swept, const std::string& file, const Composit
   for (const auto& written :
        {write_text((folder / "index.html").string(),
                    results::charts_html(swept.name, about, swept.charts, tables)),
-        write_csv((folder / "curves.csv").string(), swept.charts)}) {
+        write_text((folder / "curves.csv").string(), results::curves_csv(swept.charts)),
+        write_text((folder / "figures.csv").string(), results::figures_csv(swept.charts))}) {
     if (!written) return written.error();
   }
   std::printf("%s\n", printable_line(swept.name).c_str());
@@ -294,6 +289,9 @@ int sweep_command(const SweepOptions& given, const Composition& composition) {
   }
   const auto options = read_options(given);
   if (!options) return complain(options.error());
+  const auto kind = catalogue::read_kind(given.file);
+  if (!kind) return complain(kind.error());
+  if (const auto good = check_kind(given, kind.value()); !good) return complain(good.error());
   const auto swept = sweep_file(given.file, given.measured, options.value(), composition);
   if (!swept) return complain(swept.error());
   const auto done = put_out(swept.value(), given.file, composition);

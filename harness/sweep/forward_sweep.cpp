@@ -3,11 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <numbers>
+#include <set>
 
 #include "base/rpm.hpp"
 #include "harness/sweep/tally.hpp"
+#include "harness/sweep/validity_tally.hpp"
 #include "plant/rotor/polar.hpp"
+#include "plant/rotor/rotor.hpp"
 #include "plant/rotor/twist_fit.hpp"
 
 namespace whirl::sweep {
@@ -50,17 +54,6 @@ struct BandTally : Tally {
   }
 };
 
-ForwardJudged judged(const BandTally& T, const BandTally& P) {
-  const double n = std::max(T.n, 1);
-  return {T.wmape_percent(),
-          P.wmape_percent(),
-          T.mean_percent(),
-          P.mean_percent(),
-          100.0 * T.inside / n,
-          100.0 * P.inside / n,
-          T.n};
-}
-
 struct Pair {  // CT and CP charts side by side
   Chart CT, CP;
   Pair(const std::string& group, const std::string& x_label)
@@ -68,8 +61,8 @@ struct Pair {  // CT and CP charts side by side
         CP{group, "CP = P / (rho n3 D5)", x_label, "CP", "", "", {}, {}} {}
 
   void draw(const std::string& name, const std::vector<double>& x,
-            const std::vector<Prediction>& told, bool faint = false) {
-    ChartCurve t{name, x, {}, false, faint}, p = t;
+            const std::vector<Prediction>& told, bool faint = false, bool in_legend = true) {
+    ChartCurve t{name, x, {}, false, faint, in_legend}, p = t;
     for (const Prediction& k : told) t.y.push_back(k.mean.CT), p.y.push_back(k.mean.CP);
     CT.curves.push_back(t), CP.curves.push_back(p);
   }
@@ -78,6 +71,7 @@ struct Pair {  // CT and CP charts side by side
                       const std::vector<MeasuredPoint>& where, const Teller& teller) {
     const auto told = teller.tell(where);
     draw(name, x, told);
+    note_validity(name, x, where, teller.prop.blade);
     if (teller.least_drag != nullptr) {
       draw(name + ", least drag", x, Teller::by(teller.least_drag, where), true);
       draw(name + ", most drag", x, Teller::by(teller.most_drag, where), true);
@@ -88,7 +82,26 @@ struct Pair {  // CT and CP charts side by side
       for (Prediction& k : edge) {
         k.mean.CT += side * k.deviation.CT, k.mean.CP += side * k.deviation.CP;
       }
-      draw(name + (side < 0 ? ", 90 % band, lower" : ", 90 % band, upper"), x, edge, true);
+      draw(name + (side < 0 ? ", 90 % band, lower" : ", 90 % band, upper"), x, edge, true,
+           side > 0);
+    }
+  }
+  // By the flying rotor, whose sections they are.
+  void note_validity(const std::string& name, const std::vector<double>& x,
+                     const std::vector<MeasuredPoint>& where,
+                     const std::shared_ptr<const plant::Blade>& blade) {
+    const plant::Rotor rotor(blade, 1);
+    ValidityTally tally;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      plant::RotorConditions c;
+      c.omega_radps = where[i].omega_radps;
+      c.v_AP_P_mps.z() = -where[i].advance_ratio * c.omega_radps / (2.0 * std::numbers::pi) * 2.0 *
+                         radius_m(*blade);
+      tally.add(x[i], rotor.steady(c).validity);
+    }
+    if (tally.note().empty()) return;
+    for (Chart* chart : {&CT, &CP}) {
+      chart->note += (chart->note.empty() ? "" : "; ") + name + ": " + tally.note();
     }
   }
   void mark(const std::string& name, const std::vector<double>& x,
@@ -107,6 +120,33 @@ void report(Chart& chart, const std::string& what, double value) {
   chart.figures.push_back({what, value, std::numeric_limits<double>::infinity(), "%", true});
 }
 
+struct Tallies {
+  BandTally CT, CP;
+
+  void add(const Prediction& told, const MeasuredPoint& p) {
+    CT.add(told.mean.CT, p.CT, plant::kNine_in_ten * told.deviation.CT);
+    CP.add(told.mean.CP, p.CP, plant::kNine_in_ten * told.deviation.CP);
+  }
+  // "mine, at rest: CT, WMAPE"; nothing where nothing was judged.
+  void report_as(const std::string& whose, Pair& pair) const {
+    if (CT.n == 0) return;
+    report(pair.CT, whose + ": CT, WMAPE", CT.wmape_percent());
+    report(pair.CT, whose + ": CT, mean error", CT.mean_percent());
+    report(pair.CP, whose + ": CP, WMAPE", CP.wmape_percent());
+    report(pair.CP, whose + ": CP, mean error", CP.mean_percent());
+  }
+  ForwardJudged judged() const {
+    const double n = std::max(CT.n, 1);
+    return {CT.wmape_percent(),
+            CP.wmape_percent(),
+            CT.mean_percent(),
+            CP.mean_percent(),
+            100.0 * CT.inside / n,
+            100.0 * CP.inside / n,
+            CT.n};
+  }
+};
+
 double zero_thrust_J(const Teller& teller, double omega) {
   for (double J = 0.2; J < 2.0; J += 0.02) {
     if (teller.tell({{omega, J, 0, 0}}).front().mean.CT < 0.0) return J;
@@ -114,20 +154,26 @@ double zero_thrust_J(const Teller& teller, double omega) {
   return 2.0;
 }
 
-void add_over_J(const Teller& teller, const std::vector<MeasuredFile>& measured, double speed_radps,
-                ForwardSweep& sweep) {
+void curve_over_J(const Teller& teller, double omega, Pair& pair) {
+  const double end = zero_thrust_J(teller, omega);
+  std::vector<double> x;
+  std::vector<MeasuredPoint> where;
+  for (int i = 0; i <= 24; ++i) {
+    x.push_back(end * i / 24.0);
+    where.push_back({omega, x.back(), 0, 0});
+  }
+  pair.draw_with_band(rpm_text(omega), x, where, teller);
+}
+
+void add_over_J(const Teller& teller, const std::vector<MeasuredFile>& measured,
+                const Options& options, ForwardSweep& sweep) {
   Pair pair("In flight, over J = V/(n D)", "advance ratio J");
-  BandTally T, P;
+  std::set<std::string> drawn;
   const auto curve = [&](double omega) {
-    const double end = zero_thrust_J(teller, omega);
-    std::vector<double> x;
-    std::vector<MeasuredPoint> where;
-    for (int i = 0; i <= 24; ++i) {
-      x.push_back(end * i / 24.0);
-      where.push_back({omega, x.back(), 0, 0});
-    }
-    pair.draw_with_band(rpm_text(omega), x, where, teller);
+    if (drawn.insert(rpm_text(omega)).second) curve_over_J(teller, omega, pair);
   };
+  for (const double omega : options.speeds_radps) curve(omega);
+  Tallies all;
   for (const MeasuredFile& file : measured) {
     std::vector<MeasuredPoint> flying;
     for (const MeasuredPoint& p : file.points) {
@@ -137,53 +183,44 @@ void add_over_J(const Teller& teller, const std::vector<MeasuredFile>& measured,
     curve(flying.front().omega_radps);
     std::vector<double> x;
     const auto told = teller.tell(flying);
-    BandTally t, p;
+    Tallies own;
     for (std::size_t i = 0; i < flying.size(); ++i) {
       x.push_back(flying[i].advance_ratio);
       if (!(flying[i].CT > 0.0 && flying[i].CP > 0.0)) continue;
-      for (BandTally* each : {&t, &T}) {
-        each->add(told[i].mean.CT, flying[i].CT, plant::kNine_in_ten * told[i].deviation.CT);
-      }
-      for (BandTally* each : {&p, &P}) {
-        each->add(told[i].mean.CP, flying[i].CP, plant::kNine_in_ten * told[i].deviation.CP);
-      }
+      own.add(told[i], flying[i]), all.add(told[i], flying[i]);
     }
     pair.mark(file.name, x, flying);
-    report(pair.CT, file.name + ": CT, WMAPE", t.wmape_percent());
-    report(pair.CT, file.name + ": CT, mean error", t.mean_percent());
-    report(pair.CP, file.name + ": CP, WMAPE", p.wmape_percent());
-    report(pair.CP, file.name + ": CP, mean error", p.mean_percent());
+    own.report_as(file.name + ", in flight", pair);
   }
-  if (pair.CT.curves.empty()) {
-    for (const double share : {0.5, 0.75, 1.0}) curve(share * speed_radps);
+  if (drawn.empty()) {
+    const double speed = options.speed_radps > 0.0 ? options.speed_radps : options.top_speed_radps;
+    for (const double share : {0.5, 0.75, 1.0}) curve(share * speed);
   }
-  sweep.flight = judged(T, P);
-  if (T.n > 0) {
-    report(pair.CT, "all in flight: CT, WMAPE", sweep.flight.CT_percent);
-    report(pair.CP, "all in flight: CP, WMAPE", sweep.flight.CP_percent);
-  }
+  sweep.flight = all.judged();
+  all.report_as("all in flight", pair);
   sweep.charts.insert(sweep.charts.end(), {pair.CT, pair.CP});
 }
 
 void add_over_speed(const Teller& teller, const std::vector<MeasuredFile>& measured,
-                    double top_radps, ForwardSweep& sweep) {
+                    const Options& options, ForwardSweep& sweep) {
+  double top = options.speed_radps > 0.0 ? options.speed_radps : options.top_speed_radps;
+  for (const double omega : options.speeds_radps) top = std::max(top, omega);
+  for (const MeasuredFile& file : measured) {
+    for (const MeasuredPoint& p : file.points) top = std::max(top, p.omega_radps);
+  }
   Pair pair("Over speed, at chosen J", "speed / rpm");
-  for (const double J : {0.0, 0.2, 0.4}) {
+  for (const double J : options.advance_ratios) {
     std::vector<double> x;
     std::vector<MeasuredPoint> where;
     for (int i = 4; i <= 20; ++i) {
-      where.push_back({top_radps * i / 20.0, J, 0, 0});
+      where.push_back({top * i / 20.0, J, 0, 0});
       x.push_back(rpm_of(where.back().omega_radps));
     }
-    char name[16];
-    std::snprintf(name, sizeof name, "J = %.1f", J);
-    if (J == 0.0) {
-      pair.draw_with_band(name, x, where, teller);
-    } else {
-      pair.draw(name, x, teller.tell(where));
-    }
+    char name[32];
+    std::snprintf(name, sizeof name, "J = %.3g", J);
+    pair.draw_with_band(name, x, where, teller);
   }
-  BandTally T, P;
+  Tallies all;
   for (const MeasuredFile& file : measured) {
     std::vector<MeasuredPoint> still;
     std::vector<double> x;
@@ -192,32 +229,26 @@ void add_over_speed(const Teller& teller, const std::vector<MeasuredFile>& measu
     }
     if (still.empty()) continue;
     const auto told = teller.tell(still);
+    Tallies own;
     for (std::size_t i = 0; i < still.size(); ++i) {
-      T.add(told[i].mean.CT, still[i].CT, plant::kNine_in_ten * told[i].deviation.CT);
-      P.add(told[i].mean.CP, still[i].CP, plant::kNine_in_ten * told[i].deviation.CP);
+      own.add(told[i], still[i]), all.add(told[i], still[i]);
     }
     pair.mark(file.name, x, still);
+    own.report_as(file.name + ", at rest", pair);
   }
-  sweep.at_rest = judged(T, P);
-  if (T.n > 0) {
-    report(pair.CT, "all at rest: CT, WMAPE", sweep.at_rest.CT_percent);
-    report(pair.CP, "all at rest: CP, WMAPE", sweep.at_rest.CP_percent);
-  }
+  sweep.at_rest = all.judged();
+  all.report_as("all at rest", pair);
   sweep.charts.insert(sweep.charts.end(), {pair.CT, pair.CP});
 }
 
 }  // namespace
 
 ForwardSweep forward_sweep(const SweptPropeller& propeller,
-                           const std::vector<MeasuredFile>& measured, double speed_radps) {
+                           const std::vector<MeasuredFile>& measured, const Options& options) {
   const Teller teller{propeller};
-  double top = speed_radps;
-  for (const MeasuredFile& file : measured) {
-    for (const MeasuredPoint& p : file.points) top = std::max(top, p.omega_radps);
-  }
   ForwardSweep sweep;
-  add_over_J(teller, measured, speed_radps, sweep);
-  add_over_speed(teller, measured, top, sweep);
+  add_over_J(teller, measured, options, sweep);
+  add_over_speed(teller, measured, options, sweep);
   std::vector<std::string> doubts;
   if (propeller.fit != nullptr) doubts = propeller.fit->doubts;
   if (propeller.twist != nullptr) doubts = propeller.twist->doubts;

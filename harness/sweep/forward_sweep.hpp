@@ -5,11 +5,14 @@
 //   Judged  sum of |error| over sum of |measured| (WMAPE) and the mean of the errors with their sign over the mean of the
 //           measured, per file and over all; points at J up to 0.1 as static, points that give no thrust
 //           or take no power are drawn and not judged
+//   Notes   on each chart: which points of a curve lie outside the model's stated validity; on the first, what is
+//           doubted of the file
 #pragma once
 #include <memory>
 #include <vector>
 
 #include "harness/sweep/measured.hpp"
+#include "harness/sweep/sweep.hpp"
 #include "plant/rotor/fitted_blade.hpp"
 #include "results/charts.hpp"
 
@@ -31,9 +34,10 @@ struct SweptPropeller {
   const plant::FittedBlade* fit = nullptr;     // null where the file names polars
   const plant::TwistedBlade* twist = nullptr;  // null where it does not
 };
-// Speeds: of the measured files, else speed_radps.
+// Over J at the options' speeds and those of the measured files; neither: at half, three quarters and all of the
+// options' speed, or top speed. Over speed at the options' advance ratios.
 ForwardSweep forward_sweep(const SweptPropeller& propeller,
-                           const std::vector<MeasuredFile>& measured, double speed_radps);
+                           const std::vector<MeasuredFile>& measured, const Options& options);
 
 // What was chosen and what is doubted, for the terminal and the page.
 std::vector<std::string> fit_lines(const plant::FittedBlade& fit);

@@ -3,6 +3,7 @@
 
 #include "base/rpm.hpp"
 #include "harness/sweep/sweep.hpp"
+#include "harness/sweep/validity_tally.hpp"
 #include "plant/rotor/rotor.hpp"
 
 namespace whirl::sweep {
@@ -16,7 +17,7 @@ using results::ChartCurve;
 
 struct Columns {  // what the charts of one sweep share
   std::vector<double> x, thrust_N, torque_Nm, power_W, merit, drag_N, ct, cp;
-  int doubtful = 0;  // points that the model itself flags
+  ValidityTally validity;
 
   void add(double at, const RotorConditions& c, const RotorLoads& loads, double radius_m) {
     const double n = c.omega_radps / (2.0 * std::numbers::pi), d = 2.0 * radius_m;
@@ -28,16 +29,11 @@ struct Columns {  // what the charts of one sweep share
     drag_N.push_back(-loads.f_P_N.x());
     ct.push_back(loads.thrust_N / (c.density_kgpm3 * n * n * std::pow(d, 4)));
     cp.push_back(loads.shaft_power_W / (c.density_kgpm3 * n * n * n * std::pow(d, 5)));
-    doubtful += loads.validity.ok() ? 0 : 1;
-  }
-  std::string note() const {
-    if (doubtful == 0) return "";
-    return std::to_string(doubtful) + " of " + std::to_string(x.size()) +
-           " points lie outside the model's stated validity (vortex ring, stall or advance ratio).";
+    validity.add(at, loads.validity);
   }
   Chart chart(const std::string& group, const std::string& title, const std::string& x_label,
               const std::string& y_label, const std::vector<double>& y) const {
-    return {group, title, x_label, y_label, "", note(), {{"model", x, y, false}}, {}};
+    return {group, title, x_label, y_label, "", validity.note(), {{"model", x, y, false}}, {}};
   }
 };
 
@@ -73,7 +69,7 @@ void add_inflow(std::vector<Chart>& charts, const Rotor& rotor, double omega_rad
               "CP",
               "CT",
               "",
-              columns.note(),
+              columns.validity.note(),
               {{"inflow -2 to 6 m/s", columns.cp, columns.ct, false}},
               {}};
   charts.push_back(plane);

@@ -30,6 +30,9 @@ struct Options {
   double speed_radps = 0.0;  // of the sweeps over inflow and advance; 0: three quarters of the top
   double top_speed_radps = 628;  // 6000 rpm
   double bus_V = 0.0;            // 0: the full pack
+  // Of a propeller along its shaft (forward_sweep.hpp). Empty: the measured files' speeds, or three of the top.
+  std::vector<double> speeds_radps;
+  std::vector<double> advance_ratios = {0.0, 0.2, 0.4};
 };
 
 std::vector<results::Chart> propeller_sweep(const std::shared_ptr<const plant::Blade>& blade,

@@ -109,6 +109,19 @@ TEST(RunJson, DoubtsAreToldThereAndOnThePageAndNoVerdictFollowsFromThem) {
   EXPECT_NE(page_html(r, Curves{}).find(r.doubts[0]), std::string::npos);
 }
 
+TEST(ChartsCsv, CurvesAndFiguresWithNotesAreRowsWhoseFieldsStayWhole) {
+  Chart chart{"g;1", "t", "x", "y", "", "5 \"points\"", {}, {}};
+  chart.curves.push_back({"a", {1.0, 2.0}, {0.5, 0.25}});
+  chart.figures.push_back({"mine: CT, WMAPE", 3.5, std::numeric_limits<double>::infinity(), "%"});
+  chart.figures.push_back({"speed", 1.0, 3.0, "%"});
+  EXPECT_EQ(
+      curves_csv({chart}),
+      "group;chart;curve;x_label;x;y_label;y\n\"g;1\";t;a;x;1;y;0.5\n\"g;1\";t;a;x;2;y;0.25\n");
+  EXPECT_EQ(figures_csv({chart}),
+            "group;chart;figure;value;unit;limit;note\n\"g;1\";t;mine: CT, WMAPE;3.5;%;;\n"
+            "\"g;1\";t;speed;1;%;3;\n\"g;1\";t;;;;;\"5 \"\"points\"\"\"\n");
+}
+
 // All bytes, as firmware may send them through t:ask: every file stays well-formed and keeps them
 // apart.
 TEST(Results, AnyBytesGiveWellFormedFiles) {
