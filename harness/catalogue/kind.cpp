@@ -11,6 +11,13 @@ Result<std::string> read_kind(const std::string& path) {
 }
 
 Error no_part(const std::string& path) {
+  const auto kind = read_kind(path);
+  if (kind && kind.value() == "battery") {
+    return {
+        ErrorKind::bad_input, path, "is a battery: it has no steady curve to sweep",
+        "sweep a vehicle whose battery = { file = ... } names it: hover's current and time; whirl "
+        "validate without a file: measured discharges"};
+  }
   return {ErrorKind::bad_input, path, "is no propeller, motor, stand or vehicle",
           R"(kind = "propeller", "motor", "calibration" (a stand) or "vehicle")"};
 }

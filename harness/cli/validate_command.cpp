@@ -3,10 +3,12 @@
 
 #include "base/output_file.hpp"
 #include "base/whole_file.hpp"
+#include "harness/catalogue/battery_file.hpp"
 #include "harness/catalogue/propeller_file.hpp"
 #include "harness/cli/console.hpp"
 #include "harness/cli/find_plans.hpp"
 #include "harness/cli/page_command.hpp"
+#include "plant/validation/discharge_proof.hpp"
 #include "plant/validation/left_out.hpp"
 #include "plant/validation/rotor_proofs.hpp"
 #include "plant/validation/validation.hpp"
@@ -52,6 +54,12 @@ int validate_command(const Composition& composition) {
   if (!readable) return complain(readable.error());
   add(charts, "Motor", plant::motor_proofs(blade.value()));
   add(charts, "Battery", plant::battery_proofs(blade.value()));
+  const auto pack = catalogue::read_battery_file(root + "/test_plans/batteries/lco_4s_2340.lua");
+  if (!pack) return complain(pack.error());
+  constexpr int kCells = 4;
+  add(charts, "Battery",
+      {plant::discharge_proof(pack.value(), kCells, read("batteries/enertech_spb655060.txt"))});
+  if (!readable) return complain(readable.error());
   add(charts, "Airframe", plant::airframe_proofs());
   add(charts, "Free flight", plant::flight_proofs(blade.value()));
   add(charts, "Sensors", plant::sensor_proofs());

@@ -7,7 +7,7 @@
 //           stay those of an empty pack
 //   Error   relaxation, charge and energy against closed form (tests/battery_test.cpp); a pouch cell's
 //           discharges, fitted up to 1 C, at 2 C [Enertech]: 21 mV rms, 37 mV at worst of each cell
-//           (harness/catalogue/tests/battery_file_test.cpp)
+//           (plant/validation/discharge_proof.hpp)
 //   Left out warming by its own current (that is what is missing at 2 C: the cell is better than
 //           told), hysteresis, ageing, cells that differ
 #pragma once

@@ -1,6 +1,6 @@
 -- Four lithium polymer cells (LiCoO2 and graphite in a pouch, 2.28 Ah by name) as measured: discharges at 0.1, 0.5, 1 and 2 times the capacity an hour, about 25 degC, down to
 -- 3.0 V [Enertech]. Fitted to the first three (rms 6, 3 and 2 mV of each cell); the last one, kept aside, comes
--- out within 21 mV rms, 37 mV at worst (harness/catalogue/tests/battery_file_test.cpp). Nothing was measured at other temperatures.
+-- out within 21 mV rms, 37 mV at worst (plant/data/batteries/enertech_spb655060.txt, judged by `whirl validate`). Nothing was measured at other temperatures.
 return {
   kind = "battery",
   name = "LiCoO2 pouch, 4S 2340 mAh",

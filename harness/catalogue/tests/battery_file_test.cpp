@@ -2,16 +2,14 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
 #include <fstream>
-#include <functional>
-#include <span>
 
 #include "base/near.hpp"
 #include "base/scratch_folder.hpp"
+#include "base/whole_file.hpp"
 #include "harness/catalogue/feed.hpp"
 #include "plant/battery/battery.hpp"
+#include "plant/validation/discharge_proof.hpp"
 
 namespace whirl::catalogue {
 namespace {
@@ -19,49 +17,40 @@ namespace {
 const std::string kShipped =
     std::string(WHIRL_SOURCE_FOLDER) + "/test_plans/batteries/lco_4s_2340.lua";
 
-struct Sample {
-  double time_s, cell_V;
-};
+plant::Proof discharges(const plant::BatteryParams& pack) {
+  const auto rows = read_whole_file(std::string(WHIRL_SOURCE_FOLDER) +
+                                    "/plant/data/batteries/enertech_spb655060.txt");
+  EXPECT_TRUE(rows.ok());
+  return plant::discharge_proof(pack, 4, rows.ok() ? rows.value() : "");
+}
 
-// Typed from [Enertech]: terminal voltage of one cell under a constant current, from a full cell at rest.
-constexpr Sample kOneC[] = {{60, 4.0489},   {360, 3.9442},  {900, 3.8070},  {1500, 3.6956},
-                            {2100, 3.6202}, {2880, 3.5401}, {3240, 3.4582}, {3480, 3.3024}};
-constexpr Sample kTwoC[] = {
-    {5, 4.0104},    {10, 3.9957},   {30, 3.9564},   {60, 3.9176},   {120, 3.8658},  {180, 3.8263},
-    {270, 3.7746},  {360, 3.7275},  {450, 3.6837},  {540, 3.6452},  {630, 3.6094},  {720, 3.5773},
-    {810, 3.5489},  {900, 3.5235},  {1020, 3.4934}, {1140, 3.4642}, {1230, 3.4415}, {1320, 3.4167},
-    {1410, 3.3881}, {1500, 3.3526}, {1590, 3.3045}, {1650, 3.2582}, {1710, 3.1809}, {1740, 3.1099}};
-
-struct Misfit {
-  double rms_V = 0.0, worst_V = 0.0;
-};
-
-Misfit discharge(double current_A, std::span<const Sample> measured) {
+TEST(BatteryFile, TheShippedPackDischargesAsTheCellItWasFittedToAndAsWasKeptAside) {
   const auto params = read_battery_file(kShipped);
-  EXPECT_TRUE(params.ok()) << (params.ok() ? "" : params.error().message());
-  plant::Battery pack(params.value());
-  Misfit m;
-  double time_s = 0.0, squares = 0.0;
-  for (const Sample& s : measured) {
-    for (; time_s < s.time_s; time_s += 0.5) pack.draw(current_A * 0.5, 0.5);
-    const double cell_V = (pack.source_V() - pack.series_resistance_ohm() * current_A) / 4.0;
-    squares += (cell_V - s.cell_V) * (cell_V - s.cell_V);
-    m.worst_V = std::max(m.worst_V, std::abs(cell_V - s.cell_V));
+  ASSERT_TRUE(params.ok()) << params.error().message();
+  const auto proof = discharges(params.value());
+  ASSERT_EQ(proof.figures.size(), 8u);
+  for (const plant::Figure& f : proof.figures) {
+    EXPECT_TRUE(f.within()) << f.name << ": " << f.measured << " " << f.unit;
+    EXPECT_GT(f.measured, 0.1) << f.name;  // a model that is that good was given the answer
   }
-  m.rms_V = std::sqrt(squares / static_cast<double>(measured.size()));
-  return m;
 }
 
-TEST(BatteryFile, TheShippedPackDischargesAsTheCellItWasFittedTo) {
-  EXPECT_LE(discharge(2.28, kOneC).rms_V, 0.005);  // three times its scatter over the fit
-}
-
-// Twice the current of anything that the fit saw. The measured cell warms, which this one does not: it may
-// lie below the measurement, by what 10 K do to a fifth of its drop.
-TEST(BatteryFile, TheShippedPackPredictsTheDischargeThatWasKeptAside) {
-  const Misfit m = discharge(4.56, kTwoC);
-  EXPECT_LE(m.rms_V, 0.030);
-  EXPECT_LE(m.worst_V, 0.050);
+// As cells are that were bought with a resistance of half as much again, or a seventh less charge.
+TEST(BatteryFile, APackThatIsNotThatCellDoesNotDischargeLikeIt) {
+  const auto beyond = [](const plant::BatteryParams& pack) {
+    int count = 0;
+    for (const plant::Figure& f : discharges(pack).figures) count += f.within() ? 0 : 1;
+    return count;
+  };
+  const auto params = read_battery_file(kShipped);
+  ASSERT_TRUE(params.ok());
+  plant::BatteryParams worn = params.value();
+  worn.series_resistance_ohm *= 1.5;
+  EXPECT_GE(beyond(worn), 3);
+  worn = params.value();
+  worn.capacity_C *= 0.85;
+  EXPECT_GE(beyond(worn), 4);
+  EXPECT_FALSE(plant::discharge_proof(params.value(), 4, "").figures[0].within());  // no rows
 }
 
 constexpr const char* kSmall = R"(return { kind = "battery", name = "b", cells = 3, parallel = 2,
