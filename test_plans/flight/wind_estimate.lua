@@ -10,7 +10,7 @@ local function names_of(signal)
 end
 
 -- Blades bend up by lift's moment over the root's stiffness and the mass's (1.1 N at 0.6 to 0.8 of 12.7 cm over 64 N m/rad), and
--- the discs tilt away from a wind from behind, each by some 25 urad for each m/s (harness/flight/tests/flight_world_test.cpp).
+-- the discs tilt away from a wind from behind, 0.07 mrad for each m/s as flown; asked is the sense, and a tenth of it (harness/flight/tests/flight_world_test.cpp).
 local function judge_discs(t, record)
   for motor, cone in ipairs(names_of "flapping_cone") do
     t:expect(record:mean(cone), "cone of motor " .. motor):within("0.0011 rad", "0.0025 rad")

@@ -1,4 +1,5 @@
 // A blade whose section is fitted: the fast solver against the rotor, what a fit finds and what it doubts.
+#include <Eigen/Cholesky>
 #include <fstream>
 #include <random>
 #include <sstream>
