@@ -217,6 +217,8 @@ Result<bench::BenchDescription> bench_for(const plan::Plan& plan, const std::vec
   if (!file) return file.error();
   auto bench = read_bench(shown_path(file.value()));
   if (!bench) return bench.error();
+  bench.value().late_ns = plan.late_ns.value_or(bench.value().late_ns);
+  bench.value().late_share = plan.late_share.value_or(bench.value().late_share);
   if (const auto read = read_pods(bench.value(), root); !read) return read.error();
   const BoardDescription& board = nodes.front().board;
   if (bench.value().board != board.name) {

@@ -24,6 +24,7 @@ Result<bench::BenchDescription> bench_named(const std::string& name, const char*
 // Errors  bad_input: a capture beside what is not the one run that it is of
 Result<Done> check_copper_options(const RunOptions& options);
 
+// How late its host may be is what the plan says, where it says it.
 // Errors  bad_input: no such bench, another board than the plan's, a bus that the plan uses and nothing joins,
 //         MAVLink where the board has no radio, the phrase was not said; several boards, a vehicle; what check_bench_options() refuses
 Result<bench::BenchDescription> bench_for(const plan::Plan& plan, const std::vector<Node>& nodes,

@@ -13,7 +13,7 @@ void report_pace(const HeldPace* held, double t_s, results::Report& report) {
   char text[240];
   std::snprintf(text, sizeof text,
                 "%lld of %zu steps (%.3g %%) later than %lld us, %.3f s given up, at %g x real "
-                "time; the bench allows %g %%, and nothing to be given up",
+                "time; allowed are %g %%, and nothing to be given up",
                 static_cast<long long>(held->late_steps), held->lateness_s.size(), share * 100.0,
                 static_cast<long long>(held->late_ns / 1000),
                 static_cast<double>(held->slipped_ns) * 1e-9, held->pace, held->late_share * 100.0);

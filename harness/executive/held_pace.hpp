@@ -5,8 +5,8 @@
 
 namespace whirl {
 
-// Adds the lateness of each step as a histogram and a line of the log. A host that was late beyond what the
-// bench allows takes the run's verdict away (Report::untimely). held: null, or of a run that may have no step.
+// Adds the lateness of each step as a histogram and a line of the log. A host that was late beyond what
+// plan or bench allow takes the run's verdict away (Report::untimely). held: null, or of a run that may have no step.
 void report_pace(const HeldPace* held, double t_s, results::Report& report);
 
 }  // namespace whirl

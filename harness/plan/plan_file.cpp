@@ -182,6 +182,10 @@ Result<Plan> read_plan(const lua::Table& t, std::string name, const std::string&
   plan.seed = static_cast<std::uint64_t>(t.integer_or("seed", 1, 0));
   plan.timeout_ns = t.duration_ns_or("timeout", kDefaultTimeout_ns);
   if (plan.timeout_ns == 0) t.refuse("timeout", "is 0: no plan could end before it");
+  if (t.has("late")) plan.late_ns = t.duration_ns("late");
+  if (t.has("late_share")) {
+    plan.late_share = t.quantity("late_share", Dimension::ratio, lua::between(0.0, 1.0));
+  }
   // What stand and surroundings are made of is read (and their unknown keys refused) by who makes them.
   std::vector<std::string> elsewhere{"stand"};
   for (const std::string& key : kSurroundings) {

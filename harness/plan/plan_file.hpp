@@ -2,7 +2,7 @@
 //
 //   plan "hover" { image = "flight", board = "px4fmu_v1", vehicle = "hp_quad", tags = { "quick" },
 //                  seed = 1, timeout = "60 s", watch = { "fw::imu_task" },
-//                  may_reset = false,
+//                  may_reset = false, late = "200 us", late_share = "1 %",
 //                  run = function(t) ... end }
 //   Nodes    instead of image, board, watch and may_reset: nodes = { { name = "esc", image = "esc", board = "esc32v2",
 //            watch = { ... } }, ... }; the vehicle or stand surrounds the first. wires = { { from = "esc.usart1",
@@ -12,6 +12,8 @@
 //            { from = "fc.battery", to = "pod.dac1", latency = "100 us" } at an analog pin;
 //            { from = "flight.esc1", to = "esc.can1" } on CAN, and { from = "a.can1", to = "b.can1" } joins two CANs
 //            A node's flash = { "esc_motor_1" } names ELF files that are flashed beside its image
+//   Late     on a bench, of the host: a step later than `late` counts, and more than `late_share` of them make the run
+//            inconclusive. What is not said is the bench's own; a virtual board is never late
 //   Stand    instead of vehicle: stand = { prop = "hk_10x4.5", battery = "4s_2200" }
 //   Around   of a vehicle: start, room, outdoors, fence, obstacles, field, air, load, read by who makes the world
 //   Limits   tags and names are checked; a plan without run, image or name is refused with its line
@@ -68,6 +70,8 @@ struct Plan {
   std::vector<SourceCall> words;  // all names and texts in it
   std::uint64_t seed = 1;
   std::int64_t timeout_ns = 0;
+  std::optional<std::int64_t> late_ns = {};
+  std::optional<double> late_share = {};
   std::optional<lua::Table> stand;
   std::optional<lua::Table> surroundings;  // of a vehicle: the plan's whole table
   int run_ref = 0;                         // in the file's Lua registry

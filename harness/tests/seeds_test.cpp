@@ -1,6 +1,7 @@
 // whirl run --seeds: each plan on each seed, and the spread of what it measured.
 #include <gtest/gtest.h>
 
+#include "harness/cli/composition.hpp"
 #include "harness/cli/seeds.hpp"
 #include "harness/tests/fake.hpp"
 #include "harness/tests/plans.hpp"
@@ -154,6 +155,51 @@ TEST(Target, WhatNoBenchCanRunIsSaidBeforeAnythingTurns) {
   with_pod(R"(pod = "pod", path = "/dev/ttyUSB0")");
   refused({"--target", "bench/b"}, "nothing plays ");  // the radio, whatever else
   refused({"--arm", "clear"}, "--target");
+}
+
+// Of a bench's run: how late its host may be.
+TEST(Target, HowLateABenchMayBeThePlanSaysOrElseTheBench) {
+  const FakeRoot root;
+  root.write("test_plans/boards/pod.lua",
+             R"(return { board = "pod", mcu = "stm32f405rg", hse = "8 MHz",
+    devices = { { name = "host", type = "pod_parts" } } })");
+  root.write("test_plans/benches/b.lua",
+             R"(return { bench = "b", board = "fake", late = "1 ms", late_share = "3 %",
+    links = { { name = "pod", pod = "pod", path = "/dev/none" },
+              { name = "radio", bus = "usart2", path = "/dev/none/2" } },
+    safety = { phrase = "clear", longest = "9 s" } })");
+  const auto asked = [&](const std::string& keys) {
+    std::pair<std::int64_t, double> seen{-1, -1.0};
+    cli::Composition composition = fake_composition(root.path());
+    composition.target = [&, inner = composition.target](const cli::Setup& setup) {
+      if (setup.bench != nullptr) seen = {setup.bench->late_ns, setup.bench->late_share};
+      return inner(setup);
+    };
+    root.write("p.lua", plan_text("t:wait \"10 ms\" t:expect(t:value \"thrust\"):at_least(0)",
+                                  "flight", keys));
+    std::vector<std::string> words{"whirl", "run",  root.path() + "/p.lua", "--target", "bench/b",
+                                   "--arm", "clear"};
+    std::vector<char*> argv;
+    for (std::string& word : words) argv.push_back(word.data());
+    EXPECT_EQ(cli::run_program(static_cast<int>(argv.size()), argv.data(), composition), 0) << keys;
+    return seen;
+  };
+  using Seen = std::pair<std::int64_t, double>;
+  EXPECT_EQ(asked(""), Seen(1'000'000, 0.03));
+  EXPECT_EQ(asked("late = \"200 us\","), Seen(200'000, 0.03));
+  EXPECT_EQ(asked("late_share = \"0.5 %\","), Seen(1'000'000, 0.005));
+  EXPECT_EQ(asked("late = \"2 ms\", late_share = \"0 %\","), Seen(2'000'000, 0.0));
+}
+
+TEST(Target, HowLateIsATimeAndAShare) {
+  const auto refused = [](const std::string& keys, const std::string& words) {
+    const Outcome outcome = run_plan(plan_text("t:wait \"10 ms\"", "flight", keys)).outcome;
+    EXPECT_EQ(outcome.code, 2) << keys;
+    EXPECT_NE((outcome.out + outcome.err).find(words), std::string::npos) << outcome.err;
+  };
+  refused("late = \"2 %\",", "late");
+  refused("late_share = \"120 %\",", "late_share");
+  refused("late_share = \"1 ms\",", "late_share");
 }
 
 }  // namespace
