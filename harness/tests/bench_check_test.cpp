@@ -13,8 +13,10 @@
 #include <atomic>
 #include <cerrno>
 #include <cstddef>
+#include <cstdio>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <thread>
 
 #include "base/output_file.hpp"
@@ -224,6 +226,40 @@ TEST_F(BenchCheck, WhatCannotBeKnownIsSaidAndIsNotMissing) {
   EXPECT_TRUE(checked.says("cannot be known before a run")) << checked.text;
   EXPECT_TRUE(checked.says("SBUS by an adapter at 100000 baud 8E2, and its inverter"));
   EXPECT_TRUE(checked.says("a GPS's line while its rate changes"));
+}
+
+// The files that the guide's first hours begin with: each is read, its links are visited, and its plan asks for nothing but the word.
+TEST(Benches, EachOfTheGuidesIsReadAndFitsItsPlan) {
+  const auto said = [](const std::string& words) {
+    std::FILE* pipe = popen((std::string(WHIRL_PROGRAM) + " " + words + " 2>&1").c_str(), "r");
+    std::string text;
+    char piece[4096];
+    for (std::size_t n; (n = std::fread(piece, 1, sizeof piece, pipe)) > 0;) text.append(piece, n);
+    const int status = pclose(pipe);
+    EXPECT_EQ(WIFEXITED(status) ? WEXITSTATUS(status) : -1, 2) << text;  // nothing is there
+    return text;
+  };
+  const std::map<std::string, std::string> plans{{"esc_stand", "bench/rise.lua"},
+                                                 {"esc_on_can", "bench/rise_can.lua"},
+                                                 {"flight_on_can", "flight/bench_hover.lua"},
+                                                 {"flight_with_pod", "flight/bench_hover_pod.lua"}};
+  const std::string root = WHIRL_ROOT;
+  std::size_t files = 0;
+  for (const auto& file : std::filesystem::directory_iterator(root + "/test_plans/benches")) {
+    const std::string name = file.path().stem();
+    ++files;
+    const auto plan = plans.find(name);
+    ASSERT_NE(plan, plans.end()) << name << ": which plan is it for?";
+    const std::string checked = said("bench check " + name + " --seconds 0.1");
+    EXPECT_NE(checked.find(name + ".lua: " + name + " on "), std::string::npos) << checked;
+    EXPECT_NE(checked.find("MISSING: "), std::string::npos) << checked;
+    EXPECT_NE(checked.find("nobody has proven without hardware"), std::string::npos) << checked;
+    const ScratchFolder out;
+    const std::string refused = said("run " + root + "/test_plans/" + plan->second +
+                                     " --target bench/" + name + " --out " + out.path());
+    EXPECT_NE(refused.find("nobody has said that all is clear"), std::string::npos) << refused;
+  }
+  EXPECT_EQ(files, plans.size());
 }
 
 }  // namespace
