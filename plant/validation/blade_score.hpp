@@ -27,7 +27,8 @@ struct Score {  // in percent; shares of 1
   bool refused = false;
   double slope_CP = kUnjudged,
          low_slope_CP = kUnjudged;  // errors, in percent; where nothing tells a slope: none
-  double surprise = 0;  // of its static rows, the larger of thrust's and power's; standard deviations
+  double surprise =
+      0;  // of its static rows, the larger of thrust's and power's; standard deviations
 };
 
 Score score(const AxialBlade& blade, const TraitBelief& belief,
