@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <vector>
 
 #include "base/near.hpp"
@@ -46,10 +47,10 @@ std::vector<double> starts_s(const std::string& lines) {
   return found;
 }
 
-// From the set-point's STOP to 90 % of its thrust, of three starts: each from where the rotor came to
-// rest, which decides how far the alignment turns it.
+// From the set-point's STOP to 90 % of its thrust, of six starts: each from where the rotor came to
+// rest, which decides how far the alignment turns it, and that is a draw: twelve starts of two images took 317 to 358 ms.
 std::vector<double> starts_of_the_image_s() {
-  return starts_s(R"(for n = 1, 3 do
+  return starts_s(R"(for n = 1, 6 do
     t:expect(t:value "speed", "at rest"):equal "0 rad/s"
     local start = t:record("thrust", "1.5 s", function() t:command { thrust = "2 N" } end)
     t:expect(start:response_time(), "start"):at_most "1.5 s"
@@ -136,13 +137,15 @@ double start_of_the_native_esc_s(double backward_radps = 0.0) {
   return static_cast<double>(t_ns - world.command_on_wire_ns()) * 1e-9;
 }
 
-// A master writes set-points every 20 ms and cannot know its ESC better than that.
+// A master writes set-points every 20 ms and cannot know its ESC better than that, in the mean.
 TEST(NativeStart, TakesAsLongAsTheImagesOnTheStand) {
   const std::vector<double> image_s = starts_of_the_image_s();
-  ASSERT_EQ(image_s.size(), 3u);
+  ASSERT_EQ(image_s.size(), 6u);
   const double native_s = start_of_the_native_esc_s();
+  const double mean_s = std::accumulate(image_s.begin(), image_s.end(), 0.0) / 6.0;
+  EXPECT_TRUE(near(native_s, mean_s, stated(0.020, "one period of the set-points")));
   for (const double one_s : image_s) {
-    EXPECT_TRUE(near(native_s, one_s, stated(0.020, "one period of the set-points")));
+    EXPECT_TRUE(near(native_s, one_s, stated(0.050, "a period, and where the rotor rested")));
   }
 }
 
