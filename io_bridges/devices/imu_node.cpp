@@ -1,6 +1,7 @@
 #include "io_bridges/devices/imu_node.hpp"
 
 #include "io_bridges/protocols/dronecan/imu_samples.hpp"
+#include "io_bridges/protocols/dronecan/sensors.hpp"
 
 namespace whirl::io {
 namespace {
@@ -74,11 +75,39 @@ void ImuNode::read_burst() {
   }
   acceleration_mps2 = setup_.to_body(acceleration_mps2);
   rate_radps = setup_.to_body(rate_radps);
-  if (setup_.full_width) {
-    publish<dronecan::Imu16>(acceleration_mps2, rate_radps);
-  } else {
-    publish<dronecan::Imu14>(acceleration_mps2, rate_radps);
+  switch (setup_.form) {
+    case Setup::Form::imu14:
+      return publish<dronecan::Imu14>(acceleration_mps2, rate_radps);
+    case Setup::Form::imu16:
+      return publish<dronecan::Imu16>(acceleration_mps2, rate_radps);
+    case Setup::Form::raw:
+      return add_raw(acceleration_mps2, rate_radps);
   }
+}
+
+void ImuNode::add_raw(const Triple& acceleration_mps2, const Triple& rate_radps) {
+  if (added_ns_ >= 0) {
+    const double dt_s = static_cast<double>(ready_ns_ - added_ns_) * 1e-9;
+    integrated_ns_ += ready_ns_ - added_ns_;
+    for (std::size_t i = 0; i < 3; ++i) {
+      velocity_mps_[i] += acceleration_mps2[i] * dt_s;
+      angle_rad_[i] += rate_radps[i] * dt_s;
+    }
+  }
+  added_ns_ = ready_ns_;
+  if (++added_ < setup_.every) return;
+  dronecan::RawImu message;
+  message.integration_interval_s = static_cast<float>(static_cast<double>(integrated_ns_) * 1e-9);
+  for (std::size_t i = 0; i < 3; ++i) {
+    message.rate_radps[i] = static_cast<float>(rate_radps[i]);
+    message.rate_integral_rad[i] = static_cast<float>(angle_rad_[i]);
+    message.acceleration_mps2[i] = static_cast<float>(acceleration_mps2[i]);
+    message.acceleration_integral_mps[i] = static_cast<float>(velocity_mps_[i]);
+  }
+  node_.send(message, kImuNode_urgent);
+  added_ = 0;
+  integrated_ns_ = 0;
+  velocity_mps_ = angle_rad_ = {};
 }
 
 template <typename Message>

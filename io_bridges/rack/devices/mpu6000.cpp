@@ -1,5 +1,7 @@
 // InvenSense MPU-6000 on SPI, or in a DroneCAN node: the part register by register (io_bridges/devices),
 // what it senses by the plant's IMU, soldered as the board file's `axes` say.
+#include <cmath>
+
 #include "io_bridges/devices/imu_node.hpp"
 #include "io_bridges/rack/devices/can_node_keys.hpp"
 #include "io_bridges/rack/devices/imu_keys.hpp"
@@ -45,6 +47,17 @@ class Mpu6000Device final : public RackDevice {
 };
 
 constexpr int kImuNode = 50;
+constexpr double kImuNode_samples_Hz = 1000.0, kImuNode_mostRaw_Hz = 250.0;
+
+io::ImuNode::Setup::Form form_of(const std::string& message) {
+  using Form = io::ImuNode::Setup::Form;
+  return message == "raw" ? Form::raw : message == "imu16" ? Form::imu16 : Form::imu14;
+}
+
+// Never more often than asked.
+int samples_of_a_message(double rate_Hz) {
+  return static_cast<int>(std::ceil(kImuNode_samples_Hz / rate_Hz));
+}
 
 class ImuNodeDevice final : public RackDevice {
  public:
@@ -55,7 +68,8 @@ class ImuNodeDevice final : public RackDevice {
             slot.rack().events(), slot.can(),
             {.node = can_node_of(slot, "org.whirlstand.imu", kImuNode),
              .part = imu_params(slot),
-             .full_width = slot.text("params.message") == "imu16",
+             .form = form_of(slot.text("params.message")),
+             .every = samples_of_a_message(slot.quantity("params.raw_rate")),
              .to_body = [this](const auto& in_part) { return turned_back(mounting_, in_part); },
              .on_ready =
                  [&happened = slot.rack().happened(), number = slot.number()](Nanoseconds now) {
@@ -99,8 +113,13 @@ DeviceType mpu6000_type() {
 
 DeviceType mpu6000_dronecan_type() {
   std::vector<DeviceKey> keys = can_node_keys("50");
-  keys.push_back(word_key("params.message", "imu14 or imu16", "of two frames or of three")
+  keys.push_back(word_key("params.message", "imu14 or imu16 or raw",
+                          "of two frames or of three; raw: ahrs.RawIMU, of seven")
                      .with(std::string("imu14")));
+  keys.push_back(quantity_key("params.raw_rate", Dimension::frequency, "Hz",
+                              {1.0, kImuNode_mostRaw_Hz},
+                              "of ahrs.RawIMU at most: every n-th sample of 1 kHz")
+                     .with(kImuNode_mostRaw_Hz));
   add_imu_keys(keys);
   return {"mpu6000_dronecan",
           "accelerometer and gyroscope on CAN, by DroneCAN",

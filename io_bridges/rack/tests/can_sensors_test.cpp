@@ -96,6 +96,55 @@ TEST(ImuOnCan, TellsTheBodysAxesHoweverItsPartIsSoldered) {
   expect_body_axes<Imu16>(turned);
 }
 
+// For firmware that is not ours.
+TEST(ImuOnCan, RawImuTellsTheBodysAxesAndItsIntegralsAtARateOfAtMost250Hz) {
+  BoardDevice turned{.name = "imu", .type = "mpu6000_dronecan"};
+  turned.keys["axes"] = std::vector<std::string>{"-y", "+z", "-x"};
+  turned.keys["params.message"] = std::string("raw");
+  Listener<RawImu> b(turned);
+  b.rack.send(turning());
+  b.rack.run_ms(1000);
+  b.forget();
+  b.rack.run_ms(1000);
+  ASSERT_GE(b.heard.size(), 247u);  // the part's clock is 1 % off at most
+  ASSERT_LE(b.heard.size(), 253u);
+  const double want_a[] = {1.0, -2.0, -9.8}, want_w[] = {0.5, -1.0, 2.0};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    double a = 0.0, w = 0.0, v = 0.0, angle = 0.0, time_s = 0.0;
+    for (const RawImu& imu : b.heard) {
+      EXPECT_EQ(imu.time_us, 0u);
+      a += static_cast<double>(imu.acceleration_mps2[axis]) / static_cast<double>(b.heard.size());
+      w += static_cast<double>(imu.rate_radps[axis]) / static_cast<double>(b.heard.size());
+      v += static_cast<double>(imu.acceleration_integral_mps[axis]);
+      angle += static_cast<double>(imu.rate_integral_rad[axis]);
+      time_s += static_cast<double>(imu.integration_interval_s);
+    }
+    EXPECT_TRUE(near(a, want_a[axis], stated(1.0, "zero points, 3 sigma and scale")));
+    EXPECT_TRUE(near(w, want_w[axis], stated(0.2, "zero points, 3 sigma and scale")));
+    // What the message tells twice agrees: nothing of a second is left out of its integrals, or there twice.
+    EXPECT_TRUE(near(time_s, 1.0, stated(0.005, "one message more or less")));
+    EXPECT_TRUE(near(v / time_s, a, stated(0.05, "float16 steps and noise of 188 Hz")));
+    EXPECT_TRUE(near(angle / time_s, w, stated(0.01, "float16 steps and noise of 188 Hz")));
+  }
+}
+
+TEST(ImuOnCan, RawImuComesNoOftenerThanItsKeySaysAndBeyond250HzIsRefused) {
+  BoardDevice imu{.name = "imu", .type = "mpu6000_dronecan"};
+  imu.keys["params.message"] = std::string("raw");
+  imu.keys["params.raw_rate"] = 150.0;
+  Listener<RawImu> b(imu);
+  b.rack.run_ms(1000);
+  b.forget();
+  b.rack.run_ms(1000);
+  EXPECT_GE(b.heard.size(), 141u);  // every seventh sample: 142.9 Hz, by a clock that is 1 % off
+  EXPECT_LE(b.heard.size(), 145u);
+  BenchRack rack;
+  imu.bus = "can1";
+  imu.keys["params.raw_rate"] = 251.0;
+  EXPECT_EQ(rack.add(imu), nullptr);
+  EXPECT_NE(rack.error.find("params.raw_rate"), std::string::npos) << rack.error;
+}
+
 TEST(ImuOnCan, StampsAreDataReadyByATenthOfAPeriodsHundredth) {
   Listener<Imu14> b({.name = "imu", .type = "mpu6000_dronecan"});
   b.rack.run_ms(300);
