@@ -24,7 +24,7 @@ std::optional<Quaternion> without_heading(float x, float y) {
   const float level = 1.0f - (x * x + y * y);
   if (!(level >= 0.0f)) return std::nullopt;
   const float q0 = std::sqrt(0.5f * (1.0f + std::sqrt(level)));
-  return Quaternion(q0, y / (2.0f * q0), -x / (2.0f * q0), 0.0f);
+  return Quaternion(q0, -y / (2.0f * q0), x / (2.0f * q0), 0.0f);
 }
 
 ThrustAndAttitude resolve(WantedForce wanted, const Quaternion& q_WB,

@@ -4,8 +4,9 @@
 //           phi the heading, chi = nu x gamma, Rd = (chi nu gamma); rates from the derivatives of
 //           Td Rd e3 (6.40, 6.42)
 //   Variant appendix E: qd3 = 0, turned from level about a level axis, its heading left to that. With x, y of
-//           gamma q0 = sqrt((1 + sqrt(1 - x^2 - y^2)) / 2), q1 = y / (2 q0), q2 = -x / (2 q0); q0 is positive,
-//           as the filters' is. Refused where x^2 + y^2 > 1
+//           gamma q0 = sqrt((1 + sqrt(1 - x^2 - y^2)) / 2), q1 = -y / (2 q0), q2 = x / (2 q0); q0 is positive,
+//           as the filters' is. E.1 is written with the conjugate of the quaternion here (R e3 has 2 q0 q2 in
+//           x), so the signs of q1 and q2 are the other ones. Refused where x^2 + y^2 > 1
 //   Limits  tilt, and never upside down; the collective's own limits are the mixer's
 //   Differs the derivatives are those of the trajectory, not of the errors, and snap counts as 0
 #pragma once

@@ -64,7 +64,7 @@ TEST(DesiredAttitude, AtTheLimitOfTiltItStillCarriesTheWeightAndPointsTheSameWay
   }
 }
 
-// Appendix E by its own equations: E.2 turns q back into x, y and the vertical, E.5 has q3 = 0, E.9 q0 > 0.
+// Appendix E: the third column of a rotation with q3 = 0 is (2 q0 q2, -2 q0 q1, q0^2 - q1^2 - q2^2), and q0 > 0 (E.9).
 TEST(DesiredAttitude, WithoutAHeadingItIsTheOneOfAppendixE) {
   for (const float x : {-0.9f, -0.3f, 0.0f, 0.2f, 0.6f}) {
     for (const float y : {-0.4f, 0.0f, 0.1f, 0.4f}) {
@@ -72,18 +72,18 @@ TEST(DesiredAttitude, WithoutAHeadingItIsTheOneOfAppendixE) {
       ASSERT_TRUE(q);
       EXPECT_GT(q->w(), 0.7f);
       EXPECT_EQ(q->z(), 0.0f);
-      EXPECT_TRUE(near(-2.0 * q->w() * q->y(), x, stated(1e-6, "float")));
-      EXPECT_TRUE(near(2.0 * q->w() * q->x(), y, stated(1e-6, "float")));
+      EXPECT_TRUE(near(2.0 * q->w() * q->y(), x, stated(1e-6, "float")));
+      EXPECT_TRUE(near(-2.0 * q->w() * q->x(), y, stated(1e-6, "float")));
       const double down = std::sqrt(1.0 - x * x - y * y);
       const double by_q = q->w() * q->w() - q->x() * q->x() - q->y() * q->y();
       EXPECT_TRUE(near(by_q, down, stated(2e-6, "float")));
       EXPECT_TRUE(near(q->norm(), 1.0, stated(1e-6, "float")));
     }
   }
-  // 30 degrees about the level axis: north of it is a nose down, east a roll to the left.
+  // An axis that leans 30 degrees north is a nose up, one that leans east a roll to the left.
   const auto pitched = without_heading(0.5f, 0.0f), rolled = without_heading(0.0f, 0.5f);
-  EXPECT_TRUE(near(pitched->y(), -std::sin(15.0 * kDegree_rad), stated(1e-6, "float")));
-  EXPECT_TRUE(near(rolled->x(), std::sin(15.0 * kDegree_rad), stated(1e-6, "float")));
+  EXPECT_TRUE(near(pitched->y(), std::sin(15.0 * kDegree_rad), stated(1e-6, "float")));
+  EXPECT_TRUE(near(rolled->x(), -std::sin(15.0 * kDegree_rad), stated(1e-6, "float")));
   EXPECT_TRUE(without_heading(0.6f, 0.8f - 1e-6f));
   EXPECT_FALSE(without_heading(0.8f, 0.61f));
   EXPECT_FALSE(without_heading(-1.01f, 0.0f));

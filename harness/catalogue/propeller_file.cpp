@@ -213,9 +213,9 @@ Result<PropellerFile> read_propeller_file(const std::string& path) {
 
 std::vector<std::string> PropellerFile::doubts() const {
   std::vector<std::string> all;
-  for (const std::string& doubt : fit != nullptr ? fit->doubts : twist->doubts) {
-    all.push_back(plant::name(*blade) + ": " + doubt);
-  }
+  if (fit != nullptr) all = fit->doubts;
+  if (twist != nullptr) all = twist->doubts;
+  for (std::string& doubt : all) doubt = plant::name(*blade) + ": " + doubt;
   return all;
 }
 

@@ -21,9 +21,7 @@ plan "position_step without a heading" {
     t:within("8 s", function(s) return s.heartbeat_age_s < 1.5 end, "the first heartbeat")
     set_parameter(t, "CTL_NO_HEADING", 1)
     hover(t)
-    local yaw = t:always("yaw")
-    yaw:at_least "-5 deg"
-    yaw:at_most "5 deg"
     judged_step(t)
+    t:expect(t:value "yaw", "nose, from north"):within("-5 deg", "5 deg")
   end,
 }
