@@ -114,7 +114,7 @@ TEST(Seeds, AreSaidOnce) {
 
 TEST(Target, WhatNoBenchCanRunIsSaidBeforeAnythingTurns) {
   const FakeRoot root;
-  root.write("p.lua", plan_text("t:wait \"10 ms\" t:expect(t:value \"thrust\"):at_least(0)"));
+  root.write("p.lua", plan_text("t:wait \"10 ms\" t:expect(t:value \"thrust\"):at_least \"0 N\""));
   const std::string plan = root.path() + "/p.lua";
   const auto refused = [&](std::vector<std::string> words, const std::string& why) {
     words.insert(words.begin(), {"run", plan});
@@ -175,7 +175,7 @@ TEST(Target, HowLateABenchMayBeThePlanSaysOrElseTheBench) {
       if (setup.bench != nullptr) seen = {setup.bench->late_ns, setup.bench->late_share};
       return inner(setup);
     };
-    root.write("p.lua", plan_text("t:wait \"10 ms\" t:expect(t:value \"thrust\"):at_least(0)",
+    root.write("p.lua", plan_text("t:wait \"10 ms\" t:expect(t:value \"thrust\"):at_least \"0 N\"",
                                   "flight", keys));
     std::vector<std::string> words{"whirl", "run",  root.path() + "/p.lua", "--target", "bench/b",
                                    "--arm", "clear"};
