@@ -121,7 +121,8 @@ std::string BusNode::trouble_of(std::uint8_t node) const {
 
 std::vector<std::string> BusNode::findings() const {
   std::vector<std::string> all;
-  for (std::uint8_t node = 1; node < known_.size(); ++node) {
+  for (std::size_t id = 1; id < known_.size(); ++id) {
+    const auto node = static_cast<std::uint8_t>(id);
     if (const std::string trouble = trouble_of(node); !trouble.empty()) all.push_back(trouble);
   }
   if (allocator_.counts().full > 0) {
@@ -132,7 +133,8 @@ std::vector<std::string> BusNode::findings() const {
 
 std::vector<std::pair<std::string, std::string>> BusNode::figures() const {
   std::vector<std::pair<std::string, std::string>> all;
-  for (std::uint8_t node = 1; node < known_.size(); ++node) {
+  for (std::size_t id = 1; id < known_.size(); ++id) {
+    const auto node = static_cast<std::uint8_t>(id);
     const Known& known = known_[node];
     if (!watch_.node(node).seen) continue;
     std::string text = "has not said who it is";
