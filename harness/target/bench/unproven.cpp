@@ -87,6 +87,7 @@ const std::array<Row, 19> kRows{{
 
 std::vector<Unproven> all_unproven() {
   std::vector<Unproven> all;
+  all.reserve(std::size(kRows));
   for (const Row& row : kRows) all.push_back(row.item);
   return all;
 }
