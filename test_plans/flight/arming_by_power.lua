@@ -25,7 +25,7 @@ arming("arming by power: refused until the current sensors are warm", cold, func
   refused(t, "some 4 s after power-up")
   t:wait "10 s"
   refused(t, "some 16 s after it")
-  t:wait "7 s"
+  t:wait "9 s"
   t:command { arm = true }
   t:within("4 s", function(s) return s.told_armed == 1 end, "armed")
 end)
