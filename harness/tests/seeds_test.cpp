@@ -180,6 +180,7 @@ TEST(Target, HowLateABenchMayBeThePlanSaysOrElseTheBench) {
     std::vector<std::string> words{"whirl", "run",  root.path() + "/p.lua", "--target", "bench/b",
                                    "--arm", "clear"};
     std::vector<char*> argv;
+    argv.reserve(words.size());
     for (std::string& word : words) argv.push_back(word.data());
     EXPECT_EQ(cli::run_program(static_cast<int>(argv.size()), argv.data(), composition), 0) << keys;
     return seen;
