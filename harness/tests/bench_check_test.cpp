@@ -118,7 +118,7 @@ TEST_F(BenchCheck, CanThatThisKernelHasNotOrRefuses) {
   expect_missing(refused(EPERM), "bus", "no permission for CAN sockets");
 }
 
-// Only a kernel with CAN tells it; the guest's does (harness/tests/bench_check_guest.sh).
+// Only a kernel with CAN tells it: not tested.
 TEST_F(BenchCheck, AnInterfaceThatIsNotThere) {
   const int can = socket(AF_CAN, SOCK_RAW, 1);
   const bool knows_can = can >= 0;
