@@ -5,15 +5,16 @@
 include "include/chain.lua"
 include "include/flights.lua"
 
--- The thesis's figure 8, by the limits of figure_8.lua beside this.
+-- The thesis's figure 8 by what it asks, 5 cm of position: figure_8.lua beside this judges it closer, once. Here a part is not
+-- to be worse than another one, and a copy's six rounds have its worst.
 local function target_is_flown(t, name)
   t:command { position = { north = "1 m" }, speed = "0.5 m/s" }
   t:wait "6 s"
   t:command { figure_8 = {} }
   t:wait "5 s"
   local r = t:record({ "path_error", "north", "east", "height" }, "20 s")
-  t:expect(r:rms "path_error", name .. "RMS of the error of position"):at_most "2.9 cm"
-  t:expect(r:max "path_error", name .. "largest error of position"):at_most "8.5 cm"
+  t:expect(r:rms "path_error", name .. "RMS of the error of position"):at_most "5 cm"
+  t:expect(r:max "path_error", name .. "largest error of position"):at_most "10 cm"
   t:expect(r:max "north", name .. "to the north"):within("0.95 m", "1.05 m")
   t:expect(r:min "east", name .. "to the west"):within("-1.05 m", "-0.95 m")
   t:expect(r:rms_error("height", "1.1 m"), name .. "height RMS error on the target's way"):at_most "1 cm"
